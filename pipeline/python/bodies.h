@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,24 @@ auto changing_scene(SharedScene& s, Body&& body) {
     return body();
   });
 }
+
+/// A motion by name for all, or numbers as in FIXED, DYNAMIC, SLEEPING.
+class MotionInput {
+ public:
+  explicit MotionInput(py::handle object)
+      : numbers_(py::isinstance<py::str>(object)
+                     ? EachInteger(py::int_(static_cast<int>(chosen(
+                                       kMotionNames, py::cast<std::string>(object), "motion"))),
+                                   "motion", kMotions - 1)
+                     : EachInteger(object, "motion", kMotions - 1)) {}
+  void expect(std::size_t count) const { numbers_.expect(count); }
+  [[nodiscard]] Motion operator[](std::size_t i) const noexcept {
+    return static_cast<Motion>(numbers_[i]);
+  }
+
+ private:
+  EachInteger numbers_;
+};
 
 /// Filters of bodies as three columns.
 class FilterInput {

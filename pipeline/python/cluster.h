@@ -5,5 +5,6 @@
 namespace winnow::python {
 
 void add_cluster(pybind11::module_& module);
+void add_cluster_scene(pybind11::module_& module);
 
 }  // namespace winnow::python

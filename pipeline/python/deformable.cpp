@@ -236,9 +236,11 @@ struct MeshShapeImpactTable : EmptyIfZero {
   }
   const MeshObstacle obstacle{shapes.pool, ShapeId{shape}, motion[0], separation};
   const ImpactOptions options{tolerance, Execution::serial(), &shapes.composites};
-  const auto columns = columns_of(found<MeshShapeImpact>(s, "impacts_with_shape", [&](auto& take) {
-    const std::shared_lock lock(shapes.mutex);
-    return s.mesh.impacts_with(obstacle, options, take);
+  const auto columns = columns_of(shapes.raised.during([&] {
+    return found<MeshShapeImpact>(s, "impacts_with_shape", [&](auto& take) {
+      const std::shared_lock lock(shapes.mutex);
+      return s.mesh.impacts_with(obstacle, options, take);
+    });
   }));
   using Impact = MeshShapeImpact;
   return {{},

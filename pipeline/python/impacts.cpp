@@ -41,17 +41,17 @@ void accept_all(const ImpactResult& result) {
   const std::span<const BodyPair> list(reinterpret_cast<const BodyPair*>(pairs.values().data()),
                                        pairs.count());
   auto answers = std::make_shared<Impacts>();
-  accept(reading(shapes.mutex,
-                 [&] {
-                   std::vector<ShapeId> ids;
-                   std::vector<RigidMotion> room;
-                   const ImpactOptions options{
-                       tolerance, parallel ? Execution::parallel() : Execution::serial(),
-                       &shapes.composites};
-                   return time_of_impact(shapes.pool,
-                                         {shape.list(motion.count(), ids), motion.packed(room)},
-                                         list, options, answers->result);
-                 }),
+  accept(reading_shapes(shapes,
+                        [&] {
+                          std::vector<ShapeId> ids;
+                          std::vector<RigidMotion> room;
+                          const ImpactOptions options{
+                              tolerance, parallel ? Execution::parallel() : Execution::serial(),
+                              &shapes.composites};
+                          return time_of_impact(
+                              shapes.pool, {shape.list(motion.count(), ids), motion.packed(room)},
+                              list, options, answers->result);
+                        }),
          "time_of_impact");
   accept_all(answers->result);
   return answers;
@@ -139,7 +139,7 @@ void add_result(py::module_& module) {
   auto times = fresh<double>(count);
   const std::span<double> out(times.mutable_data(), count);
   const auto answer = [&] {
-    const py::gil_scoped_release release;
+    const WithoutGil release;
     const std::vector<double> from = feature_columns(start);
     const std::vector<double> to = feature_columns(end);
     FeatureColumns pairs;

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "pipeline/python/callbacks.h"
+#include "pipeline/python/gil.h"
 
 #include <functional>
 #include <mutex>
@@ -11,12 +12,13 @@ namespace winnow::python {
 
 // Work is done without the GIL, and a lock keeps threads from changing what others look at. It is
 // waited for without the GIL, and let go before that is taken again: no two threads can wait for
-// each other.
+// each other. A function of Python's that winnow calls is under such locks, and takes none.
 
 /// For calls that may run at once.
 template <typename Body>
 auto reading(std::shared_mutex& mutex, Body&& body) {
-  const pybind11::gil_scoped_release release;
+  InCallback::refuse();
+  const WithoutGil release;
   const std::shared_lock lock(mutex);
   return std::forward<Body>(body)();
 }
@@ -26,7 +28,8 @@ auto reading(std::shared_mutex& mutex, Body&& body) {
 template <typename Body>
 auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
   const bool in_order = std::less<>()(&a, &b);
-  const pybind11::gil_scoped_release release;
+  InCallback::refuse();
+  const WithoutGil release;
   const std::shared_lock first(in_order ? a : b);
   std::shared_lock<std::shared_mutex> second;
   if (&a != &b) second = std::shared_lock(in_order ? b : a);
@@ -36,7 +39,8 @@ auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
 /// For calls that want the object to themselves.
 template <typename Body>
 auto changing(std::shared_mutex& mutex, Body&& body) {
-  const pybind11::gil_scoped_release release;
+  InCallback::refuse();
+  const WithoutGil release;
   const std::unique_lock lock(mutex);
   return std::forward<Body>(body)();
 }

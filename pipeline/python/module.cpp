@@ -5,6 +5,8 @@
 #include "pipeline/python/cluster.h"
 #include "pipeline/python/deformable.h"
 #include "pipeline/python/drawing.h"
+#include "pipeline/python/filters.h"
+#include "pipeline/python/hooks.h"
 #include "pipeline/python/impacts.h"
 #include "pipeline/python/motions.h"
 #include "pipeline/python/partition.h"
@@ -144,6 +146,8 @@ PYBIND11_MODULE(_core, module) {
       "Takes boxes, hands out keys, and says which may touch; it never misses a pair. Any number "
       "of threads may call it. A call that raises has changed nothing. Arrays must not be written "
       "to by other threads while a call reads them.");
+  add_filters(module);
+  add_hooks(module);
   add_queries(module, partition);
   add_pairs(module, partition);
   add_partition(module, partition);
@@ -156,6 +160,7 @@ PYBIND11_MODULE(_core, module) {
   add_deformable(module);
   add_scene(module);
   add_cluster(module);
+  add_cluster_scene(module);
 }
 
 }  // namespace winnow::python

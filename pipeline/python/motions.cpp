@@ -2,6 +2,7 @@
 
 #include "pipeline/python/motions.h"
 
+#include "pipeline/python/gil.h"
 #include "pipeline/python/refusal.h"
 
 #include <cstddef>
@@ -37,7 +38,7 @@ void write_each(std::size_t count, const char* call, Write&& write) {
   Status status = Status::ok;
   std::size_t i = 0;
   {
-    const py::gil_scoped_release release;
+    const WithoutGil release;
     for (; i < count; ++i) {
       status = write(i);
       if (status != Status::ok) break;

@@ -40,15 +40,17 @@ struct NarrowAnswers : NeedsInit {
   auto answers = std::make_shared<NarrowAnswers>();
   answers->result = phase.results->take();
   std::uint32_t bad_body = 0;
-  const Status status = changing(phase.mutex, [&] {
-    std::vector<ShapeId> ids;
-    std::vector<Pose> room;
-    const std::shared_lock lock(shapes.mutex);
-    const Status done =
-        phase.narrow.collide(shapes.pool, {shape.list(pose.count(), ids), pose.packed(room)}, list,
-                             options, *answers->result);
-    bad_body = phase.narrow.bad_body();
-    return done;
+  const Status status = shapes.raised.during([&] {
+    return changing(phase.mutex, [&] {
+      std::vector<ShapeId> ids;
+      std::vector<Pose> room;
+      const std::shared_lock lock(shapes.mutex);
+      const Status done =
+          phase.narrow.collide(shapes.pool, {shape.list(pose.count(), ids), pose.packed(room)},
+                               list, options, *answers->result);
+      bad_body = phase.narrow.bad_body();
+      return done;
+    });
   });
   accept(status, "collide, body " + std::to_string(bad_body));
   return answers;

@@ -1,8 +1,10 @@
 // Pairs of a partition's objects, and what changed of them.
 
+#include "pipeline/python/callbacks.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
 
+#include <optional>
 #include <utility>
 
 namespace winnow::python {
@@ -38,9 +40,25 @@ py::array shown_pairs(const std::shared_ptr<PairBuffer>& pairs) {
 
 namespace {
 
+/// What a predicate lets pass: all pairs anew, for a buffer does not tell whom it asked.
+[[nodiscard]] py::array passing_pairs(SharedPartition& p, Order order, const py::object& function) {
+  Predicate predicate(function, "predicate");
+  const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
+  const Status status = reading(p.mutex, [&] {
+    return p.partition.self_pairs(*out, PairOptions{order, false, pair_predicate(predicate)});
+  });
+  predicate.raise_if_failed();
+  accept(status, "self_pairs");
+  return shown_pairs(out);
+}
+
 [[nodiscard]] py::array self_pairs(SharedPartition& p, Events* events, const std::string& order,
-                                   bool incremental) {
+                                   bool incremental, const py::object& predicate) {
   const PairOptions options{chosen(kOrders, order, "order"), incremental, {}};
+  if (!predicate.is_none()) {
+    if (events == nullptr) return passing_pairs(p, options.order, predicate);
+    throw Refusal(Status::unsupported, "self_pairs: pair_changes tells events of a predicate");
+  }
   std::unique_lock<std::mutex> filling;
   PairEvents* changes = nullptr;
   if (events != nullptr) {
@@ -61,21 +79,37 @@ namespace {
   return shown_pairs(out);
 }
 
-void pair_changes(SharedPartition& p, Events& events) {
+void pair_changes(SharedPartition& p, Events& events, const py::object& function) {
+  std::optional<Predicate> predicate;
+  if (!function.is_none()) predicate.emplace(function, "predicate");
   const std::unique_lock<std::mutex> filling = events.hold();
   PairEvents& changes = events.to_fill("events");
-  accept(reading(p.mutex, [&] { return p.partition.self_pairs(changes); }), "pair_changes");
+  // What a predicate said of pairs that did not move would stand.
+  const bool anew = events.is_filtered.exchange(predicate.has_value()) || predicate;
+  PairOptions options{Order::fast, !anew, {}};
+  if (predicate) options.predicate = pair_predicate(*predicate);
+  const Status status = reading(p.mutex, [&] { return p.partition.self_pairs(changes, options); });
+  if (predicate && predicate->has_failed()) {
+    changes.clear();
+    predicate->raise();
+  }
+  accept(status, "pair_changes");
 }
 
 [[nodiscard]] py::array pairs_with(const SharedPartition& p, const SharedPartition& other,
-                                   const std::string& order) {
-  const PairOptions options{chosen(kOrders, order, "order"), true, {}};
+                                   const std::string& order, const py::object& function) {
+  std::optional<Predicate> predicate;
+  if (!function.is_none()) predicate.emplace(function, "predicate");
+  const PairOptions options{chosen(kOrders, order, "order"), !predicate,
+                            predicate ? pair_predicate(*predicate) : PairPredicate{}};
   if (p.recorder != other.recorder) {
     throw Refusal(Status::unsupported, "pairs_with: of two that are not recorded together");
   }
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   const auto ask = [&] { return p.partition.pairs_with(other.partition, *out, options); };
-  accept(reading_two(p.mutex, other.mutex, ask), "pairs_with");
+  const Status status = reading_two(p.mutex, other.mutex, ask);
+  if (predicate) predicate->raise_if_failed();
+  accept(status, "pairs_with");
   return shown_pairs(out);
 }
 
@@ -126,18 +160,25 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
           "Forgets everything.");
   partition
       .def("self_pairs", &self_pairs, arg("events") = py::none(), py::kw_only(),
-           arg("order") = "fast", arg("incremental") = true,
+           arg("order") = "fast", arg("incremental") = true, arg("predicate") = py::none(),
            "All pairs of objects whose volumes overlap: (m, 2) uint32 of ids, first < second. An "
            "array that shows what winnow wrote, to be read; it never changes. Drop it before the "
            "next call, and that updates it in place where little moved; else pairs go to another "
            "buffer. `order`: 'fast' or 'canonical' (sorted). With `events`, what changed since the "
-           "last call is written there.")
-      .def("pair_changes", &pair_changes, arg("events"),
+           "last call is written there. `predicate(first, second)`, which goes without events "
+           "(unsupported), has the last word on each pair of ids. It is called from any thread "
+           "that works, one at a time, for each needs the GIL: filters, or a look at the array of "
+           "pairs, take a hundredth of that. It asks winnow nothing (unsupported); what it raises "
+           "the call raises.")
+      .def("pair_changes", &pair_changes, arg("events"), py::kw_only(),
+           arg("predicate") = py::none(),
            "What changed of all pairs since the last call with these events, alone: costs what "
-           "moved.")
+           "moved, or with a `predicate`, as in `self_pairs`, all pairs. Where that raises, the "
+           "events forget everything.")
       .def("pairs_with", &pairs_with, arg("other"), py::kw_only(), arg("order") = "fast",
+           arg("predicate") = py::none(),
            "All pairs (object of this, object of `other`) whose boxes overlap: (m, 2) uint32 of "
-           "ids.");
+           "ids. `predicate` as in `self_pairs`.");
 }
 
 }  // namespace winnow::python

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/python/arrays.h"
+#include "pipeline/python/callbacks.h"
 #include "pipeline/python/choices.h"
 #include "pipeline/python/made.h"
 #include "pipeline/python/pool.h"
@@ -18,6 +19,7 @@
 #include <mutex>
 #include <shared_mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace winnow::python {
@@ -37,27 +39,42 @@ inline constexpr Choices<Order, 2> kOrders{
 template <typename Result>
 class Exported : public NeedsInit {
  public:
+  Exported() = default;
+  /// Of a result that something else fills.
+  explicit Exported(std::shared_ptr<Result> lent) : value_(std::move(lent)), is_lent_(true) {}
+
   [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
-  /// To be filled: a BufferError while an array shows it.
+  /// A BufferError while an array shows it.
+  void expect_unseen(const char* what) const {
+    if (value_.use_count() <= 1) return;
+    PyErr_Format(PyExc_BufferError,
+                 "arrays of these %s are alive: delete them, or keep copies of them", what);
+    throw py::error_already_set();
+  }
+  /// To be filled, while no array shows it. Throws `unsupported` if something else fills it.
   [[nodiscard]] Result& to_fill(const char* what) const {
-    if (value_.use_count() > 1) {
-      PyErr_Format(PyExc_BufferError,
-                   "arrays of these %s are alive: delete them, or keep copies of them", what);
-      throw py::error_already_set();
+    if (is_lent_) {
+      throw Refusal(Status::unsupported, std::string(what) + ": what they are of fills them");
     }
+    expect_unseen(what);
     return *value_;
   }
   /// Nobody else fills it or makes arrays of it meanwhile. Waits without the GIL.
   [[nodiscard]] std::unique_lock<std::mutex> hold() const {
-    const py::gil_scoped_release release;
+    InCallback::refuse();
+    const WithoutGil release;
     return std::unique_lock(mutex_);
   }
 
  private:
   mutable std::mutex mutex_;
   std::shared_ptr<Result> value_ = std::make_shared<Result>();
+  bool is_lent_ = false;
 };
-using Events = Exported<PairEvents>;
+struct Events : Exported<PairEvents> {
+  /// By a predicate, the last time.
+  std::atomic<bool> is_filtered{false};
+};
 
 /// A partition as several threads of Python may use it.
 class SharedPartition : public NeedsInit {

@@ -1,5 +1,6 @@
 // Rays, swept volumes, regions and nearest objects of a partition, many at a time.
 
+#include "pipeline/python/filters.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/questions.h"
@@ -466,53 +467,55 @@ constexpr float kForever = std::numeric_limits<float>::infinity();
 void add_casts(PartitionClass& partition) {
   using py::arg;
   partition
-      .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), arg("find") = "closest",
-           py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever, arg("filter") = Filter{},
+      .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
+           arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
+           arg("filter") = PythonFilter{},
            "What the rays origins + t * directions, (n, 3) each, min_t <= t <= max_t, (n,) or one "
            "for all, meet of the objects' boxes. `find`: 'closest' or 'any', giving Hits, or "
            "'all', giving HitLists sorted by t. Floats with one stride are read where they lie.")
-      .def("cast_boxes", &cast_boxes, arg("lower"), arg("upper"), arg("directions"),
+      .def("cast_boxes", filtered(&cast_boxes), arg("lower"), arg("upper"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = Filter{},
+           arg("filter") = PythonFilter{},
            "The same for boxes (n, 3), (n, 3) that move by t * directions (n, 3).")
-      .def("cast_spheres", &cast_spheres, arg("centers"), arg("radii"), arg("directions"),
+      .def("cast_spheres", filtered(&cast_spheres), arg("centers"), arg("radii"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = Filter{},
+           arg("filter") = PythonFilter{},
            "The same for balls: centres (n, 3), radii (n,) or one for all.")
-      .def("cast_capsules", &cast_capsules, arg("a"), arg("b"), arg("radii"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = Filter{},
+      .def("cast_capsules", filtered(&cast_capsules), arg("a"), arg("b"), arg("radii"),
+           arg("directions"), arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F,
+           arg("max_t") = kForever, arg("filter") = PythonFilter{},
            "The same for capsules: ends a and b (n, 3), radii (n,) or one for all.");
 }
 
 void add_regions(PartitionClass& partition) {
   using py::arg;
   partition
-      .def("overlap_boxes", &overlap_boxes, arg("lower"), arg("upper"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = Filter{},
+      .def("overlap_boxes", filtered(&overlap_boxes), arg("lower"), arg("upper"), py::kw_only(),
+           arg("order") = "fast", arg("filter") = PythonFilter{},
            "All pairs (number of the box, id of the object) that overlap: (m, 2) uint32. Boxes "
            "(n, 3), (n, 3) are taken as by `insert`.")
-      .def("overlap_points", &overlap_points, arg("points"), py::kw_only(), arg("order") = "fast",
-           arg("filter") = Filter{}, "Objects whose boxes contain the points (n, 3), as Overlaps.")
-      .def("overlap_spheres", &overlap_spheres, arg("centers"), arg("radii"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = Filter{},
+      .def("overlap_points", filtered(&overlap_points), arg("points"), py::kw_only(),
+           arg("order") = "fast", arg("filter") = PythonFilter{},
+           "Objects whose boxes contain the points (n, 3), as Overlaps.")
+      .def("overlap_spheres", filtered(&overlap_spheres), arg("centers"), arg("radii"),
+           py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects whose boxes meet the balls: centres (n, 3), radii (n,) or one for all.")
-      .def("overlap_capsules", &overlap_capsules, arg("a"), arg("b"), arg("radii"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = Filter{},
+      .def("overlap_capsules", filtered(&overlap_capsules), arg("a"), arg("b"), arg("radii"),
+           py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects whose boxes meet the capsules: ends (n, 3), radii (n,) or one for all.")
-      .def("overlap_oriented_boxes", &overlap_oriented_boxes, arg("centers"), arg("half"),
-           arg("axes"), py::kw_only(), arg("order") = "fast", arg("filter") = Filter{},
+      .def("overlap_oriented_boxes", filtered(&overlap_oriented_boxes), arg("centers"), arg("half"),
+           arg("axes"), py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects whose boxes meet boxes that are turned: centres (n, 3), half extents (n, 3) "
            "or (3,), axes as columns of (n, 3, 3) or (3, 3).")
-      .def("overlap_frusta", &overlap_frusta, arg("frusta"), py::kw_only(), arg("order") = "fast",
-           arg("filter") = Filter{},
+      .def("overlap_frusta", filtered(&overlap_frusta), arg("frusta"), py::kw_only(),
+           arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects that cameras see: (n, 30), as `perspective` and `frusta_of` give them.")
-      .def("overlap_planes", &overlap_planes, arg("planes"), py::kw_only(), arg("order") = "fast",
-           arg("filter") = Filter{},
+      .def("overlap_planes", filtered(&overlap_planes), arg("planes"), py::kw_only(),
+           arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects whose boxes are not wholly outside of one of p planes: (n, p, 4), a normal "
            "that faces inward and an offset each, normal . x + offset >= 0 inside.")
-      .def("nearest", &nearest, arg("lower"), arg("count") = 1, py::kw_only(),
-           arg("upper") = py::none(), arg("radius") = kForever, arg("filter") = Filter{},
+      .def("nearest", filtered(&nearest), arg("lower"), arg("count") = 1, py::kw_only(),
+           arg("upper") = py::none(), arg("radius") = kForever, arg("filter") = PythonFilter{},
            "The `count` objects whose boxes are nearest to each point `lower` (n, 3), or to each "
            "box up to `upper` (n, 3), within `radius`, (n,) or one for all. Hits of shape (n, "
            "count), sorted by distance, which is t; NULL_KEY and infinity where there are fewer.");
@@ -522,20 +525,6 @@ void add_regions(PartitionClass& partition) {
 
 void add_queries(py::module_& module, PartitionClass& partition) {
   using py::arg;
-  constexpr std::uint32_t every = ~0U;
-  py::class_<Filter>(module, "Filter", "What a query asks for: who may meet the one who asks.")
-      .def(py::init([](std::uint32_t layers, std::uint32_t mask, std::uint32_t environment) {
-             return Filter{layers, mask, environment, {}};
-           }),
-           arg("layers") = every, arg("mask") = every, arg("environment") = every,
-           "Layers it is in, mask of layers it meets, environment.")
-      .def_readonly("layers", &Filter::layers)
-      .def_readonly("mask", &Filter::mask)
-      .def_readonly("environment", &Filter::environment)
-      .def("__repr__", [](const Filter& f) {
-        return "Filter(layers=" + std::to_string(f.layers) + ", mask=" + std::to_string(f.mask) +
-               ", environment=" + std::to_string(f.environment) + ")";
-      });
   py::class_<HitTable>(module, "Hits",
                        "One hit for each question; NULL_KEY, 0 and infinity where there is none.")
       .def_readonly("key", &HitTable::key, "Keys, uint64.")

@@ -198,15 +198,26 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored) {
     return on([&](auto& s) { return s.set_ignored(pairs, ignored); });
   }
+  void set_predicate(const PairPredicate& predicate) {
+    on([&](auto& s) { s.set_predicate(predicate); });
+  }
   Status refresh() {
     return on([](auto& s) { return s.refresh(); });
   }
   Status collide(ContactLevel level, Contacts& contacts) {
     return on([&](auto& s) { return s.collide(level, contacts); });
   }
+  Status load(std::span<const std::byte> saved) {
+    return on([&](auto& s) { return s.load(saved); });
+  }
+  Status load_contacts(std::span<const std::byte> saved, Contacts& contacts) {
+    return on([&](auto& s) { return s.load_contacts(saved, contacts); });
+  }
 
  private:
   friend class RecordableQueries;
+  friend class RecordableSensors;
+  friend class RecordableSweep;
 };
 
 /// Questions to a scene; calls as SceneQueries has them.
@@ -251,6 +262,58 @@ class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
   template <typename... Given>
   Status nearest(Given&&... given) {
     return on([&](auto& q) { return q.nearest(given...); });
+  }
+};
+
+/// A sweep; calls as SceneSweep has them.
+class RecordableSweep : public Recordable<SceneSweep, RecordedSweep> {
+ public:
+  explicit RecordableSweep(RecordableScene& scene) {
+    if (scene.is_recorded()) {
+      recorded_.emplace(*scene.recorded_);
+    } else {
+      plain_.emplace(*scene.plain_);
+    }
+  }
+
+  [[nodiscard]] const SceneSweep* operator->() const noexcept {
+    return recorded_ ? recorded_->operator->() : &*plain_;
+  }
+  template <typename... Given>
+  Status sweep(Given&&... given) {
+    return on([&](auto& s) { return s.sweep(given...); });
+  }
+};
+
+/// Sensors; calls as they have them.
+class RecordableSensors : public Recordable<Sensors, RecordedSensors> {
+ public:
+  explicit RecordableSensors(RecordableScene& scene) {
+    if (scene.is_recorded()) {
+      recorded_.emplace(*scene.recorded_);
+    } else {
+      plain_.emplace(*scene.plain_);
+    }
+  }
+
+  [[nodiscard]] const Sensors& operator*() const noexcept {
+    return recorded_ ? **recorded_ : *plain_;
+  }
+  [[nodiscard]] const Sensors* operator->() const noexcept { return &**this; }
+  Status add(const SensorDefinition& sensor, Key& key) {
+    return on([&](auto& s) { return s.add(sensor, key); });
+  }
+  Status remove(Key key) {
+    return on([&](auto& s) { return s.remove(key); });
+  }
+  Status move(Key key, const Pose& pose) {
+    return on([&](auto& s) { return s.move(key, pose); });
+  }
+  Status set(Key key, const SensorDefinition& sensor) {
+    return on([&](auto& s) { return s.set(key, sensor); });
+  }
+  Status sense() {
+    return on([](auto& s) { return s.sense(); });
   }
 };
 

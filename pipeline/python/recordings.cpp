@@ -3,6 +3,7 @@
 #include "pipeline/python/recordings.h"
 
 #include "pipeline/python/bytes.h"
+#include "pipeline/python/callbacks.h"
 #include "pipeline/python/recordable.h"
 
 #include <winnow/pipeline/replay.h>
@@ -33,8 +34,9 @@ namespace {
 }
 
 void close(SharedRecorder& r) {
+  InCallback::refuse();
   const auto closed = [&] {
-    const py::gil_scoped_release release;
+    const WithoutGil release;
     return r.recorder.close();
   };
   accept(closed(), "close");
@@ -52,7 +54,7 @@ struct ReplayCounts {
 };
 
 [[nodiscard]] ReplayCounts play(std::span<const std::byte> bytes, const Execution& execution) {
-  const py::gil_scoped_release release;
+  const WithoutGil release;
   RecordingPlayer player(bytes, {.execution = execution});
   ReplayCounts played;
   played.status = player.play_all();
@@ -88,16 +90,17 @@ void add_recordings(py::module_& module) {
       module, "Recorder",
       "Writes down what is done with partitions and scenes that are made with it, so that it can "
       "be played elsewhere, and measured: `winnow advise FILE`. Calls that were refused are not "
-      "recorded, nor are sweeps, sensors and snapshots to be loaded, contacts included, which are "
-      "unsupported then. A recorded scene is asked with one Contacts: `status` is 'unsupported' "
-      "after one that it filled in an earlier call than the last. Where anything goes wrong the "
-      "recording ends, and the program goes on: see `status`.")
+      "recorded. Partitions that are recorded load no snapshots (unsupported). A recorded scene is "
+      "asked with one Contacts, which may be loaded: `status` is 'unsupported' after one that it "
+      "filled in an earlier call than the last. Where anything goes wrong the recording ends, and "
+      "the program goes on: see `status`.")
       .def(py::init(&make_recorder), arg("path"),
            "Into the file of a path, as `open` takes it, which is made or overwritten.")
       .def(
           "end_frame",
           [](SharedRecorder& r) {
-            const py::gil_scoped_release release;
+            InCallback::refuse();
+            const WithoutGil release;
             r.recorder.end_frame();
           },
           "Says that a frame is over, and writes out what there is.")

@@ -1,6 +1,8 @@
 // Questions to the exact shapes of a scene, many at a time.
 
 #include "pipeline/python/entry_columns.h"
+#include "pipeline/python/filters.h"
+#include "pipeline/python/locks.h"
 #include "pipeline/python/motions.h"
 #include "pipeline/python/questions.h"
 #include "pipeline/python/refusal.h"
@@ -24,8 +26,9 @@ constexpr Choices<Wanted, 3> kWanted{
 
 /// Asks while nothing changes the scene, which is brought up to date before.
 template <typename Body>
-[[nodiscard]] Outcome asking(SharedScene& s, Body&& body) {
-  const py::gil_scoped_release release;
+[[nodiscard]] Outcome asking_unchanged(SharedScene& s, Body&& body) {
+  InCallback::refuse();
+  const WithoutGil release;
   for (;;) {
     {
       const std::shared_lock lock(s.mutex);
@@ -39,6 +42,12 @@ template <typename Body>
     s.is_stale = false;
     s.shapes_seen = s.shapes->revision.load();
   }
+}
+
+/// The same, raising what functions of Python's raise meanwhile.
+template <typename Body>
+[[nodiscard]] Outcome asking(SharedScene& s, Body&& body) {
+  return s.shapes->raised.during([&] { return asking_unchanged(s, body); });
 }
 
 /// What one thread asks with, for the time of a question.
@@ -441,28 +450,30 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
   constexpr double forever = std::numeric_limits<double>::infinity();
   add_answers(module);
   scene
-      .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), arg("find") = "closest",
-           py::kw_only(), arg("max_t") = forever, arg("filter") = Filter{},
+      .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
+           arg("find") = "closest", py::kw_only(), arg("max_t") = forever,
+           arg("filter") = PythonFilter{},
            "What the rays origins + t * directions, (n, 3) each, 0 <= t <= max_t, (n,) or one for "
            "all, meet of the bodies' shapes. `find`: 'closest' or 'any', giving SceneHits, or "
            "'all', giving SceneHitLists. Doubles of one stride are read where they lie.")
       .def(
-          "cast_shapes", &cast_shapes, arg("shapes"), arg("poses"), arg("directions"),
+          "cast_shapes", filtered(&cast_shapes), arg("shapes"), arg("poses"), arg("directions"),
           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
-          arg("filter") = Filter{},
+          arg("filter") = PythonFilter{},
           "Where shapes (n,), or one, no half-spaces, at poses (n, 7) that move by t * directions, "
           "(n, 3) or (3,), without turning, first touch a body: never later than they do, and at "
           "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
-      .def("cast_motions", &cast_motions, arg("shapes"), arg("motions"), arg("find") = "closest",
-           py::kw_only(), arg("tolerance") = 1e-6, arg("filter") = Filter{},
+      .def("cast_motions", filtered(&cast_motions), arg("shapes"), arg("motions"),
+           arg("find") = "closest", py::kw_only(), arg("tolerance") = 1e-6,
+           arg("filter") = PythonFilter{},
            "Where shapes (n,), or one, no half-spaces, that move and turn by motions (n, 13), as "
            "`motions_between` gives them, first meet a body; t is the time in [0, 1], never late. "
            "The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
            "'all'. size_mismatch, invalid_key; invalid_pose for a motion that is not valid; "
            "unsupported for half-spaces; invalid_argument for a bad tolerance. A way that runs "
            "across the axes is asked about in up to eight pieces.")
-      .def("overlap", &overlap, arg("shapes"), arg("poses"), py::kw_only(),
-           arg("filter") = Filter{},
+      .def("overlap", filtered(&overlap), arg("shapes"), arg("poses"), py::kw_only(),
+           arg("filter") = PythonFilter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")
       .def("distance", &distance, arg("a"), arg("b"), py::kw_only(), arg("limit") = forever,
            "Closest or deepest points of bodies a (n,) and b (n,), whatever their filters: one "
@@ -476,8 +487,8 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
            arg("most") = std::numeric_limits<std::size_t>::max(),
            "Keys (k, 2) of bodies of two sets a (n,) and b (m,) that share a point, at most `most` "
            "of them: 1 stops at the first one.")
-      .def("nearest", &nearest, arg("points"), arg("count") = 1, py::kw_only(),
-           arg("radius") = forever, arg("filter") = Filter{},
+      .def("nearest", filtered(&nearest), arg("points"), arg("count") = 1, py::kw_only(),
+           arg("radius") = forever, arg("filter") = PythonFilter{},
            "The at most `count` bodies nearest to each point (n, 3), no farther than `radius`, "
            "(n,) or one for all, sorted by distance.");
 }

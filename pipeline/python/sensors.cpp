@@ -19,20 +19,17 @@ namespace {
 /// Sensors of a scene, whose lock is theirs, too; shapes that they have are used by it.
 struct SharedSensors : NeedsInit {
   explicit SharedSensors(std::shared_ptr<SharedScene> of)
-      : scene(std::move(of)), sensors(scene->scene.unrecorded("Sensors")), held(scene->shapes) {}
+      : scene(std::move(of)), sensors(scene->scene), held(scene->shapes) {}
 
   const std::shared_ptr<SharedScene> scene;
-  Sensors sensors;
+  RecordableSensors sensors;
   HeldShapes held;
 };
 
 /// Changes the sensors, or lets them look, for which the shapes stay as they are.
 template <typename Body>
 auto changing_sensors(SharedSensors& s, Body&& body) {
-  return changing(s.scene->mutex, [&] {
-    const std::shared_lock lock(s.scene->shapes->mutex);
-    return body();
-  });
+  return s.scene->working(std::forward<Body>(body));
 }
 
 using Definitions = std::vector<SensorDefinition>;
@@ -94,7 +91,7 @@ void remove(SharedSensors& s, py::handle key_array) {
   accept(changing_sensors(s,
                           [&] {
                             Definitions before;
-                            Status status = sensors_of(s.sensors, keys.keys(), before);
+                            Status status = sensors_of(*s.sensors, keys.keys(), before);
                             if (status == Status::ok && has_twice(keys.keys())) {
                               status = Status::invalid_key;
                             }
@@ -120,7 +117,7 @@ void move(SharedSensors& s, py::handle key_array, py::handle poses) {
              s,
              [&] {
                Definitions before;
-               const Status status = sensors_of(s.sensors, keys, before);
+               const Status status = sensors_of(*s.sensors, keys, before);
                if (status != Status::ok) return status;
                return set_all(
                    keys.size(), [&](std::size_t i) { return s.sensors.move(keys[i], pose[i]); },
@@ -141,7 +138,7 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
   accept(changing_sensors(s,
                           [&] {
                             Definitions before;
-                            Status status = sensors_of(s.sensors, keys, before);
+                            Status status = sensors_of(*s.sensors, keys, before);
                             if (status == Status::ok && has_twice(keys))
                               status = Status::invalid_key;
                             if (status != Status::ok) return status;
@@ -162,7 +159,7 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(s.scene->mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.sensors.contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.sensors->contains(keys.keys()[i]);
   });
   return result;
 }
@@ -184,8 +181,8 @@ struct SensedTable : EmptyIfZero {
                           [&] {
                             const Status status = s.sensors.sense();
                             if (status != Status::ok) return status;
-                            in.assign(s.sensors.sensed().begin(), s.sensors.sensed().end());
-                            out.assign(s.sensors.left().begin(), s.sensors.left().end());
+                            in.assign(s.sensors->sensed().begin(), s.sensors->sensed().end());
+                            out.assign(s.sensors->left().begin(), s.sensors->left().end());
                             return status;
                           }),
          "sense");
@@ -258,7 +255,7 @@ void add_sensors(py::module_& module) {
   add_changes(type);
   type.def("__len__",
            [](const SharedSensors& s) {
-             return reading(s.scene->mutex, [&] { return s.sensors.size(); });
+             return reading(s.scene->mutex, [&] { return s.sensors->size(); });
            })
       .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are sensors: (n,) bool.")
       .def("sense", &sense,

@@ -36,6 +36,35 @@ void SharedScene::put_queries(std::unique_ptr<RecordableQueries> queries) noexce
   }
 }
 
+void SharedScene::exchange_predicate(std::shared_ptr<Predicate>& other) {
+  predicate_.swap(other);
+  scene.set_predicate(predicate_ ? pair_predicate(*predicate_) : PairPredicate{});
+}
+
+namespace {
+
+/// A scene would say so with the first body.
+void expect_length(double length, const char* name) {
+  if (length >= 0.0 && length < std::numeric_limits<double>::infinity()) return;
+  throw Refusal(Status::invalid_argument, std::string(name) + ": finite and >= 0 is wanted");
+}
+
+}  // namespace
+
+SceneOptions scene_options(double margin, const std::string& tier,
+                           const std::vector<std::string>& structures, bool parallel) {
+  SceneOptions options;
+  options.execution = parallel ? Execution::parallel() : Execution::serial();
+  if (structures.size() != kMotions) {
+    throw Refusal(Status::invalid_argument, "structures: of fixed, dynamic and sleeping bodies");
+  }
+  for (std::size_t i = 0; i < kMotions; ++i) options.structures[i] = structure_of(structures[i]);
+  expect_length(margin, "margin");
+  options.margin = margin;
+  options.tier = chosen(kTiers, tier, "tier");
+  return options;
+}
+
 namespace {
 
 [[nodiscard]] std::shared_ptr<SharedScene> make_scene(const std::shared_ptr<SharedShapes>& shapes,
@@ -45,20 +74,8 @@ namespace {
                                                       const std::vector<std::string>& structures,
                                                       bool parallel, std::size_t build_budget,
                                                       const RecorderPointer& recorder) {
-  SceneOptions options;
-  options.execution = parallel ? Execution::parallel() : Execution::serial();
-  if (structures.size() != kMotions) {
-    throw Refusal(Status::invalid_argument, "structures: of fixed, dynamic and sleeping bodies");
-  }
-  for (std::size_t i = 0; i < kMotions; ++i) options.structures[i] = structure_of(structures[i]);
-  // A scene would say so with the first body.
-  for (const double length : {margin, carry_over}) {
-    if (!(length >= 0.0 && length < std::numeric_limits<double>::infinity())) {
-      throw Refusal(Status::invalid_argument, "margin and carry_over are finite and >= 0");
-    }
-  }
-  options.margin = margin;
-  options.tier = chosen(kTiers, tier, "tier");
+  SceneOptions options = scene_options(margin, tier, structures, parallel);
+  expect_length(carry_over, "carry_over");
   options.carry_over = carry_over;
   options.contact_reduction = contact_reduction;
   options.seamless_floors = seamless_floors;
@@ -85,24 +102,6 @@ void reserve(SharedScene& s, const SceneRoom& room, HeldContacts* contacts, bool
 }
 
 // --- bodies ------------------------------------------------------------------------------------
-
-/// A motion by name for all, or numbers as in FIXED, DYNAMIC, SLEEPING.
-class MotionInput {
- public:
-  explicit MotionInput(py::handle object)
-      : numbers_(py::isinstance<py::str>(object)
-                     ? EachInteger(py::int_(static_cast<int>(chosen(
-                                       kMotionNames, py::cast<std::string>(object), "motion"))),
-                                   "motion", kMotions - 1)
-                     : EachInteger(object, "motion", kMotions - 1)) {}
-  void expect(std::size_t count) const { numbers_.expect(count); }
-  [[nodiscard]] Motion operator[](std::size_t i) const noexcept {
-    return static_cast<Motion>(numbers_[i]);
-  }
-
- private:
-  EachInteger numbers_;
-};
 
 [[nodiscard]] py::array add_bodies(SharedScene& s, py::handle shape_array, py::handle poses,
                                    py::handle motions, py::handle layers, py::handle mask,
@@ -247,12 +246,23 @@ void collide(SharedScene& s, HeldContacts& contacts, const std::string& level_na
   const ContactLevel level = chosen(kLevels, level_name, "level");
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(changing(s.mutex,
-                  [&] {
-                    const std::shared_lock lock(s.shapes->mutex);
-                    return s.scene.collide(level, out);
-                  }),
-         "collide");
+  try {
+    accept(s.working([&] { return s.scene.collide(level, out); }), "collide");
+  } catch (const py::error_already_set&) {
+    out.clear();
+    throw;
+  }
+}
+
+void set_predicate(SharedScene& s, const py::object& function) {
+  std::shared_ptr<Predicate> other;
+  if (!function.is_none()) other = std::make_shared<Predicate>(function, "predicate");
+  changing_scene(s, [&] { s.exchange_predicate(other); });
+}
+
+[[nodiscard]] py::object predicate_of(const SharedScene& s) {
+  const std::shared_ptr<Predicate> predicate = reading(s.mutex, [&] { return s.predicate(); });
+  return predicate ? predicate->object() : py::none();
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedScene& s) {
@@ -365,15 +375,17 @@ void add_scene(py::module_& module) {
            "or 'manifold'.")
       .def(
           "refresh",
-          [](SharedScene& s) {
-            accept(changing(s.mutex,
-                            [&] {
-                              const std::shared_lock lock(s.shapes->mutex);
-                              return s.scene.refresh();
-                            }),
-                   "refresh");
-          },
+          [](SharedScene& s) { accept(s.working([&] { return s.scene.refresh(); }), "refresh"); },
           "Brings boxes and partitions up to date now rather than in the next question.")
+      .def("set_predicate", &set_predicate, arg("predicate"),
+           "`predicate(first, second)` has the last word on each pair of bodies, by id, that their "
+           "filters let meet; None: all do. It is called from any thread that works, one at a "
+           "time, for each needs the GIL: some microseconds a pair. Layers (`set_layers_meet`) and "
+           "`set_ignored` take none of that. It answers the same each time, for it is not asked in "
+           "each frame: set it again to have it asked anew. It asks winnow nothing (unsupported). "
+           "What it raises, `collide` and sweeps raise; contacts that were to be filled forget "
+           "everything. None lets go of it, which a scene that it knows waits for.")
+      .def_property_readonly("predicate", &predicate_of, "What was set.")
       .def_property_readonly(
           "origin",
           [](const SharedScene& s) {

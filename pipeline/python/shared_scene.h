@@ -1,13 +1,14 @@
 #pragma once
 
+#include "pipeline/python/callbacks.h"
 #include "pipeline/python/choices.h"
+#include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/recordable.h"
 #include "pipeline/python/shared_shapes.h"
 
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/scene_sweep.h>
 
 #include <atomic>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <string>
 #include <vector>
 
 namespace winnow::python {
@@ -39,6 +41,33 @@ class SharedScene : public NeedsInit {
   [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
   /// It waits for the next question, if there is memory for that.
   void put_queries(std::unique_ptr<RecordableQueries> queries) noexcept;
+  /// Exchanges the predicate for another one, or none. Under the mutex; the one before is let go of
+  /// outside of it.
+  void exchange_predicate(std::shared_ptr<Predicate>& other);
+  /// Null if there is none. Under the mutex, shared or not.
+  [[nodiscard]] std::shared_ptr<Predicate> predicate() const noexcept { return predicate_; }
+  /// As `changing`, for work that may ask the predicate and support functions, for which shapes
+  /// stay as they are; raises what those raise.
+  template <typename Work>
+  auto working(Work&& work) {
+    return shapes->raised.during([&] {
+      std::shared_ptr<Predicate> failed;
+      auto answer = changing(mutex, [&] {
+        const std::shared_lock lock(shapes->mutex);
+        const std::shared_ptr<Predicate> asked = predicate_;
+        if (asked) asked->begin();
+        auto made = work();
+        if (asked && asked->has_failed()) {
+          // It is to be asked about all pairs anew.
+          scene.set_predicate(pair_predicate(*asked));
+          failed = asked;
+        }
+        return made;
+      });
+      if (failed) failed->raise();
+      return answer;
+    });
+  }
 
   const std::shared_ptr<SharedShapes> shapes;
   /// Null if it is not recorded.
@@ -47,7 +76,7 @@ class SharedScene : public NeedsInit {
   mutable std::shared_mutex mutex;
   RecordableScene scene;
   /// Made by the first sweep; asked while nobody else has the mutex.
-  std::optional<SceneSweep> sweep;
+  std::optional<RecordableSweep> sweep;
   /// Something has changed since boxes and partitions were brought up to date.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
@@ -55,9 +84,14 @@ class SharedScene : public NeedsInit {
   HeldShapes held;
 
  private:
+  std::shared_ptr<Predicate> predicate_;
   std::mutex queries_mutex_;
   std::vector<std::unique_ptr<RecordableQueries>> queries_;
 };
+
+/// What scenes and clusters of scenes are made with.
+[[nodiscard]] SceneOptions scene_options(double margin, const std::string& tier,
+                                         const std::vector<std::string>& structures, bool parallel);
 
 using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
 

@@ -55,6 +55,7 @@ namespace {
 }  // namespace
 
 Status SharedShapes::load(std::span<const std::byte> convex, std::span<const std::byte> composite) {
+  if (pins_ != 0) return Status::invalid_key;
   const std::lock_guard lock(uses_mutex_);
   ShapeUses by_compounds = uses_of(composites);
   for (const auto& [bits, count] : uses_) {
@@ -72,6 +73,7 @@ Status SharedShapes::load(std::span<const std::byte> convex, std::span<const std
 }
 
 bool SharedShapes::is_used(ShapeId id) const {
+  if (pins_ != 0) return true;
   const std::lock_guard lock(uses_mutex_);
   const auto found = uses_.find(id.bits);
   return found != uses_.end() && found->second != 0;
@@ -256,6 +258,7 @@ template <typename Shape>
 void remove_shapes(Shapes& shapes, py::handle id_array) {
   const Integers<std::uint32_t> ids(id_array, "shapes");
   ++shapes.revision;
+  std::vector<SupportFunctions::node_type> gone;
   const Outcome outcome = changing(shapes.mutex, [&] {
     std::vector<std::uint32_t> sorted(ids.values().begin(), ids.values().end());
     std::sort(sorted.begin(), sorted.end());
@@ -269,6 +272,7 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
     for (std::size_t i = 0; i < ids.count(); ++i) {
       const Status status = remove_one(shapes, ShapeId{ids[i]});
       if (status != Status::ok) return Outcome{status, i};
+      gone.push_back(shapes.supports.extract(ids[i]));
     }
     return Outcome{};
   });
@@ -293,7 +297,7 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
   auto upper = fresh<float>(pose.count(), 3);
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  const Outcome outcome = reading_shapes(shapes, [&] {
     for (std::size_t i = 0; i < pose.count(); ++i) {
       if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
       if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
@@ -331,7 +335,7 @@ struct RayHits : EmptyIfZero {
   bool* const to_hit = hit.mutable_data();
   double* const to_t = t.mutable_data();
   double* const to_normal = normal.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  const Outcome outcome = reading_shapes(shapes, [&] {
     return answer_all(Execution::parallel(), pose.count(), [&](std::size_t, std::size_t i) {
       ShapeRay ray;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -401,6 +405,7 @@ void add_shapes(py::module_& module) {
                    "scenes may use it.");
   type.def(py::init([] { return std::make_shared<Shapes>(); }), "No shapes.");
   add_convex(type);
+  add_support(type);
   add_composites(type);
   type.def("remove", &remove_shapes, arg("shapes"),
            "Takes shapes (n,) out, all or none: invalid_key for those that bodies of a scene or "

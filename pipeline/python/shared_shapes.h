@@ -1,6 +1,8 @@
 #pragma once
 
 #include "pipeline/python/arrays.h"
+#include "pipeline/python/callbacks.h"
+#include "pipeline/python/locks.h"
 #include "pipeline/python/made.h"
 
 #include <winnow/pipeline/composite_pool.h>
@@ -22,6 +24,24 @@ namespace winnow::python {
 /// How often each shape is used, by the bits of its id.
 using ShapeUses = std::unordered_map<std::uint32_t, std::uint32_t>;
 
+/// A support function of Python's, and where what it raises is kept.
+class SupportCallback {
+ public:
+  SupportCallback(py::object function, double radius, Raised& raised)
+      : function_(std::move(function), "function"), radius_(radius), raised_(raised) {}
+  [[nodiscard]] SupportShape shape(double rounding) const noexcept {
+    return {&ask, this, radius_, rounding};
+  }
+
+ private:
+  static void ask(const void* context, const double direction[3], double point[3]);
+
+  PythonFunction function_;
+  double radius_;
+  Raised& raised_;
+};
+using SupportFunctions = std::unordered_map<std::uint32_t, std::unique_ptr<SupportCallback>>;
+
 /// Convex and composite shapes as several threads and scenes may use them. None is removed while a
 /// compound or a body is made of it.
 class SharedShapes : public NeedsInit {
@@ -41,17 +61,31 @@ class SharedShapes : public NeedsInit {
   /// mutex.
   [[nodiscard]] Status load(std::span<const std::byte> convex,
                             std::span<const std::byte> composite);
+  /// No shape is removed, nor others loaded, while there are such users.
+  void pin(int change) noexcept { pins_ += change; }
 
   mutable std::shared_mutex mutex;
   ShapePool pool;
   CompositePool composites{pool};
   /// Grows with each change in place: scenes look at their bodies anew.
   std::atomic<std::uint64_t> revision{0};
+  /// Functions of shapes that have one, by the bits of their ids. Changed under the mutex, and let
+  /// go of outside of it.
+  SupportFunctions supports;
+  /// By those.
+  mutable Raised raised;
 
  private:
+  std::atomic<int> pins_{0};
   mutable std::mutex uses_mutex_;
   ShapeUses uses_;
 };
+
+/// As `reading`, and raises what support functions raise meanwhile.
+template <typename Body>
+auto reading_shapes(const SharedShapes& shapes, Body&& body) {
+  return shapes.raised.during([&] { return reading(shapes.mutex, body); });
+}
 
 /// Uses of shapes by the bodies of a scene, or by sensors, which end with this.
 class HeldShapes {
@@ -90,6 +124,7 @@ class ShapeInput {
 };
 
 void add_shapes(py::module_& module);
+void add_support(ShapesClass& type);
 void add_composites(ShapesClass& type);
 void add_narrow(py::module_& module);
 void add_scene(py::module_& module);

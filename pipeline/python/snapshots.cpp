@@ -41,19 +41,23 @@ void load_shapes(SharedShapes& shapes, const py::buffer& data) {
   const std::span<const std::byte> all = input.bytes();
   const std::size_t middle = end_of_first(all);
   ++shapes.revision;
-  accept(
-      changing(shapes.mutex, [&] { return shapes.load(all.first(middle), all.subspan(middle)); }),
-      "load (of shapes that no scene uses)");
+  SupportFunctions gone;
+  accept(changing(shapes.mutex,
+                  [&] {
+                    const Status status = shapes.load(all.first(middle), all.subspan(middle));
+                    if (status == Status::ok) gone.swap(shapes.supports);
+                    return status;
+                  }),
+         "load (of shapes that no scene uses)");
 }
 
 void load_scene(SharedScene& s, const py::buffer& data) {
   const BytesInput input(data);
-  Scene& scene = s.scene.unrecorded("load");
   accept(changing(s.mutex,
                   [&] {
                     const std::shared_lock lock(s.shapes->mutex);
                     s.is_stale = true;
-                    const Status status = scene.load(input.bytes());
+                    const Status status = s.scene.load(input.bytes());
                     if (status != Status::ok) return status;
                     s.held.clear();
                     std::vector<ShapeId> used;
@@ -78,10 +82,9 @@ void load_scene(SharedScene& s, const py::buffer& data) {
 
 void load_contacts(SharedScene& s, const py::buffer& data, HeldContacts& contacts) {
   const BytesInput input(data);
-  const Scene& scene = s.scene.unrecorded("load_contacts");
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(reading(s.mutex, [&] { return scene.load_contacts(input.bytes(), out); }),
+  accept(changing(s.mutex, [&] { return s.scene.load_contacts(input.bytes(), out); }),
          "load_contacts");
 }
 

@@ -84,18 +84,15 @@ template <typename Ask>
 [[nodiscard]] ImpactTable swept(SharedScene& s, const char* call, Ask&& ask) {
   std::vector<SceneImpact> impacts;
   std::vector<std::uint32_t> first;
-  Scene& scene = s.scene.unrecorded(call);
-  accept(changing(s.mutex,
-                  [&] {
-                    const std::shared_lock lock(s.shapes->mutex);
-                    if (!s.sweep) s.sweep.emplace(scene);
-                    const Status status = ask(*s.sweep);
-                    if (status != Status::ok) return status;
-                    impacts.assign(s.sweep->impacts().begin(), s.sweep->impacts().end());
-                    first.assign(s.sweep->first().begin(), s.sweep->first().end());
-                    return status;
-                  }),
-         call);
+  const auto sweep = [&] {
+    if (!s.sweep) s.sweep.emplace(s.scene);
+    const Status status = ask(*s.sweep);
+    if (status != Status::ok) return status;
+    impacts.assign((*s.sweep)->impacts().begin(), (*s.sweep)->impacts().end());
+    first.assign((*s.sweep)->first().begin(), (*s.sweep)->first().end());
+    return status;
+  };
+  accept(s.working(sweep), call);
   return shown_impacts(std::move(impacts), std::move(first));
 }
 
@@ -106,7 +103,7 @@ template <typename Ask>
   const PoseInput end(ends);
   const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<Pose> room;
-  return swept(s, "sweep", [&](SceneSweep& sweep) {
+  return swept(s, "sweep", [&](RecordableSweep& sweep) {
     return sweep.sweep(keys.keys(), end.view(room), input.options());
   });
 }
@@ -118,7 +115,7 @@ template <typename Ask>
   const RigidMotionInput motion(motions);
   const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<RigidMotion> room;
-  return swept(s, "sweep_motions", [&](SceneSweep& sweep) {
+  return swept(s, "sweep_motions", [&](RecordableSweep& sweep) {
     return sweep.sweep(keys.keys(), motion.packed(room), input.options());
   });
 }

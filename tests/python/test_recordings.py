@@ -117,15 +117,42 @@ def test_scenes_are_recorded(file):
         touching.append(len(contacts))
         recorder.end_frame()
     assert min(touching) > 5
-    refused("unsupported", scene.sweep, keys, np.zeros((len(keys), 3)))
-    refused("unsupported", winnow.Sensors, scene)
-    refused("unsupported", scene.load, scene.save())
-    refused("unsupported", scene.load_contacts, scene.save_contacts(contacts), contacts)
     assert len(scene.islands(contacts).group) == len(contacts)
     recorder.close()
     assert recorder.status == "ok"
     counts = played(file)
     assert counts["frames"] == 5 and counts["worlds"] == 1
+
+
+def test_sweeps_sensors_predicates_and_what_is_loaded_are_played(file):
+    recorder = winnow.Recorder(file)
+    shapes = winnow.Shapes()
+    ball = shapes.add_spheres([0.6])
+    scene = winnow.Scene(shapes, recorder=recorder, warm_start=True)
+    places = np.array([[i, 0, 0] for i in range(9)], float)
+    keys = scene.add(ball, places)
+    contacts = winnow.Contacts()
+    scene.set_predicate(lambda first, second: (first + second) % 4 == 1)
+    scene.collide(contacts)
+    assert len(contacts) == 4
+    saved, touching = scene.save(), scene.save_contacts(contacts)
+    scene.sweep(keys, places + [0, 0, 1], touching=False)
+    motions = winnow.motions_between(places, places[::-1])
+    assert scene.sweep_motions(keys, motions, first_only=True).a.size > 0
+    sensors = winnow.Sensors(scene)
+    goal = sensors.add(ball, [[0.5, 0, 0]])
+    assert len(sensors.sense().body) == 2
+    sensors.move(goal, [[50, 0, 0]])
+    assert len(sensors.sense().body) == 0
+    scene.remove(keys[:3])
+    scene.load(saved)
+    scene.load_contacts(touching, contacts)
+    scene.collide(contacts)
+    assert len(contacts) == 4 and (contacts.event == 1).all()
+    del sensors
+    recorder.close()
+    assert recorder.status == "ok"
+    assert played(file)["questions"] >= 7
 
 
 def test_a_recorded_scene_is_asked_with_one_contacts(file):

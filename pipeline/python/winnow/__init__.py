@@ -29,6 +29,7 @@ from winnow._core import (
     SLEEPING,
     WHOLE_SHAPE,
     Cluster,
+    ClusterScene,
     ContactGroups,
     Contacts,
     DeformableMesh,
@@ -70,9 +71,12 @@ from winnow._core import (
     poses_at,
     replay,
     set_isa,
+    set_log_hook,
+    set_stage_hook,
     structures,
     time_of_impact,
 )
+from winnow.advice import Advice, Advised, advise
 
 __all__ = [
     "DYNAMIC",
@@ -85,7 +89,10 @@ __all__ = [
     "REST_COLOUR",
     "SLEEPING",
     "WHOLE_SHAPE",
+    "Advice",
+    "Advised",
     "Cluster",
+    "ClusterScene",
     "ContactGroups",
     "Contacts",
     "DeformableMesh",
@@ -114,6 +121,7 @@ __all__ = [
     "Sensors",
     "Shapes",
     "StatusError",
+    "advise",
     "available_isas",
     "boxes_address",
     "feature_impacts",
@@ -128,6 +136,8 @@ __all__ = [
     "poses_at",
     "replay",
     "set_isa",
+    "set_log_hook",
+    "set_stage_hook",
     "structures",
     "time_of_impact",
 ]

@@ -1,0 +1,333 @@
+// Bodies with shapes on ranks.
+
+#include "pipeline/python/bodies.h"
+#include "pipeline/python/bytes.h"
+#include "pipeline/python/cluster.h"
+#include "pipeline/python/contact_choices.h"
+#include "pipeline/python/entry_columns.h"
+#include "pipeline/python/ranks.h"
+#include "pipeline/python/shared_scene.h"
+
+#include <winnow/pipeline/cluster_scene.h>
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace winnow::python {
+namespace {
+
+/// A cluster, its ranks, and the shapes, which stay for as long as it does: bodies of other
+/// processes come with ids alone.
+struct RanksWithBodies {
+  RanksWithBodies(std::shared_ptr<SharedShapes> of, const py::object& communicator,
+                  std::uint32_t count)
+      : shapes(std::move(of)), ranks(communicator, count) {
+    shapes->pin(1);
+  }
+  ~RanksWithBodies() { shapes->pin(-1); }
+  RanksWithBodies(const RanksWithBodies&) = delete;
+  RanksWithBodies& operator=(const RanksWithBodies&) = delete;
+
+  const std::shared_ptr<SharedShapes> shapes;
+  Ranks ranks;
+  std::optional<ClusterScene> cluster;
+};
+
+/// The same as Python has it, and contacts of each rank, which arrays of theirs keep alive.
+class SharedClusterScene : public NeedsInit {
+ public:
+  SharedClusterScene(const std::shared_ptr<SharedShapes>& shapes, const py::object& communicator,
+                     std::uint32_t ranks, const ClusterSceneOptions& options)
+      : state_(std::make_shared<RanksWithBodies>(shapes, communicator, ranks)) {
+    call(
+        [&] {
+          own().emplace(state_->ranks.transport(), shapes->pool, options);
+          return own()->status();
+        },
+        "ClusterScene");
+    const std::uint32_t first = cluster().first_hosted();
+    for (std::uint32_t rank = first; rank < first + cluster().hosted(); ++rank) {
+      // Nobody changes what is lent.
+      auto* const shown = const_cast<Contacts*>(&cluster().contacts(rank));
+      contacts_.push_back(std::make_shared<HeldContacts>(
+          std::shared_ptr<Contacts>(shown, [kept = state_](Contacts*) {})));
+    }
+  }
+
+  [[nodiscard]] const ClusterScene& cluster() const noexcept { return *state_->cluster; }
+  [[nodiscard]] std::optional<ClusterScene>& own() noexcept { return state_->cluster; }
+  [[nodiscard]] std::uint32_t hosted(const Rank& rank) const { return state_->ranks.hosted(rank); }
+  [[nodiscard]] const std::shared_ptr<HeldContacts>& contacts(const Rank& rank) const {
+    return contacts_[hosted(rank) - cluster().first_hosted()];
+  }
+
+  /// Without the GIL, while shapes stay as they are.
+  template <typename Body>
+  void call(Body&& body, const char* name) const {
+    state_->shapes->raised.during([&] {
+      state_->ranks.call(
+          [&] {
+            const std::shared_lock lock(state_->shapes->mutex);
+            return body();
+          },
+          name);
+      return true;
+    });
+  }
+  /// The same for calls that fill contacts, of which no array may be alive.
+  template <typename Body>
+  void filling(Body&& body, const char* name) const {
+    std::vector<std::unique_lock<std::mutex>> held;
+    for (const auto& contacts : contacts_) held.push_back(contacts->hold());
+    for (const auto& contacts : contacts_) contacts->expect_unseen("contacts");
+    call(std::forward<Body>(body), name);
+  }
+
+ private:
+  std::shared_ptr<RanksWithBodies> state_;
+  std::vector<std::shared_ptr<HeldContacts>> contacts_;
+};
+
+[[nodiscard]] std::shared_ptr<SharedClusterScene> make_cluster(
+    const std::shared_ptr<SharedShapes>& shapes, const py::object& comm, std::uint32_t ranks,
+    double margin, const std::string& tier, bool contact_reduction,
+    const std::vector<std::string>& structures, bool parallel, double imbalance) {
+  ClusterSceneOptions options;
+  options.scene = scene_options(margin, tier, structures, parallel);
+  options.scene.composites = &shapes->composites;
+  options.scene.contact_reduction = contact_reduction;
+  options.imbalance = imbalance;
+  return std::make_shared<SharedClusterScene>(shapes, comm, ranks, options);
+}
+
+/// Bodies and their names.
+struct NamedBodies {
+  NamedBodies(py::handle name_array, py::handle shape_array, py::handle poses, py::handle motions,
+              py::handle layers, py::handle mask, py::handle environment)
+      : names(name_array, "names") {
+    const PoseInput pose(poses);
+    const ShapeInput shape(shape_array);
+    const MotionInput motion(motions);
+    const FilterInput filter(layers, mask, environment);
+    bodies.resize(pose.count());
+    shape.expect(bodies.size());
+    motion.expect(bodies.size());
+    filter.expect(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i] = {shape[i], pose[i], motion[i], filter[i], 0, {}, 0};
+    }
+  }
+  [[nodiscard]] ClusterSceneBatch batch() const noexcept { return {names.values(), bodies}; }
+
+  Integers<std::uint64_t> names;
+  std::vector<BodyDefinition> bodies;
+};
+
+void add(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle poses,
+         py::handle motions, py::handle layers, py::handle mask, py::handle environment,
+         const Rank& rank) {
+  const NamedBodies bodies(names, shapes, poses, motions, layers, mask, environment);
+  const std::uint32_t to = c.hosted(rank) - c.cluster().first_hosted();
+  std::vector<ClusterSceneBatch> batches(c.cluster().hosted());
+  std::vector<Status> answers(batches.size(), Status::ok);
+  batches[to] = bodies.batch();
+  c.call([&] { return c.own()->add(batches, answers); }, "add");
+  accept(answers[to], "add");
+}
+
+void replicate(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle poses,
+               py::handle layers, py::handle mask, py::handle environment) {
+  const NamedBodies bodies(names, shapes, poses, py::str("fixed"), layers, mask, environment);
+  c.call([&] { return c.own()->replicate(bodies.batch()); }, "replicate");
+}
+
+void move_replicated(SharedClusterScene& c, py::handle name_array, py::handle poses) {
+  const Integers<std::uint64_t> names(name_array, "names");
+  const PoseInput pose(poses);
+  std::vector<Pose> room;
+  c.call([&] { return c.own()->move_replicated(names.values(), pose.packed(room)); },
+         "move_replicated");
+}
+
+void move(SharedClusterScene& c, py::handle name_array, py::handle poses, const Rank& rank) {
+  const Integers<std::uint64_t> names(name_array, "names");
+  const PoseInput pose(poses);
+  const std::uint32_t on = c.hosted(rank);
+  std::vector<Pose> room;
+  c.call([&] { return c.own()->move(on, names.values(), pose.view(room)); }, "move");
+}
+
+void remove(SharedClusterScene& c, py::handle name_array, const Rank& rank) {
+  const Integers<std::uint64_t> names(name_array, "names");
+  const std::uint32_t on = c.hosted(rank);
+  c.call([&] { return c.own()->remove(on, names.values()); }, "remove");
+}
+
+void collide(SharedClusterScene& c, const std::string& level_name) {
+  const ContactLevel level = chosen(kLevels, level_name, "level");
+  c.filling([&] { return c.own()->collide(level); }, "collide");
+}
+
+[[nodiscard]] std::string digest(SharedClusterScene& c) {
+  ClusterDigest digest;
+  c.call([&] { return c.own()->digest(digest); }, "digest");
+  return digits_of(digest);
+}
+
+[[nodiscard]] py::dict body_columns(const SharedClusterScene& c, const Rank& rank) {
+  const std::uint32_t on = c.hosted(rank);
+  std::vector<std::uint64_t> names;
+  std::vector<BodyDefinition> bodies;
+  c.call(
+      [&] {
+        std::vector<ClusterBody> own(c.cluster().size(on));
+        Status status = c.cluster().bodies(on, own);
+        for (const ClusterBody& body : own) {
+          if (status != Status::ok) break;
+          names.push_back(body.name);
+          status = c.cluster().body(on, body.name, bodies.emplace_back());
+        }
+        return status;
+      },
+      "bodies");
+  const auto columns = columns_of(std::move(bodies));
+  py::dict result;
+  result["name"] = given(std::move(names));
+  result["shape"] = columns.column<std::uint32_t>(offsetof(BodyDefinition, shape));
+  result["pose"] = columns.rows<double>(offsetof(BodyDefinition, pose), 7);
+  result["motion"] = columns.column<std::uint8_t>(offsetof(BodyDefinition, motion));
+  return result;
+}
+
+[[nodiscard]] py::tuple migrated(const SharedClusterScene& c, const Rank& rank) {
+  const std::uint32_t on = c.hosted(rank);
+  std::vector<std::uint64_t> came;
+  std::vector<std::uint64_t> went;
+  c.call(
+      [&] {
+        for (const ClusterBody& body : c.cluster().arrived(on)) came.push_back(body.name);
+        const auto departed = c.cluster().departed(on);
+        went.assign(departed.begin(), departed.end());
+        return Status::ok;
+      },
+      "migrated");
+  return py::make_tuple(given(std::move(came)), given(std::move(went)));
+}
+
+[[nodiscard]] py::bytes save(const SharedClusterScene& c, const Rank& rank) {
+  const std::uint32_t on = c.hosted(rank);
+  std::vector<std::byte> bytes;
+  c.call([&] { return c.cluster().save(on, bytes); }, "save");
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void restore(SharedClusterScene& c, const std::vector<py::buffer>& saved) {
+  std::vector<std::unique_ptr<BytesInput>> inputs;
+  std::vector<std::span<const std::byte>> bytes;
+  for (const py::buffer& one : saved) {
+    bytes.push_back(inputs.emplace_back(std::make_unique<BytesInput>(one))->bytes());
+  }
+  std::vector<Status> answers(bytes.size(), Status::ok);
+  c.call([&] { return c.own()->restore(bytes, answers); }, "restore");
+  for (const Status answer : answers) accept(answer, "restore");
+}
+
+using ClusterSceneClass = py::class_<SharedClusterScene, std::shared_ptr<SharedClusterScene>>;
+
+void add_changes(ClusterSceneClass& type) {
+  using py::arg;
+  constexpr std::uint32_t every = ~0U;
+  type.def("add", &add, arg("names"), arg("shapes"), arg("poses"), arg("motion") = "dynamic",
+           arg("layers") = 1, arg("mask") = every, arg("environment") = 0, py::kw_only(),
+           arg("rank") = py::none(),
+           "Adds n bodies, names (n,) uint64 that no other has, else as Scene.add; none for a "
+           "process that adds nothing. They are fixed or dynamic. `rank`: one of this process, by "
+           "default its first. Collective.")
+      .def("replicate", &replicate, arg("names"), arg("shapes"), arg("poses"), arg("layers") = 1,
+           arg("mask") = every, arg("environment") = 0,
+           "Adds fixed bodies that are on every rank, such as a ground: every process gives the "
+           "same ones. They stay. Collective.")
+      .def("move_replicated", &move_replicated, arg("names"), arg("poses"),
+           "New poses of those, the same on every process. Collective.")
+      .def("move", &move, arg("names"), arg("poses"), py::kw_only(), arg("rank") = py::none(),
+           "New poses for bodies (n,) that belong to a rank, as in Scene.move.")
+      .def("remove", &remove, arg("names"), py::kw_only(), arg("rank") = py::none(),
+           "Removes bodies that belong to a rank.");
+}
+
+void add_answers(ClusterSceneClass& type) {
+  using py::arg;
+  type.def("collide", &collide, arg("level") = "manifold",
+           "Finds everything that touches, as Scene.collide; see `contacts`. Before, bodies go "
+           "where they belong. Collective.")
+      .def("contacts", &SharedClusterScene::contacts, arg("rank") = py::none(),
+           "What a rank of this process reports; together, the ranks' are all. Client data are "
+           "names. While an array of theirs is alive `collide` is a BufferError, and they are "
+           "filled by nothing else.")
+      .def("digest", &digest,
+           "128 bits of the contacts of all ranks, as 32 digits: the same on any number of them. "
+           "Collective.")
+      .def("bodies", &body_columns, arg("rank") = py::none(),
+           "What belongs to a rank: columns name, shape, pose (n, 7), motion.")
+      .def("migrated", &migrated, arg("rank") = py::none(),
+           "Names of bodies that the last `collide` made this rank's, and of those that it made "
+           "another's: (n,) and (m,) uint64.")
+      .def("save", &save, arg("rank") = py::none(),
+           "All that is to be kept of a rank but what is replicated, as bytes.")
+      .def("restore", &restore, arg("saved"),
+           "Adds what ranks of any number kept: bytes for each rank of this process, one after "
+           "the other of several, empty for none. What is replicated is replicated again before "
+           "the first `collide`. Collective.");
+}
+
+}  // namespace
+
+void add_cluster_scene(py::module_& module) {
+  using py::arg;
+  ClusterSceneClass type(
+      module, "ClusterScene",
+      "Bodies with shapes on any number of ranks, and what touches what: the contacts of one Scene "
+      "of all of them, to the bit, each on one rank. A body has a name, uint64, and belongs to the "
+      "rank in whose region it lies: there it is moved and removed. Every process has made the "
+      "same shapes in the same order; while the cluster lives none can be removed. Calls that are "
+      "collective are made by every process, in the same order.");
+  type.def(py::init(&make_cluster), arg("shapes").none(false), arg("comm") = py::none(),
+           arg("ranks") = 1, py::kw_only(), arg("margin") = 0.0, arg("tier") = "robust",
+           arg("contact_reduction") = false,
+           arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
+           arg("parallel") = true, arg("imbalance") = 1.1,
+           "`comm`, `ranks` and `imbalance` as of Cluster, the rest as of Scene.")
+      .def_property_readonly(
+          "ranks", [](const SharedClusterScene& c) { return c.cluster().ranks(); },
+          "Of all processes.")
+      .def_property_readonly(
+          "hosted",
+          [](const SharedClusterScene& c) {
+            const std::uint32_t first = c.cluster().first_hosted();
+            return py::make_tuple(first, first + c.cluster().hosted());
+          },
+          "Ranks of this process: the first, and one past the last.")
+      .def_property_readonly(
+          "statistics",
+          [](const SharedClusterScene& c) {
+            ClusterStatistics found;
+            c.call(
+                [&] {
+                  found = c.cluster().statistics();
+                  return Status::ok;
+                },
+                "statistics");
+            return counters_of(found);
+          },
+          "Counters of all ranks: bodies, ghosts (copies of bodies), pairs, bytes, messages, "
+          "migrated, cuts, imbalance.");
+  add_changes(type);
+  add_answers(type);
+}
+
+}  // namespace winnow::python

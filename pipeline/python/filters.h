@@ -1,0 +1,90 @@
+#pragma once
+
+// Who may meet the one who asks, as Python says it.
+
+#include "pipeline/python/callbacks.h"
+#include "pipeline/python/made.h"
+#include "pipeline/python/partition.h"
+#include "pipeline/python/shared_scene.h"
+
+#include <winnow/core/filter.h>
+#include <winnow/pipeline/scene.h>
+
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace winnow::python {
+
+/// A filter, and what Python adds to it.
+struct PythonFilter : EmptyIfZero {
+  Filter filter;
+  /// Null: all pass.
+  py::object accept;
+  /// Of a scene, that the one who asks is in.
+  std::optional<std::uint16_t> layer;
+};
+
+/// The filter of one call, which raises what the function raised.
+class FilterOfCall {
+ public:
+  /// Of a question to a scene, or null.
+  explicit FilterOfCall(const Scene* scene) noexcept : scene_(scene) {}
+  FilterOfCall(const FilterOfCall&) = delete;
+  FilterOfCall& operator=(const FilterOfCall&) = delete;
+
+  [[nodiscard]] const Filter& of(const PythonFilter& input);
+  template <typename Question>
+  auto during(Question&& question) {
+    try {
+      auto answer = std::forward<Question>(question)();
+      if (accept_) accept_->raise_if_failed();
+      return answer;
+    } catch (const Refusal&) {
+      if (accept_) accept_->raise_if_failed();
+      throw;
+    }
+  }
+
+ private:
+  const Scene* scene_;
+  Filter filter_;
+  std::optional<Predicate> accept_;
+  std::optional<LayerFilter> layer_;
+};
+
+[[nodiscard]] inline const Scene* scene_of(const SharedPartition&) noexcept {
+  return nullptr;
+}
+[[nodiscard]] inline const Scene* scene_of(const SharedScene& s) noexcept {
+  return &*s.scene;
+}
+
+/// What stands in Python for an argument of a question.
+template <typename Argument>
+using Asked =
+    std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter&, Argument>;
+
+/// A question that takes a Filter, as one that takes a PythonFilter.
+template <typename Answer, typename Owner, typename... Arguments>
+[[nodiscard]] auto filtered(Answer (*question)(Owner, Arguments...)) {
+  return [question](Owner owner, Asked<Arguments>... given) -> Answer {
+    FilterOfCall call(scene_of(owner));
+    const auto pass = [&call]<typename Argument>(Asked<Argument>& one,
+                                                 std::type_identity<Argument>) -> Argument {
+      if constexpr (std::is_same_v<Argument, const Filter&>) {
+        return call.of(one);
+      } else {
+        return static_cast<Argument>(one);
+      }
+    };
+    return call.during(
+        [&] { return question(owner, pass(given, std::type_identity<Arguments>())...); });
+  };
+}
+
+/// The class `Filter`.
+void add_filters(py::module_& module);
+
+}  // namespace winnow::python

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#if defined(__GLIBCXX__)
+#include <cxxabi.h>
+#endif
+
+namespace winnow::python {
+
+/// What unwinds a thread that is to end, where that can be caught.
+#if defined(__GLIBCXX__)
+using ThreadEnds = abi::__forced_unwind;
+#else
+struct ThreadEnds {};
+#endif
+
+/// For a thread that the interpreter does not let in any more, for it is at its end: CPython then
+/// unwinds the thread, which must not go through what does not throw.
+[[noreturn]] inline void stay_here() noexcept {
+  for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
+/// Once the interpreter goes, threads that are at work stay where they would go back to it.
+class InterpreterEnd {
+ public:
+  /// Of the thread that ends it, with the GIL: waits for those that are inside, but not for long.
+  static void begin() {
+    by_ = std::this_thread::get_id();
+    begun_ = true;
+    PyThreadState* const state = PyEval_SaveThread();
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    while (inside_ != 0 && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+    PyEval_RestoreThread(state);
+  }
+  static void stay_if_begun() noexcept {
+    if (begun_ && std::this_thread::get_id() != by_) stay_here();
+  }
+  /// Counted until `leave`.
+  static void enter() noexcept {
+    ++inside_;
+    if (!begun_ || std::this_thread::get_id() == by_) return;
+    --inside_;
+    stay_here();
+  }
+  static void leave() noexcept { --inside_; }
+
+ private:
+  static inline std::atomic<bool> begun_{false};
+  static inline std::atomic<int> inside_{0};
+  static inline std::thread::id by_;
+};
+
+/// Without the GIL, which the thread has, to the end of the scope.
+class WithoutGil {
+ public:
+  WithoutGil() noexcept : state_(PyEval_SaveThread()) {}
+  ~WithoutGil() {
+    InterpreterEnd::stay_if_begun();
+    try {
+      PyEval_RestoreThread(state_);
+    } catch (...) {
+      stay_here();
+    }
+  }
+  WithoutGil(const WithoutGil&) = delete;
+  WithoutGil& operator=(const WithoutGil&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+/// With the GIL to the end of the scope, on whatever thread.
+class WithGil {
+ public:
+  WithGil() noexcept {
+    InterpreterEnd::enter();
+    try {
+      state_ = PyGILState_Ensure();
+    } catch (...) {
+      stay_here();
+    }
+  }
+  ~WithGil() {
+    PyGILState_Release(state_);
+    InterpreterEnd::leave();
+  }
+  WithGil(const WithGil&) = delete;
+  WithGil& operator=(const WithGil&) = delete;
+
+ private:
+  PyGILState_STATE state_{};
+};
+
+}  // namespace winnow::python

@@ -1,0 +1,111 @@
+// What profilers and logs are told, by functions of Python's.
+
+#include "pipeline/python/hooks.h"
+
+#include "pipeline/python/callbacks.h"
+
+#include <winnow/core/hooks.h>
+
+#include <string>
+#include <utility>
+
+namespace winnow::python {
+namespace {
+
+/// A function that winnow calls for the whole process, from anywhere. With the GIL. Kept to the
+/// very end, as winnow may call it till then.
+struct Hook {
+  PyObject* function = nullptr;
+
+  /// Null for None. Gives what was there.
+  [[nodiscard]] py::object exchange(const py::object& other, const char* name) {
+    if (!other.is_none() && PyCallable_Check(other.ptr()) == 0) {
+      throw py::type_error(std::string(name) +
+                           ": something that can be called, or None, is wanted");
+    }
+    PyObject* const before =
+        std::exchange(function, other.is_none() ? nullptr : py::object(other).release().ptr());
+    return before == nullptr ? py::none() : py::reinterpret_steal<py::object>(before);
+  }
+
+  /// Calls it with what arguments() makes. What it raises goes to `sys.unraisablehook`.
+  template <typename Arguments>
+  void call(Arguments&& arguments) const noexcept {
+    call_python(
+        [&] {
+          const py::error_scope other;
+          if (function == nullptr) return;
+          const auto called = py::reinterpret_borrow<py::object>(function);
+          called(*py::tuple(arguments()));
+        },
+        [&] {
+          const py::error_scope other;
+          const py::object raised = caught_exception();
+          PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised.ptr())), raised.ptr());
+          PyErr_WriteUnraisable(function);
+        });
+  }
+};
+
+Hook stages;
+Hook log;
+
+[[nodiscard]] py::str text(std::string_view words) {
+  return {words.data(), words.size()};
+}
+
+void tell_stage(WorkStage stage, bool begins) {
+  stages.call([&] { return py::make_tuple(to_string(stage), begins); });
+}
+
+void tell_log(const LogEntry& entry) {
+  log.call([&] {
+    py::dict told;
+    const bool is_choice = entry.kind == LogEntry::Kind::choice;
+    told["kind"] = is_choice ? "choice" : "refusal";
+    told["what"] = text(entry.what);
+    told["reason"] = text(entry.reason);
+    if (is_choice) {
+      told["before"] = text(entry.before);
+      told["objects"] = entry.objects;
+    } else {
+      told["status"] = to_string(entry.status);
+    }
+    return py::make_tuple(told);
+  });
+}
+
+[[nodiscard]] py::object exchange_stage_hook(const py::object& hook) {
+  py::object before = stages.exchange(hook, "hook");
+  set_stage_hook(hook.is_none() ? nullptr : &tell_stage);
+  return before;
+}
+
+[[nodiscard]] py::object exchange_log_hook(const py::object& hook) {
+  py::object before = log.exchange(hook, "hook");
+  set_log_hook(hook.is_none() ? nullptr : &tell_log);
+  return before;
+}
+
+}  // namespace
+
+void add_hooks(py::module_& module) {
+  using py::arg;
+  module.def("set_stage_hook", &exchange_stage_hook, arg("hook"),
+             "`hook(stage, begins)` is called when a stage of work begins and when it ends, by the "
+             "thread that called winnow: 'refresh', 'build', 'pairs', 'mid_phase', 'narrow_phase' "
+             "or 'contacts'. Stages nest. For the whole process; None for no hook; gives the one "
+             "before. It asks winnow nothing (unsupported); what it raises goes to "
+             "sys.unraisablehook.");
+  module.def("set_log_hook", &exchange_log_hook, arg("hook"),
+             "`hook(entry)` is called, as that of stages, with a dict: of kind 'choice' where "
+             "AutoPartition changed its structure (what, before, reason, objects), of kind "
+             "'refusal' where a call of a partition or scene was refused (what, reason, status).");
+  py::module_::import("atexit").attr("register")(py::cpp_function([] {
+    set_stage_hook(nullptr);
+    set_log_hook(nullptr);
+    InterpreterEnd::begin();
+  }));
+}
+
+}  // namespace winnow::python

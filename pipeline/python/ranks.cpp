@@ -1,0 +1,217 @@
+// How ranks talk.
+
+#include "pipeline/python/ranks.h"
+
+#include <winnow/core/aabb.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace winnow::python {
+
+/// Ranks that are processes, by what an mpi4py communicator has: rank, size, alltoall, allgather.
+/// What Python raises is kept, to be raised once the cluster has told of the failure.
+class PythonTransport final : public Transport {
+ public:
+  explicit PythonTransport(py::object communicator)
+      : communicator_(std::move(communicator)),
+        ranks_(communicator_.attr("size").cast<std::uint32_t>()),
+        rank_(communicator_.attr("rank").cast<std::uint32_t>()),
+        cutter_(ranks_) {
+    if (rank_ >= ranks_)
+      throw Refusal(Status::invalid_argument, "comm: its rank is not below its size");
+  }
+  ~PythonTransport() override {
+    const WithGil hold;
+    communicator_ = py::object();
+  }
+
+  [[nodiscard]] std::uint32_t ranks() const noexcept override { return ranks_; }
+  [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return rank_; }
+  [[nodiscard]] std::uint32_t hosted() const noexcept override { return 1; }
+
+  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
+                  const Meanwhile& meanwhile) override {
+    // It has no calls that come back before all has arrived.
+    meanwhile();
+    const Status status = asking([&] { exchange_lists(sent); });
+    received = parcels_;
+    return status;
+  }
+  Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
+    return asking([&] {
+      const py::list all = gather(numbers_of(sums), numbers_of(greatest));
+      std::fill(sums.begin(), sums.end(), 0U);
+      std::fill(greatest.begin(), greatest.end(), 0U);
+      for (const py::handle one : all) {
+        const auto both = one.cast<std::pair<py::list, py::list>>();
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+          sums[i] += both.first[i].cast<std::uint64_t>();
+        }
+        for (std::size_t i = 0; i < greatest.size(); ++i) {
+          greatest[i] = std::max(greatest[i], both.second[i].cast<std::uint64_t>());
+        }
+      }
+    });
+  }
+  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
+    Status status = Status::ok;
+    const Status asked = asking([&] {
+      const py::list all = gather(bytes_of(std::as_bytes(work.front().boxes)),
+                                  bytes_of(std::as_bytes(work.front().works)));
+      std::vector<std::vector<Aabb>> boxes(ranks_);
+      std::vector<std::vector<std::uint32_t>> works(ranks_);
+      std::vector<CutWork> of_all;
+      for (std::size_t i = 0; i < ranks_; ++i) {
+        const auto both = all[i].cast<std::pair<py::bytes, py::bytes>>();
+        boxes[i] = values_of<Aabb>(both.first);
+        works[i] = values_of<std::uint32_t>(both.second);
+        of_all.push_back({boxes[i], works[i]});
+      }
+      status = cutter_.cut(of_all, cuts);
+    });
+    return asked == Status::ok ? status : asked;
+  }
+
+  /// Raises what Python has raised.
+  void raise_if_failed() {
+    if (raised_) raise(std::exchange(raised_, py::object()));
+  }
+
+ private:
+  [[nodiscard]] static py::bytes bytes_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+  template <typename T>
+  [[nodiscard]] static std::vector<T> values_of(const py::bytes& bytes) {
+    const auto text = static_cast<std::string_view>(bytes);
+    std::vector<T> values(text.size() / sizeof(T));
+    std::memcpy(values.data(), text.data(), values.size() * sizeof(T));
+    return values;
+  }
+  [[nodiscard]] static py::list numbers_of(std::span<const std::uint64_t> numbers) {
+    py::list list;
+    for (const std::uint64_t number : numbers) list.append(number);
+    return list;
+  }
+  template <typename Body>
+  [[nodiscard]] Status asking(Body&& body) noexcept {
+    Status status = Status::ok;
+    call_python(body, [&] {
+      try {
+        throw;
+      } catch (const std::bad_alloc&) {
+        status = Status::out_of_memory;
+      } catch (...) {
+        raised_ = caught_exception();
+        status = Status::communication_failed;
+      }
+    });
+    return status;
+  }
+  [[nodiscard]] py::list gather(const py::object& first, const py::object& second) {
+    const py::list all(communicator_.attr("allgather")(py::make_tuple(first, second)));
+    if (all.size() != ranks_) throw py::value_error("allgather: one of each rank is wanted");
+    return all;
+  }
+  void exchange_lists(std::span<const Parcel> sent) {
+    parcels_.clear();
+    std::vector<py::object> out(ranks_, py::none());
+    for (const Parcel& parcel : sent) {
+      if (parcel.to == rank_) {
+        parcels_.push_back(parcel);
+        continue;
+      }
+      const auto& c = parcel.columns;
+      out[parcel.to] =
+          py::make_tuple(bytes_of(c[0]), bytes_of(c[1]), bytes_of(c[2]), bytes_of(c[3]));
+    }
+    py::list to_all;
+    for (const py::object& one : out) to_all.append(one);
+    const py::list told(communicator_.attr("alltoall")(to_all));
+    if (told.size() != ranks_) throw py::value_error("alltoall: one of each rank is wanted");
+    columns_.clear();
+    columns_.reserve(std::size_t{4} * ranks_);
+    for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from, told[from]);
+    std::sort(parcels_.begin(), parcels_.end(),
+              [](const Parcel& a, const Parcel& b) { return a.from < b.from; });
+  }
+  void take_from(std::uint32_t from, const py::object& one) {
+    if (one.is_none() || from == rank_) return;
+    const auto columns = one.cast<std::tuple<py::bytes, py::bytes, py::bytes, py::bytes>>();
+    Parcel parcel{from, rank_, {}};
+    const auto show = [&](std::size_t c, const py::bytes& bytes) {
+      // Copied to where numbers of 8 bytes may lie.
+      const auto text = static_cast<std::string_view>(bytes);
+      auto& words = columns_.emplace_back((text.size() + 7) / 8);
+      std::memcpy(words.data(), text.data(), text.size());
+      parcel.columns[c] = std::as_bytes(std::span(words)).first(text.size());
+    };
+    show(0, std::get<0>(columns));
+    show(1, std::get<1>(columns));
+    show(2, std::get<2>(columns));
+    show(3, std::get<3>(columns));
+    parcels_.push_back(parcel);
+  }
+
+  py::object communicator_;
+  std::uint32_t ranks_;
+  std::uint32_t rank_;
+  LoopbackTransport cutter_;  // cuts what all have told
+  std::vector<std::vector<std::uint64_t>> columns_;
+  std::vector<Parcel> parcels_;
+  py::object raised_;
+};
+
+Ranks::Ranks(const py::object& communicator, std::uint32_t ranks) {
+  if (communicator.is_none()) {
+    transport_ = std::make_unique<LoopbackTransport>(ranks);
+    return;
+  }
+  auto made = std::make_unique<PythonTransport>(communicator);
+  python_ = made.get();
+  transport_ = std::move(made);
+}
+
+Ranks::~Ranks() = default;
+
+std::uint32_t Ranks::hosted(const Rank& rank) const {
+  const std::uint32_t first = transport_->first_hosted();
+  const std::uint32_t chosen = rank.value_or(first);
+  if (chosen - first < transport_->hosted()) return chosen;
+  throw Refusal(Status::invalid_argument, "rank: none of this process");
+}
+
+void Ranks::raise_if_failed() {
+  if (python_ != nullptr) python_->raise_if_failed();
+}
+
+std::string digits_of(const ClusterDigest& digest) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint64_t half : {digest.high, digest.low}) {
+    for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[half >> shift & 15U];
+  }
+  return text;
+}
+
+py::dict counters_of(const ClusterStatistics& found) {
+  py::dict result;
+  result["bodies"] = found.bodies;
+  result["ghosts"] = found.ghosts;
+  result["pairs"] = found.pairs;
+  result["bytes"] = found.bytes;
+  result["messages"] = found.messages;
+  result["migrated"] = found.migrated;
+  result["cuts"] = found.cuts;
+  result["imbalance"] = found.imbalance;
+  return result;
+}
+
+}  // namespace winnow::python

@@ -1,0 +1,73 @@
+// Convex shapes that a function of Python's describes.
+
+#include "pipeline/python/shared_shapes.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace winnow::python {
+
+void SupportCallback::ask(const void* context, const double direction[3], double point[3]) {
+  const auto& self = *static_cast<const SupportCallback*>(context);
+  self.function_.ask(
+      [&](const py::object& function) {
+        py::array_t<double> toward(3);
+        std::copy_n(direction, 3, toward.mutable_data());
+        using Point = py::array_t<double, py::array::c_style | py::array::forcecast>;
+        const Point answer = Point::ensure(function(toward));
+        if (!answer || answer.ndim() != 1 || answer.size() != 3) {
+          throw py::type_error("a support function gives a point: three numbers");
+        }
+        std::copy_n(answer.data(), 3, point);
+      },
+      [&] {
+        self.raised_.keep();
+        // Of the ball around everything: boxes that were made meanwhile are none too small.
+        for (int axis = 0; axis < 3; ++axis) point[axis] = self.radius_ * direction[axis];
+      });
+}
+
+namespace {
+
+[[nodiscard]] std::uint32_t add_one(SharedShapes& shapes, const py::object& function, double radius,
+                                    double rounding) {
+  auto made = std::make_unique<SupportCallback>(function, radius, shapes.raised);
+  const SupportShape shape = made->shape(rounding);
+  ShapeId id;
+  try {
+    accept(shapes.raised.during([&] {
+      return changing(shapes.mutex, [&] {
+        const Status status = shapes.pool.add(shape, id);
+        if (status == Status::ok) shapes.supports.emplace(id.bits, std::move(made));
+        return status;
+      });
+    }),
+           "add_support");
+  } catch (const py::error_already_set&) {
+    changing(shapes.mutex, [&] {
+      if (shapes.pool.remove(id) == Status::ok) made = std::move(shapes.supports[id.bits]);
+      shapes.supports.erase(id.bits);
+    });
+    throw;
+  }
+  return id.bits;
+}
+
+}  // namespace
+
+void add_support(ShapesClass& type) {
+  using py::arg;
+  type.def("add_support", &add_one, arg("function"), arg("radius"), arg("rounding") = 0.0,
+           "Adds a convex shape of your own and gives its id. `function(direction)` takes a unit "
+           "vector, (3,) float64, and gives a point of the shape, three numbers, that is farthest "
+           "along it, no farther from the origin than `radius`; `rounding` is added outside. The "
+           "same direction gets the same point. It is asked from any thread that works, one at a "
+           "time, for each needs the GIL: some microseconds a call, and about ten calls a pair. It "
+           "asks winnow nothing (unsupported). What it raises is raised by all calls with these "
+           "shapes that are under way; contacts that were to be filled forget everything. "
+           "invalid_shape where what it answers is not finite, beyond the radius or not convex. "
+           "Pools with such shapes are not saved (unsupported).");
+}
+
+}  // namespace winnow::python
