@@ -14,9 +14,8 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <memory_resource>
-#include <span>
+#include <span>  // iterator tags, too: <iterator> would read all of streams
 
 namespace winnow {
 

@@ -9,6 +9,14 @@
 
 #include "pipeline/kernels/flat/flat.wide.h"
 
+// What the levels have in common is called, not copied, where lanes are so many registers that all
+// of it lies in memory anyway: tens of kilobytes for each level of each number type.
+#if defined(WINNOW_ISA_IS_sse42)
+#define WINNOW_SHARED_BY_LEVELS [[gnu::noinline]]
+#else
+#define WINNOW_SHARED_BY_LEVELS [[gnu::always_inline]] inline
+#endif
+
 namespace winnow::WINNOW_ISA_NAME::flat {
 
 template <typename T>
@@ -196,7 +204,7 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline BoxAxis<T> best_axis(const BoxPair<T>& pair) {
+WINNOW_SHARED_BY_LEVELS BoxAxis<T> best_axis(const BoxPair<T>& pair) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   BestFace<T> face{pair.face_a(0), Lanes<T>(T(0))};
   for (int i = 1; i < 3; ++i) face.offer(pair.face_a(i), i);
@@ -349,9 +357,8 @@ struct NearestVertex {
 
 /// Closest points of boxes that are apart.
 template <typename T>
-[[gnu::always_inline]] inline BoxPoints<T> closest_points(const BoxPair<T>& pair,
-                                                          const BoxAxis<T>& axis,
-                                                          const BoxReach<T>& reach) {
+WINNOW_SHARED_BY_LEVELS BoxPoints<T> closest_points(const BoxPair<T>& pair, const BoxAxis<T>& axis,
+                                                    const BoxReach<T>& reach) {
   Lanes<T> arm_a[3][3];
   Lanes<T> arm_b[3][3];
   const Lanes<T> center_a[3] = {-pair.center_b[0], -pair.center_b[1], -pair.center_b[2]};
