@@ -240,6 +240,13 @@ WINNOW_C_API winnow_status winnow_composite_pool_parts(const winnow_composite_po
 WINNOW_C_API winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
                                                       winnow_shape_id compound, uint32_t part,
                                                       uint32_t* child, uint32_t* child_part);
+/// Gives a mesh an inside, which distances and overlaps of scene queries then ask about, or takes
+/// it away again. WINNOW_INVALID_SHAPE for one that is not closed, or not wound counter-clockwise
+/// seen from outside.
+WINNOW_C_API winnow_status winnow_composite_pool_set_solid(winnow_composite_pool* pool,
+                                                           winnow_shape_id mesh, bool solid);
+WINNOW_C_API winnow_status winnow_composite_pool_is_solid(const winnow_composite_pool* pool,
+                                                          winnow_shape_id mesh, bool* solid);
 /// Of a compound; valid until the pool is changed.
 WINNOW_C_API winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool,
                                                           winnow_shape_id id,

@@ -160,24 +160,42 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   return py::make_tuple(child, own);
 }
 
-void set_one_sided(SharedShapes& shapes, py::handle surface_array, bool one_sided) {
+/// Tells surfaces something by set(id, now), all or none: is(id) is what they were told before.
+template <typename Set, typename Is>
+void tell(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
+          Is&& is) {
   const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
-  const auto set = [&](std::size_t i, bool now) {
-    return shapes.composites.set_one_sided(ShapeId{surfaces[i]}, now);
-  };
   const Outcome outcome = changing(shapes.mutex, [&] {
     ++shapes.revision;
     for (std::size_t i = 0; i < was.size(); ++i) {
-      was[i] = shapes.composites.is_one_sided(ShapeId{surfaces[i]}) ? 1 : 0;
-      const Status status = set(i, one_sided);
+      was[i] = is(ShapeId{surfaces[i]}) ? 1 : 0;
+      const Status status = set(ShapeId{surfaces[i]}, now);
       if (status == Status::ok) continue;
-      for (std::size_t k = i; k > 0; --k) static_cast<void>(set(k - 1, was[k - 1] != 0));
+      for (std::size_t k = i; k > 0; --k) {
+        static_cast<void>(set(ShapeId{surfaces[k - 1]}, was[k - 1] != 0));
+      }
       return Outcome{status, i};
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text("set_one_sided"));
+  accept(outcome.status, outcome.text(call));
+}
+
+void set_one_sided(SharedShapes& shapes, py::handle surfaces, bool one_sided) {
+  CompositePool& pool = shapes.composites;
+  tell(
+      shapes, surfaces, one_sided, "set_one_sided",
+      [&](ShapeId id, bool now) { return pool.set_one_sided(id, now); },
+      [&](ShapeId id) { return pool.is_one_sided(id); });
+}
+
+void set_solid(SharedShapes& shapes, py::handle meshes, bool solid) {
+  CompositePool& pool = shapes.composites;
+  tell(
+      shapes, meshes, solid, "set_solid",
+      [&](ShapeId id, bool now) { return pool.set_solid(id, now); },
+      [&](ShapeId id) { return pool.is_solid(id); });
 }
 
 /// answer(id) of each composite shape; invalid_key where there is none.
@@ -260,6 +278,17 @@ void add_composites(ShapesClass& type) {
             return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
               return shapes.composites.is_one_sided(id);
             });
+          },
+          arg("shapes"), "Which composite shapes (n,) were told so: (n,) bool.")
+      .def("set_solid", &set_solid, arg("surfaces"), arg("solid") = true,
+           "Gives meshes (n,) an inside, or takes it away again: they have to be closed, and their "
+           "corners to run counter-clockwise seen from outside, else invalid_shape. Distances and "
+           "overlaps that a scene is asked for then take what is within for a part of the solid.")
+      .def(
+          "is_solid",
+          [](const SharedShapes& shapes, py::handle ids) {
+            return of_composites<bool>(shapes, ids, "is_solid",
+                                       [&](ShapeId id) { return shapes.composites.is_solid(id); });
           },
           arg("shapes"), "Which composite shapes (n,) were told so: (n,) bool.");
 }

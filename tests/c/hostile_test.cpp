@@ -160,6 +160,9 @@ TEST(CInterface, knows_keys_of_what_is_gone) {
   EXPECT_EQ(winnow_shape_pool_shape(world.shapes, WINNOW_NO_SHAPE, &shape), WINNOW_INVALID_KEY);
   std::size_t parts = 0;
   EXPECT_EQ(winnow_composite_pool_parts(world.composites, 77, &parts), WINNOW_INVALID_KEY);
+  EXPECT_EQ(winnow_composite_pool_set_solid(world.composites, 77, true), WINNOW_INVALID_KEY);
+  EXPECT_EQ(winnow_composite_pool_set_solid(nullptr, 77, true), WINNOW_INVALID_ARGUMENT);
+  EXPECT_EQ(winnow_composite_pool_is_solid(world.composites, 77, nullptr), WINNOW_INVALID_ARGUMENT);
   std::uint32_t child = 0;
   std::uint32_t part = 0;
   EXPECT_EQ(winnow_composite_pool_part(world.composites, 77, 0, &child, &part), WINNOW_INVALID_KEY);

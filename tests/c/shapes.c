@@ -117,6 +117,10 @@ void ask_shapes_in_c(const trace* t) {
     note_box(t, "bounds", &box);
     note_real(t, "radius", radius);
     note(t, "parts", parts);
+    note(t, "solid", winnow_composite_pool_set_solid(composites, many[i], true) == WINNOW_OK);
+    bool solid = false;
+    OK(winnow_composite_pool_is_solid(composites, many[i], &solid));
+    note(t, "solid", solid);
   }
   const winnow_compound_child* children = NULL;
   size_t count = 0;

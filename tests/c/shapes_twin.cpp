@@ -20,7 +20,7 @@ void note_box(const trace* t, const char* what, const Aabb& box) {
   }
 }
 
-void ask_composites(const trace* t, const CompositePool& pool, std::span<const ShapeId> ids,
+void ask_composites(const trace* t, CompositePool& pool, std::span<const ShapeId> ids,
                     const Pose& pose) {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     note(t, "id", ids[i].bits);
@@ -28,6 +28,8 @@ void ask_composites(const trace* t, const CompositePool& pool, std::span<const S
     note_box(t, "bounds", pool.bounds(ids[i], pose));
     note_real(t, "radius", pool.radius(ids[i]));
     note(t, "parts", pool.parts(ids[i]));
+    note(t, "solid", pool.set_solid(ids[i]) == Status::ok);
+    note(t, "solid", pool.is_solid(ids[i]));
   }
   note(t, "children", pool.children(ids[3]).size());
   note_reals(t, "child", pool.children(ids[3])[1].pose.position, 3);

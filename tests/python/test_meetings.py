@@ -252,6 +252,28 @@ def test_composites_tell_their_parts():
     refused("invalid_key", shapes.compound_children, mesh)
 
 
+def test_closed_meshes_can_be_solids():
+    shapes = winnow.Shapes()
+    corners = [[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    faces = [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
+             [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]
+    cube = shapes.add_mesh(corners, faces)
+    open_box = shapes.add_mesh(corners, faces[1:])
+    ball = int(shapes.add_spheres(0.25)[0])
+    scene = winnow.Scene(shapes)
+    body = scene.add(cube, [[5, 0, 0]])
+    scene.refresh()
+    assert len(scene.overlap([ball], poses_at([5, 0, 0])).key) == 0
+    assert "question 1" in refused("invalid_shape", shapes.set_solid, [cube, open_box])
+    assert shapes.is_solid([cube, open_box]).tolist() == [False, False]
+    shapes.set_solid([cube])
+    assert shapes.is_solid([cube, open_box]).tolist() == [True, False]
+    scene.refresh()
+    assert scene.overlap([ball], poses_at([5, 0, 0])).key.tolist() == body.tolist()
+    shapes.set_solid([cube], False)
+    refused("invalid_key", shapes.set_solid, [ball])
+
+
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=100)
 def test_any_arrays_are_taken_or_refused(first, second, third, number):
@@ -272,6 +294,8 @@ def test_any_arrays_are_taken_or_refused(first, second, third, number):
         lambda: shapes.parts(first),
         lambda: shapes.is_one_sided(first),
         lambda: shapes.set_one_sided(first),
+        lambda: shapes.is_solid(first),
+        lambda: shapes.set_solid(first),
         lambda: shapes.compound_children(number),
         lambda: scene.collide(winnow.Contacts()),
     ]:

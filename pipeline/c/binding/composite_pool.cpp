@@ -162,6 +162,19 @@ winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool, win
   return WINNOW_OK;
 }
 
+winnow_status winnow_composite_pool_set_solid(winnow_composite_pool* pool, winnow_shape_id mesh,
+                                              bool solid) {
+  if (pool == nullptr) return WINNOW_INVALID_ARGUMENT;
+  return answer(pool->value.set_solid({mesh}, solid));
+}
+
+winnow_status winnow_composite_pool_is_solid(const winnow_composite_pool* pool,
+                                             winnow_shape_id mesh, bool* solid) {
+  if (!are_given(pool, solid)) return WINNOW_INVALID_ARGUMENT;
+  *solid = pool->value.is_solid({mesh});
+  return WINNOW_OK;
+}
+
 winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
                                          winnow_shape_id compound, uint32_t part, uint32_t* child,
                                          uint32_t* child_part) {

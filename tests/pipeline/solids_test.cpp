@@ -1,0 +1,363 @@
+// Closed meshes that are solids: what they hold, against winding numbers summed over all triangles,
+// and what questions make of it.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/scene_queries.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "tests/pipeline/query_world.h"
+#include "tests/support/config.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+using Vec = Eigen::Vector3d;
+using LongVec = Eigen::Matrix<long double, 3, 1>;
+
+/// How often a mesh runs around a point of its own frame, by the solid angles of its triangles.
+long double winding(const MeshData& mesh, const Vec& point) {
+  long double sum = 0.0L;
+  for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+    LongVec corner[3];
+    long double length[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] =
+          mesh.vertices[mesh.corners[3 * t + k]].cast<long double>() - point.cast<long double>();
+      length[k] = corner[k].norm();
+    }
+    const long double under =
+        length[0] * length[1] * length[2] + corner[0].dot(corner[1]) * length[2] +
+        corner[1].dot(corner[2]) * length[0] + corner[2].dot(corner[0]) * length[1];
+    sum += 2.0L * std::atan2(corner[0].dot(corner[1].cross(corner[2])), under);
+  }
+  return sum / (4.0L * std::numbers::pi_v<long double>);
+}
+
+/// A cube of edge 2 about the origin, twelve triangles wound outward.
+MeshData cube() {
+  MeshData mesh{"cube", {}, {}};
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(i & 1 ? 1.0F : -1.0F, i & 2 ? 1.0F : -1.0F, i & 4 ? 1.0F : -1.0F);
+  }
+  mesh.corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                  2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  return mesh;
+}
+
+/// The same triangles, each with corners of its own.
+MeshData split(const MeshData& mesh) {
+  MeshData result{mesh.name, {}, {}};
+  for (const std::uint32_t corner : mesh.corners) {
+    result.corners.push_back(static_cast<std::uint32_t>(result.vertices.size()));
+    result.vertices.push_back(mesh.vertices[corner]);
+  }
+  return result;
+}
+
+ShapeId add(CompositePool& pool, const MeshData& mesh) {
+  ShapeId id;
+  EXPECT_EQ(pool.add_mesh(mesh.points(), mesh.indices(), id), Status::ok);
+  return id;
+}
+
+TEST(Solids, are_closed_meshes_that_are_wound_outward) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  for (const MeshData& mesh : {cube(), torus(12, 7), gear(9)}) {
+    const ShapeId id = add(pool, mesh);
+    EXPECT_FALSE(pool.is_solid(id));
+    EXPECT_EQ(pool.set_solid(id), Status::ok) << mesh.name;
+    EXPECT_TRUE(pool.is_solid(id));
+    ShapeId mirrored;
+    ASSERT_EQ(pool.add_scaled(id, {1.0, -2.0, 3.0}, mirrored), Status::ok);
+    EXPECT_FALSE(pool.is_solid(mirrored)) << "told of its own";
+    EXPECT_EQ(pool.set_solid(mirrored), Status::ok);
+    EXPECT_EQ(pool.set_solid(id, false), Status::ok);
+    EXPECT_FALSE(pool.is_solid(id));
+    EXPECT_TRUE(pool.is_solid(mirrored));
+    EXPECT_EQ(pool.set_solid(add(pool, split(mesh))), Status::ok)
+        << "vertices at one place are one";
+    MeshData inward = mesh;
+    for (std::size_t t = 0; t < inward.triangles(); ++t) {
+      std::swap(inward.corners[3 * t], inward.corners[3 * t + 1]);
+    }
+    EXPECT_EQ(pool.set_solid(add(pool, inward)), Status::invalid_shape);
+    MeshData one_turned = mesh;
+    std::swap(one_turned.corners[0], one_turned.corners[1]);
+    EXPECT_EQ(pool.set_solid(add(pool, one_turned)), Status::invalid_shape);
+    MeshData open = mesh;
+    open.corners.resize(open.corners.size() - 3);
+    EXPECT_EQ(pool.set_solid(add(pool, open)), Status::invalid_shape);
+    MeshData with_segment = mesh;
+    with_segment.corners.insert(with_segment.corners.end(), {0, 1, 1});
+    EXPECT_EQ(pool.set_solid(add(pool, with_segment)), Status::ok) << "segments do not count";
+  }
+  for (const MeshData& mesh : {terrain(4), thin_sheets(3), degenerate_soup(60, 3)}) {
+    EXPECT_EQ(pool.set_solid(add(pool, mesh)), Status::invalid_shape) << mesh.name;
+  }
+}
+
+TEST(Solids, are_meshes_alone) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  ShapeId ball;
+  ShapeId field;
+  ShapeId compound;
+  ASSERT_EQ(shapes.add(SphereShape{1.0}, ball), Status::ok);
+  const std::vector<float> heights(4, 0.0F);
+  ASSERT_EQ(pool.add_height_field({heights, 2, 2, 0, {1.0, 1.0}}, field), Status::ok);
+  const std::array children{CompoundChild{ball, {}}};
+  ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+  const ShapeId removed = add(pool, cube());
+  ASSERT_EQ(pool.set_solid(removed), Status::ok);
+  ASSERT_EQ(pool.remove(removed), Status::ok);
+  for (const ShapeId id : {ball, field, compound, removed, ShapeId{}}) {
+    EXPECT_EQ(pool.set_solid(id), Status::invalid_key);
+    EXPECT_FALSE(pool.is_solid(id));
+  }
+  EXPECT_FALSE(pool.is_solid(add(pool, cube()))) << "what was said of the id before is forgotten";
+}
+
+/// Points on a lattice whose planes go through vertices and edges, and anywhere.
+std::vector<Vec> points_about(const MeshData& mesh, Random& random) {
+  std::vector<Vec> points;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex.cast<double>());
+  const Vec size = box.sizes();
+  for (std::size_t i = 0; i < scaled(600); ++i) {
+    Vec point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = box.min()[axis] - 0.2 * size[axis];
+      point[axis] = random.uniform(low, low + 1.4 * size[axis]);
+      if (i % 3 == 1) point[axis] = 0.25 * std::round(4.0 * point[axis]);
+    }
+    if (i % 3 == 2) {
+      const auto vertex = [&] {
+        return mesh.vertices[random.below(mesh.vertices.size())].cast<double>();
+      };
+      point = 0.5 * (vertex() + vertex());
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+TEST(Solids, hold_the_points_that_their_surface_runs_around) {
+  Random random(1);
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  std::size_t inside = 0;
+  std::size_t outside = 0;
+  for (const MeshData& mesh : {cube(), torus(16, 9), gear(11)}) {
+    const ShapeId id = add(pool, mesh);
+    const std::array<double, 3> scales[] = {{1.0, 1.0, 1.0}, {3.0, -0.5, 2.0}};
+    for (const auto& scale : scales) {
+      ShapeId scaled_id;
+      ASSERT_EQ(pool.add_scaled(id, scale, scaled_id), Status::ok);
+      ASSERT_EQ(pool.set_solid(scaled_id), Status::ok);
+      const std::array children{CompoundChild{scaled_id, Pose::at(0.5, -2.0, 1.0)}};
+      ShapeId compound;
+      ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+      for (const Vec& own : points_about(mesh, random)) {
+        const long double around = winding(mesh, own);
+        if (std::abs(around - std::round(around)) > 1e-6L) continue;  // on the surface
+        const Pose pose = random_pose(random.chance(0.5) ? 10.0 : 1e5, random);
+        const Mat3d turn = rotation_of(tame(pose.orientation));
+        const Vec stretched = own.cwiseProduct(Vec::Map(scale.data()));
+        const Vec world = Vec::Map(pose.position) + turn * stretched;
+        const bool is_inside = std::lround(around) != 0;
+        (is_inside ? inside : outside) += 1;
+        ASSERT_EQ(pool.holds(scaled_id, pose, world.data()), is_inside)
+            << mesh.name << " " << own.transpose();
+        const Vec in_child = world + turn * Vec(0.5, -2.0, 1.0);
+        ASSERT_EQ(pool.holds(compound, pose, in_child.data()), is_inside) << mesh.name;
+      }
+    }
+  }
+  EXPECT_GT(inside, scaled(300));
+  EXPECT_GT(outside, scaled(300));
+}
+
+/// A body of a mesh, once with an inside and once without.
+struct SolidWorld {
+  explicit SolidWorld(const MeshData& mesh) : composites(shapes) {
+    const ShapeId surface = add(composites, mesh);
+    EXPECT_EQ(composites.add_scaled(surface, {1.0, 1.0, 1.0}, solid), Status::ok);
+    EXPECT_EQ(composites.set_solid(solid), Status::ok);
+    EXPECT_EQ(scene.add({.shape = surface, .pose = pose}, plain_key), Status::ok);
+    EXPECT_EQ(scene.add({.shape = solid, .pose = pose}, solid_key), Status::ok);
+  }
+  Key put(ShapeId shape, const Pose& at) {
+    Key key;
+    EXPECT_EQ(scene.add({.shape = shape, .pose = at}, key), Status::ok);
+    EXPECT_EQ(scene.refresh(), Status::ok);
+    return key;
+  }
+
+  ShapePool shapes;
+  CompositePool composites;
+  Scene scene{shapes, {.composites = &composites}};
+  Pose pose = Pose::at(5.0, -3.0, 2.0);
+  ShapeId solid;
+  Key plain_key;
+  Key solid_key;
+};
+
+TEST(Solids, are_nearer_than_nothing_to_what_they_hold) {
+  Random random(2);
+  const MeshData mesh = torus(16, 9);
+  SolidWorld world(mesh);
+  ASSERT_EQ(world.scene.refresh(), Status::ok);
+  SceneQueries ask(world.scene);
+  std::size_t inside = 0;
+  for (const Vec& own : points_about(mesh, random)) {
+    const Vec point = own + Vec::Map(world.pose.position);
+    std::span<const SceneDistance> found;
+    ASSERT_EQ(ask.nearest(point.data(), 2, kInfinity, found), Status::ok);
+    ASSERT_EQ(found.size(), 2U);
+    const SceneDistance solid = found[found[0].key == world.solid_key ? 0 : 1];
+    const SceneDistance plain = found[found[0].key == world.solid_key ? 1 : 0];
+    ASSERT_EQ(solid.part, plain.part);
+    const bool held = world.composites.holds(world.solid, world.pose, point.data());
+    ASSERT_EQ(solid.distance, held ? -plain.distance : plain.distance);
+    ASSERT_EQ(solid.normal[0], held ? -plain.normal[0] : plain.normal[0]);
+    ASSERT_EQ(solid.point_b[2], plain.point_b[2]);
+    if (!held || plain.distance < 0.01) continue;
+    ++inside;
+    ASSERT_EQ(found[0].key, world.solid_key);
+    ASSERT_EQ(ask.nearest(point.data(), 2, 0.5 * plain.distance, found), Status::ok);
+    ASSERT_EQ(found.size(), 1U) << "deeper than the radius, and still within";
+    ASSERT_EQ(found[0].distance, solid.distance);
+  }
+  EXPECT_GT(inside, scaled(50));
+}
+
+TEST(Solids, of_cubes_are_as_deep_as_boxes) {
+  Random random(3);
+  SolidWorld world(cube());
+  ShapeId box;
+  ASSERT_EQ(world.shapes.add(BoxShape{{1.0, 1.0, 1.0}}, box), Status::ok);
+  const Key convex = world.put(box, world.pose);
+  SceneQueries ask(world.scene);
+  for (std::size_t i = 0; i < scaled(200); ++i) {
+    const double point[3] = {5.0 + random.uniform(-1.5, 1.5), -3.0 + random.uniform(-1.5, 1.5),
+                             2.0 + random.uniform(-1.5, 1.5)};
+    std::span<const SceneDistance> found;
+    ASSERT_EQ(ask.nearest(point, 3, kInfinity, found), Status::ok);
+    double distance[2] = {1.0, -1.0};
+    for (const SceneDistance& one : found) {
+      if (one.key == convex) distance[0] = one.distance;
+      if (one.key == world.solid_key) distance[1] = one.distance;
+    }
+    ASSERT_NEAR(distance[0], distance[1], 1e-12);
+  }
+}
+
+TEST(Solids, overlap_what_they_hold) {
+  SolidWorld world(cube());
+  ShapeId shapes[3];
+  ASSERT_EQ(world.shapes.add(SphereShape{0.25}, shapes[0]), Status::ok);
+  const std::vector<Vec3d> off_origin{
+      {7.0, 0.0, 0.0}, {7.5, 0.0, 0.0}, {7.0, 0.5, 0.0}, {7.0, 0.0, 0.5}};
+  ASSERT_EQ(world.shapes.add_hull(off_origin, 0.0, shapes[1]), Status::ok);
+  MeshData small = cube();
+  for (Eigen::Vector3f& vertex : small.vertices) vertex *= 0.25F;
+  shapes[2] = add(world.composites, small);
+  const std::array children{CompoundChild{shapes[1], Pose::at(-7.0, 0.0, 0.0)},
+                            CompoundChild{shapes[2], {}}};
+  ShapeId compound;
+  ASSERT_EQ(world.composites.add_compound(children, compound), Status::ok);
+  const Pose within[] = {Pose::at(5.0, -3.0, 2.25), Pose::at(-2.25, -3.25, 2.0),
+                         Pose::at(5.0, -3.25, 2.0), Pose::at(5.0, -3.0, 2.0)};
+  const ShapeId all[] = {shapes[0], shapes[1], shapes[2], compound};
+  for (int i = 0; i < 4; ++i) {
+    const Key key = world.put(all[i], within[i]);
+    SceneQueries ask(world.scene);
+    std::span<const SceneOverlap> met;
+    ASSERT_EQ(ask.overlap(all[i], within[i], met), Status::ok);
+    const auto meets = [&](Key other) {
+      return std::any_of(met.begin(), met.end(),
+                         [&](const SceneOverlap& one) { return one.key == other; });
+    };
+    EXPECT_TRUE(meets(world.solid_key)) << i;
+    EXPECT_FALSE(meets(world.plain_key)) << i;
+    SceneDistance plain;
+    SceneDistance solid;
+    SceneDistance back;
+    ASSERT_EQ(ask.distance(key, world.plain_key, plain), Status::ok);
+    ASSERT_EQ(ask.distance(key, world.solid_key, solid), Status::ok);
+    ASSERT_EQ(ask.distance(world.solid_key, key, back), Status::ok);
+    EXPECT_GT(plain.distance, 0.1) << i;
+    EXPECT_EQ(solid.distance, -plain.distance) << i;
+    EXPECT_NEAR(back.distance, -plain.distance, 1e-12) << i;
+    ASSERT_EQ(ask.distance(key, world.solid_key, solid, -10.0), Status::ok);
+    EXPECT_FALSE(solid) << "not as deep as that";
+    const Key one[] = {key};
+    const Key both[] = {world.plain_key, world.solid_key};
+    std::span<const KeyPair> pairs;
+    ASSERT_EQ(ask.overlaps(one, both, pairs), Status::ok);
+    ASSERT_EQ(pairs.size(), 1U) << i;
+    EXPECT_EQ(pairs[0].second, world.solid_key);
+    SetDistance least;
+    ASSERT_EQ(ask.least_distance(one, both, least), Status::ok);
+    EXPECT_EQ(least.to.key, world.solid_key) << i;
+  }
+}
+
+TEST(Solids, do_not_overlap_what_passes_them_by) {
+  const MeshData mesh = torus(16, 9);
+  SolidWorld world(mesh);
+  ShapeId ball;
+  ASSERT_EQ(world.shapes.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ground;
+  ASSERT_EQ(world.shapes.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
+  SceneQueries ask(world.scene);
+  ASSERT_EQ(world.scene.refresh(), Status::ok);
+  std::span<const SceneOverlap> met;
+  ASSERT_EQ(ask.overlap(ball, world.pose, met), Status::ok);
+  EXPECT_TRUE(met.empty()) << "in the hole";
+  ASSERT_EQ(ask.overlap(ground, {}, met), Status::ok);
+  EXPECT_TRUE(met.empty()) << "above";
+}
+
+TEST(Solids, are_saved_and_loaded) {
+  ShapePool shapes;
+  CompositePool pool(shapes);
+  const ShapeId mesh = add(pool, cube());
+  Column<std::byte> without;
+  ASSERT_EQ(pool.save(without), Status::ok);
+  ASSERT_EQ(pool.set_solid(mesh), Status::ok);
+  Column<std::byte> with;
+  ASSERT_EQ(pool.save(with), Status::ok);
+  CompositePool other(shapes);
+  ASSERT_EQ(other.load({with.data(), with.size()}), Status::ok);
+  EXPECT_TRUE(other.is_solid(mesh));
+  ASSERT_EQ(other.load({without.data(), without.size()}), Status::ok);
+  EXPECT_FALSE(other.is_solid(mesh));
+}
+
+TEST(Solids, that_are_told_so_are_a_change_that_scenes_see) {
+  SolidWorld world(cube());
+  ASSERT_EQ(world.scene.refresh(), Status::ok);
+  SceneQueries ask(world.scene);
+  ASSERT_EQ(world.composites.set_solid(world.solid, false), Status::ok);
+  const double point[3] = {5.0, -3.0, 2.0};
+  std::span<const SceneDistance> found;
+  EXPECT_EQ(ask.nearest(point, 1, 10.0, found), Status::invalid_argument);
+  ASSERT_EQ(world.scene.refresh(), Status::ok);
+  ASSERT_EQ(ask.nearest(point, 1, 10.0, found), Status::ok);
+  EXPECT_EQ(found[0].distance, 1.0);
+}
+
+}  // namespace
+}  // namespace winnow::test
