@@ -22,7 +22,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(os.environ.get("WINNOW_ROOT", pathlib.Path(__file__).parents[2]))
 WORK = pathlib.Path(os.environ.get("WINNOW_SITE_WORK", ROOT / "build"))
 
-LANGUAGES = {".cpp": "cpp", ".h": "cpp", ".py": "python", ".txt": "cmake"}
+LANGUAGES = {".c": "c", ".cpp": "cpp", ".h": "cpp", ".py": "python", ".txt": "cmake"}
 
 
 def passage(path, name):
