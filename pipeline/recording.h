@@ -172,11 +172,11 @@ struct RecordedShape {
 /// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
 /// Composite shapes are recorded where the CompositePool was given that they are of, and what
 /// changes them in place is with the next question. A body of one that is of another MidPhase,
-/// one-sided or a solid, or that has a support function, and SceneOptions::seamless_floors end the recording
-/// with `unsupported`. So does a question with contacts that this scene filled, but not as its last
-/// answer: a scene is asked with one Contacts, which may be cleared, be another scene's in between,
-/// or be loaded by `load_contacts`. Of a predicate it is recorded which pairs it let pass. See
-/// RecordedQueries, RecordedSweep and RecordedSensors for what else a scene is asked.
+/// one-sided or a solid, or that has a support function, and SceneOptions::seamless_floors end the
+/// recording with `unsupported`. So does a question with contacts that this scene filled, but not
+/// as its last answer: a scene is asked with one Contacts, which may be cleared, be another scene's
+/// in between, or be loaded by `load_contacts`. Of a predicate it is recorded which pairs it let
+/// pass. See RecordedQueries, RecordedSweep and RecordedSensors for what else a scene is asked.
 class WINNOW_API RecordedScene {
  public:
   /// The recorder must outlive the scene.
