@@ -162,6 +162,7 @@ class WINNOW_API CompositePool final : public MidPhase {
 
  private:
   [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
+  [[nodiscard]] bool has_solids() const noexcept;
   [[nodiscard]] Status tell(mid::IdSet& set, ShapeId surface, bool now) noexcept;
   /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
   /// memory.

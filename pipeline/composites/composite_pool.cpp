@@ -513,13 +513,17 @@ bool CompositePool::visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, c
          mid::visit_near_pairs(*state_, a, pose_a, b, pose_b, limit, visitor);
 }
 
+bool CompositePool::has_solids() const noexcept {
+  return state_ != nullptr && !state_->solid.empty();
+}
+
 bool CompositePool::holds(ShapeId id, const Pose& pose, const double point[3]) const {
-  return contains(id) && mid::holds(*state_, id, pose, point);
+  return has_solids() && contains(id) && mid::holds(*state_, id, pose, point);
 }
 
 bool CompositePool::holds(ShapeId id, const Pose& pose, ShapeId other,
                           const Pose& other_pose) const {
-  return contains(id) && mid::holds(*state_, id, pose, other, other_pose);
+  return has_solids() && contains(id) && mid::holds(*state_, id, pose, other, other_pose);
 }
 
 Footprint CompositePool::footprint() const noexcept {

@@ -194,12 +194,11 @@ Status check_solid(const MeshView& mesh, std::pmr::memory_resource* memory) noex
 }
 
 bool holds(const Composites& all, ShapeId id, const Pose& pose, const double point[3]) noexcept {
-  return !all.solid.empty() && is_in_solid(PlacedBody::at(all, id, pose), Vec::Map(point));
+  return is_in_solid(PlacedBody::at(all, id, pose), Vec::Map(point));
 }
 
 bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
            const Pose& other_pose) noexcept {
-  if (all.solid.empty()) return false;
   const PlacedBody solid = PlacedBody::at(all, id, pose);
   return any_point(PlacedBody::at(all, other, other_pose),
                    [&](const Vec& point) { return is_in_solid(solid, point); });
