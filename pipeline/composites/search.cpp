@@ -3,6 +3,7 @@
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/triangle_direction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,37 +44,6 @@ struct TrianglePlane {
   return std::max(low, -high) > margin * plane.length + plane.noise * scale;
 }
 
-/// The direction from the point of a triangle that is closest to a point; both relative to its
-/// first corner. (Ericson, Real-Time Collision Detection, 5.1.5.) Rounding makes it another
-/// direction, no more.
-[[nodiscard]] Vec direction_to(const Vec& point, const Corners& triangle) noexcept {
-  const Vec& ab = triangle.edge[0];
-  const Vec& ac = triangle.edge[1];
-  const double d1 = ab.dot(point);
-  const double d2 = ac.dot(point);
-  if (d1 <= 0.0 && d2 <= 0.0) return point;
-  const double aa = ab.squaredNorm();
-  const double cc = ac.squaredNorm();
-  const double bc = ab.dot(ac);
-  const double d3 = d1 - aa;
-  const double d4 = d2 - bc;
-  if (d3 >= 0.0 && d4 <= d3) return point - ab;
-  const double d5 = d1 - bc;
-  const double d6 = d2 - cc;
-  if (d6 >= 0.0 && d5 <= d6) return point - ac;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return point - ab * (d1 / (d1 - d3));
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return point - ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    const double along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return point - ab - (ac - ab) * along;
-  }
-  const Vec normal = ab.cross(ac);
-  return normal.dot(point) < 0.0 ? Vec(-normal) : normal;
-}
-
 [[nodiscard]] bool half_space_apart(const HalfSpaceShape& shape, const PlacedPart& part,
                                     const Corners& t, double margin) noexcept {
   const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
@@ -108,7 +78,7 @@ struct TrianglePlane {
   // The direction from the triangle's closest point to the middle of the part: a triangle's plane
   // where that is above its inside, and a better axis where it is not.
   const Vec from = part.position - triangle.first;
-  const Vec axis = direction_to(from + part.middle, triangle);
+  const Vec axis = direction_to(from + part.middle, triangle.edge[0], triangle.edge[1]);
   const double length = axis.norm();
   const double scale = from.lpNorm<1>() + triangle.first.lpNorm<1>() + part.radius +
                        triangle.edge[0].lpNorm<1>() + triangle.edge[1].lpNorm<1>();

@@ -5,6 +5,7 @@
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
+#include "pipeline/shapes/triangle_direction.h"
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>
@@ -42,6 +43,28 @@ struct Pairing {
     a.pose = relative(a.pose, base);
   }
 };
+
+/// True if one axis shows that a ball is farther from a triangle of a surface than a limit. False
+/// proves nothing.
+[[nodiscard]] inline bool is_farther(const ConvexPart& ball, const ConvexPart& triangle,
+                                     double limit) noexcept {
+  using mid::Vec;
+  constexpr double kAsItStands[4] = {1.0, 0.0, 0.0, 0.0};
+  if (!std::equal(kAsItStands, kAsItStands + 4, triangle.pose.orientation)) return false;
+  const TriangleShape& shape = *triangle.triangle;
+  const Vec first = Vec::Map(shape.vertex[0]);
+  const Vec ab = Vec::Map(shape.vertex[1]) - first;
+  const Vec ac = Vec::Map(shape.vertex[2]) - first;
+  const Vec at = Vec::Map(ball.pose.position);
+  const Vec corner = Vec::Map(triangle.pose.position);
+  const Vec from = (at - corner) - first;
+  const Vec axis = mid::direction_to(from, ab, ac);
+  const double gap = axis.dot(from) - std::max({0.0, axis.dot(ab), axis.dot(ac)});
+  const double scale =
+      at.lpNorm<1>() + corner.lpNorm<1>() + first.lpNorm<1>() + ab.lpNorm<1>() + ac.lpNorm<1>();
+  const double radii = ball.ball->radius + shape.rounding + triangle.thickness;
+  return gap > (std::max(limit, 0.0) + radii + 4.0 * mid::kSlack * scale) * axis.norm();
+}
 
 /// True if one is a solid that holds the other, as far as a point of it tells.
 [[nodiscard]] inline bool any_holds(const PartTraversal& parts, const PlacedShape& a,
@@ -154,6 +177,7 @@ class ClosestParts {
     return reach();
   }
   void look(const ConvexPart& a, const ConvexPart& b) noexcept {
+    if (a.ball != nullptr && b.triangle != nullptr && is_farther(a, b, limit_)) return;
     const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
     if (!(pair.distance <= limit_) || any_stands_behind(parts_, a, b)) return;
     SceneDistance& answer = *answer_;
