@@ -1,10 +1,7 @@
 #include "core/sort/counting_sort.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
-
-#include "core/sort/own_rows.h"
 
 namespace winnow {
 

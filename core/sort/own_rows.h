@@ -11,7 +11,7 @@
 namespace winnow {
 
 /// Beyond it looking at all rows costs more than another thread saves.
-constexpr std::size_t kMostOwners = 8;
+inline constexpr std::size_t kMostOwners = 8;
 
 /// How many threads share the rows of a list whose targets lie anywhere. Each of them looks at all
 /// rows and takes those of its own targets: cores that write among each other's targets wait longer

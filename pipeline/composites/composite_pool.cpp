@@ -377,10 +377,9 @@ Status CompositePool::tell(mid::IdSet& set, ShapeId surface, bool now) noexcept 
 }
 
 Status CompositePool::set_solid(ShapeId id, bool solid) {
-  const TriangleMesh* const triangles = mesh(id);
-  if (triangles == nullptr) return Status::invalid_key;
+  if (mesh(id) == nullptr) return Status::invalid_key;
   if (solid && !is_solid(id)) {
-    const Status status = mid::check_solid(view_of(*triangles), memory_);
+    const Status status = mid::check_solid(*state_, id);
     if (status != Status::ok) return status;
   }
   return tell(state_->solid, id, solid);

@@ -131,6 +131,11 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
   }
 }
 
+bool stands_unturned(const ConvexPart& part) noexcept {
+  const double* const q = part.pose.orientation;
+  return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
+}
+
 bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept {
   if (part.front == 0) return false;
   const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(part.pose.orientation)));

@@ -178,6 +178,9 @@ class PartTraversal {
   const MidPhase* composites_;
 };
 
+/// True of a triangle that lies as it is given, about the part's position.
+[[nodiscard]] bool stands_unturned(const ConvexPart& part) noexcept;
+
 /// True if what the box is about stands behind a part, which is a one-sided triangle.
 [[nodiscard]] bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept;
 

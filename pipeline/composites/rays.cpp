@@ -256,13 +256,6 @@ double RayGuides::show(std::uint32_t i, std::uint32_t slot) const {
   return limit_[i];
 }
 
-/// The front of a triangle is that of the surface's own frame.
-[[nodiscard]] bool comes_from_behind(const SurfaceRay& ray, const double (&corner)[3][3]) noexcept {
-  const Vec at = Vec::Map(corner[0]);
-  const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
-  return normal.dot(Vec::Map(ray.direction)) > 0.0;
-}
-
 double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                        const double (&corner)[3][3], const SurfaceRay& ray) const {
   const PlacedBody& body = target_.body;

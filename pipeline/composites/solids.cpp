@@ -17,14 +17,6 @@ namespace {
   return same(0, 1) || same(1, 2) || same(2, 0);
 }
 
-void read_corners(const MeshView& mesh, std::uint32_t slot, double (&corner)[3][3]) noexcept {
-  for (int k = 0; k < 3; ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner[k][axis] = static_cast<double>(coordinate(mesh, mesh.corner[k][slot], axis));
-    }
-  }
-}
-
 /// Times the surface of a mesh runs around a point: 1 inside, 0 outside, and more where it covers
 /// itself. Everything in the mesh's own frame.
 class Winding {
@@ -74,28 +66,22 @@ class Winding {
   double cross(const std::uint32_t* slots, std::uint32_t count, double limit) noexcept {
     for (std::uint32_t i = 0; i < count && !in_doubt_; ++i) {
       double corner[3][3];
-      read_corners(*body_.mesh, slots[i], corner);
+      (void)body_.own_corners(slots[i], corner);
       SurfaceHit hit;
       const Crossing crossing =
           cross_triangle(ray_, corner, 0.0, std::numeric_limits<double>::infinity(), hit);
       in_doubt_ = crossing == Crossing::doubtful;
-      if (crossing == Crossing::found) crossings_ += leaves(corner) ? 1 : -1;
+      if (crossing == Crossing::found) crossings_ += comes_from_behind(ray_, corner) ? 1 : -1;
     }
     return in_doubt_ ? -1.0 : limit;
   }
-  [[nodiscard]] bool leaves(const double (&corner)[3][3]) const noexcept {
-    const Vec at = Vec::Map(corner[0]);
-    const Vec normal = (Vec::Map(corner[1]) - at).cross(Vec::Map(corner[2]) - at);
-    return normal.dot(Vec::Map(ray_.direction)) > 0.0;
-  }
-
   /// 4 pi times the winding number (van Oosterom, Strackee, "The solid angle of a plane triangle",
   /// 1983). O(n).
   [[nodiscard]] double solid_angle() const noexcept {
     double sum = 0.0;
     for (std::uint32_t slot = 0; slot < body_.mesh->triangle_count; ++slot) {
       double corner[3][3];
-      read_corners(*body_.mesh, slot, corner);
+      (void)body_.own_corners(slot, corner);
       const Vec a = Vec::Map(corner[0]) - at_;
       const Vec b = Vec::Map(corner[1]) - at_;
       const Vec c = Vec::Map(corner[2]) - at_;
@@ -174,14 +160,15 @@ template <typename Look>
 
 }  // namespace
 
-Status check_solid(const MeshView& mesh, std::pmr::memory_resource* memory) noexcept {
-  Column<std::uint32_t> neighbours(memory);
-  if (!find_neighbours(mesh, neighbours)) return Status::out_of_memory;
+Status check_solid(const Composites& all, ShapeId id) noexcept {
+  const PlacedBody body = PlacedBody::at(all, id, {});
+  Column<std::uint32_t> neighbours(all.memory);
+  if (!find_neighbours(*body.mesh, neighbours)) return Status::out_of_memory;
   Vec about = Vec::Zero();
   double volume = 0.0;
-  for (std::uint32_t slot = 0; slot < mesh.triangle_count; ++slot) {
+  for (std::uint32_t slot = 0; slot < body.mesh->triangle_count; ++slot) {
     double corner[3][3];
-    read_corners(mesh, slot, corner);
+    (void)body.own_corners(slot, corner);
     if (is_segment(corner)) continue;
     for (std::uint32_t edge = 0; edge < 3; ++edge) {
       if ((neighbours[3 * slot + edge] & kSameWay) != 0) return Status::invalid_shape;

@@ -10,7 +10,7 @@ namespace winnow::mid {
 /// of two triangles, which run along it in opposite ways, and the volume that they enclose is
 /// positive, that is if corners run counter-clockwise seen from outside. Vertices at the same place
 /// count as one; triangles that are segments do not count. `out_of_memory`. O(n log n).
-[[nodiscard]] Status check_solid(const MeshView& mesh, std::pmr::memory_resource* memory) noexcept;
+[[nodiscard]] Status check_solid(const Composites& all, ShapeId mesh) noexcept;
 
 /// See MidPhase::holds. Ids are there, poses are valid.
 [[nodiscard]] bool holds(const Composites& all, ShapeId id, const Pose& pose,

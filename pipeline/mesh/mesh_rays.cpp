@@ -77,6 +77,12 @@ Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3], dou
   return Crossing::found;
 }
 
+bool comes_from_behind(const SurfaceRay& ray, const double (&corner)[3][3]) noexcept {
+  const Vector3d at = Vector3d::Map(corner[0]);
+  const Vector3d normal = (Vector3d::Map(corner[1]) - at).cross(Vector3d::Map(corner[2]) - at);
+  return normal.dot(Vector3d::Map(ray.direction)) > 0.0;
+}
+
 void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor) noexcept {
   if (mesh.triangle_count == 0 || count == 0) return;

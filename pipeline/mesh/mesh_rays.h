@@ -20,6 +20,9 @@ struct SurfaceHit {
 [[nodiscard]] Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                       double low, double high, SurfaceHit& hit) noexcept;
 
+/// True if a ray that meets a triangle comes from the side from which its corners run clockwise.
+[[nodiscard]] bool comes_from_behind(const SurfaceRay& ray, const double (&corner)[3][3]) noexcept;
+
 /// Slots of all triangles that each of the first `count` rays may meet at some t in [0, its limit],
 /// and few others, roughly in the order in which it does. A limit below zero leaves a ray out. Rays
 /// and limits are filled up as RayColumns are. The visitor knows rays by their index, and is

@@ -139,15 +139,16 @@ void remove(SharedCluster& c, py::handle name_array, const Rank& rank) {
 
 void add_cluster(py::module_& module) {
   using py::arg;
-  py::class_<SharedCluster, std::shared_ptr<SharedCluster>>(
+  py::class_<SharedCluster, std::shared_ptr<SharedCluster>> type(
       module, "Cluster",
       "Boxes on any number of ranks, and which of them overlap: the pairs of one partition of all "
       "of "
       "them, each once, whatever the number of ranks. A body has a name, uint64, and belongs to "
       "the "
       "rank in whose region its centre lies: there it is moved and removed. Making one, add, "
-      "self_pairs and digest are collective: every process calls them, in the same order.")
-      .def(py::init([](const py::object& comm, std::uint32_t ranks, const std::string& structure,
+      "self_pairs and digest are collective: every process calls them, in the same order.");
+  add_ranks(type);
+  type.def(py::init([](const py::object& comm, std::uint32_t ranks, const std::string& structure,
                        double imbalance) {
              return std::make_shared<SharedCluster>(comm, ranks, structure, imbalance);
            }),
@@ -158,15 +159,6 @@ void add_cluster(py::module_& module) {
            "size, alltoall and allgather. None: so many virtual `ranks` in this process. Space is "
            "cut "
            "anew once a rank has more than `imbalance` times the mean work.")
-      .def_property_readonly(
-          "ranks", [](const SharedCluster& c) { return c.cluster().ranks(); }, "Of all processes.")
-      .def_property_readonly(
-          "hosted",
-          [](const SharedCluster& c) {
-            const std::uint32_t first = c.cluster().first_hosted();
-            return py::make_tuple(first, first + c.cluster().hosted());
-          },
-          "Ranks of this process: the first, and one past the last.")
       .def(
           "add", &add, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
           "Adds n bodies, names (n,) that no other has, boxes (n, 3) each; none for a process that "

@@ -303,16 +303,6 @@ void add_cluster_scene(py::module_& module) {
            arg("parallel") = true, arg("imbalance") = 1.1,
            "`comm`, `ranks` and `imbalance` as of Cluster, the rest as of Scene.")
       .def_property_readonly(
-          "ranks", [](const SharedClusterScene& c) { return c.cluster().ranks(); },
-          "Of all processes.")
-      .def_property_readonly(
-          "hosted",
-          [](const SharedClusterScene& c) {
-            const std::uint32_t first = c.cluster().first_hosted();
-            return py::make_tuple(first, first + c.cluster().hosted());
-          },
-          "Ranks of this process: the first, and one past the last.")
-      .def_property_readonly(
           "statistics",
           [](const SharedClusterScene& c) {
             ClusterStatistics found;
@@ -326,6 +316,7 @@ void add_cluster_scene(py::module_& module) {
           },
           "Counters of all ranks: bodies, ghosts (copies of bodies), pairs, bytes, messages, "
           "migrated, cuts, imbalance.");
+  add_ranks(type);
   add_changes(type);
   add_answers(type);
 }

@@ -57,6 +57,20 @@ class Ranks {
   std::mutex mutex_;
 };
 
+/// Gives a class how many ranks there are, and which of them are this process's.
+template <typename Shared>
+void add_ranks(py::class_<Shared, std::shared_ptr<Shared>>& type) {
+  type.def_property_readonly(
+          "ranks", [](const Shared& c) { return c.cluster().ranks(); }, "Of all processes.")
+      .def_property_readonly(
+          "hosted",
+          [](const Shared& c) {
+            const std::uint32_t first = c.cluster().first_hosted();
+            return py::make_tuple(first, first + c.cluster().hosted());
+          },
+          "Ranks of this process: the first, and one past the last.");
+}
+
 /// As 32 digits.
 [[nodiscard]] std::string digits_of(const ClusterDigest& digest);
 /// Counters by name.

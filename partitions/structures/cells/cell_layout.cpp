@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <span>
 
 namespace winnow {
@@ -44,14 +43,6 @@ float value_near_end(std::span<const float> values, std::size_t at, Before befor
   std::array<float, kMostTail> tail;
   std::partial_sort_copy(values.begin(), values.end(), tail.begin(), tail.begin() + at + 1, before);
   return tail[at];
-}
-
-// Steps of this length around a circle of so many rows meet each once, near ones at different
-// times: values that ascend by rows would be put into a tail one by one.
-std::size_t mixing_stride(std::size_t rows) noexcept {
-  std::size_t stride = rows * 5 / 8 + 1;
-  while (std::gcd(stride, rows) != 1) ++stride;
-  return stride % rows;
 }
 
 // The least and the largest lower end on an axis.
@@ -95,12 +86,9 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
     // By their ids: few objects that come back to where they were get the same cells again,
     // whatever order the rows are in.
     const auto k = static_cast<unsigned>(std::bit_width(step)) - 1;
-    const std::size_t stride = mixing_stride(pool.rows());
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < pool.rows(); ++i) {
+    for (std::size_t row = 0; row < pool.rows(); ++row) {
       const ObjectId id = pool.ids()[row];
       if (id != kNoObject && (k == 0 || id * 0x9E3779B1U >> (32 - k) == 0)) take(row);
-      row = row + stride < pool.rows() ? row + stride : row + stride - pool.rows();
     }
   } else {
     for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {

@@ -35,12 +35,6 @@ SweepMeeting meeting_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
   return meeting;
 }
 
-/// True of a triangle that lies as it is given, about the part's position.
-bool stands_unturned(const ConvexPart& part) noexcept {
-  const double* const q = part.pose.orientation;
-  return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
-}
-
 /// The point of a triangle that is closest to p, about (Ericson, "Real-Time Collision Detection",
 /// 2005, 5.1.5).
 Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept {

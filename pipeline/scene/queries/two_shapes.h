@@ -49,8 +49,7 @@ struct Pairing {
 [[nodiscard]] inline bool is_farther(const ConvexPart& ball, const ConvexPart& triangle,
                                      double limit) noexcept {
   using mid::Vec;
-  constexpr double kAsItStands[4] = {1.0, 0.0, 0.0, 0.0};
-  if (!std::equal(kAsItStands, kAsItStands + 4, triangle.pose.orientation)) return false;
+  if (!stands_unturned(triangle)) return false;
   const TriangleShape& shape = *triangle.triangle;
   const Vec first = Vec::Map(shape.vertex[0]);
   const Vec ab = Vec::Map(shape.vertex[1]) - first;
@@ -62,7 +61,7 @@ struct Pairing {
   const double gap = axis.dot(from) - std::max({0.0, axis.dot(ab), axis.dot(ac)});
   const double scale =
       at.lpNorm<1>() + corner.lpNorm<1>() + first.lpNorm<1>() + ab.lpNorm<1>() + ac.lpNorm<1>();
-  const double radii = ball.ball->radius + shape.rounding + triangle.thickness;
+  const double radii = ball.ball->radius + triangle.thickness;
   return gap > (std::max(limit, 0.0) + radii + 4.0 * mid::kSlack * scale) * axis.norm();
 }
 
