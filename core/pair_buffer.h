@@ -99,6 +99,23 @@ class WINNOW_API PairBuffer {
     return pairs_;
   }
 
+  /// Puts the pairs that `is_first(pair)` is true of before all others, and returns how many they
+  /// are. The next query may go on from these pairs as from any. O(pairs), of which only those move
+  /// that it is false of.
+  template <typename IsFirst>
+  [[nodiscard]] std::size_t partition(IsFirst&& is_first) noexcept {
+    state_ = State::loose;
+    std::size_t end = size();
+    for (std::size_t i = 0; i < end;) {
+      if (is_first(std::as_const(pairs_[i]))) {
+        ++i;
+      } else {
+        std::swap(pairs_[i], pairs_[--end]);
+      }
+    }
+    return end;
+  }
+
   /// Bytes of pairs under `results`; links and what tasks wrote to under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 

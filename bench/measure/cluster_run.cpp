@@ -9,6 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 
 namespace winnow::bench {
 namespace {
@@ -107,6 +108,7 @@ class ClusterEngine {
       : transport_(transport),
         ranks_(ranks),
         cluster_(ranks.cluster),
+        bodies_(cluster_.hosted()),
         keys_(cluster_.hosted()),
         boxes_(cluster_.hosted()),
         fresh_(cluster_.hosted()),
@@ -134,12 +136,6 @@ class ClusterEngine {
   }
 
  private:
-  struct Home {
-    std::uint32_t rank = kElsewhere;
-    Key key;
-  };
-  static constexpr std::uint32_t kElsewhere = ~0U;
-
   [[nodiscard]] std::uint32_t rank_of(std::size_t place) const {
     return cluster_.first_hosted() + static_cast<std::uint32_t>(place);
   }
@@ -151,13 +147,13 @@ class ClusterEngine {
       fresh_[r].clear();
       fresh_boxes_[r].clear();
     }
-    for (std::size_t i = 0; i < last_.size(); ++i) {
-      if (homes_[i].rank == kElsewhere || std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) == 0) {
-        continue;
+    for (std::size_t r = 0; r < bodies_.size(); ++r) {
+      for (const ClusterBody& body : bodies_[r]) {
+        const BodyName i = body.name;
+        if (std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) == 0) continue;
+        keys_[r].push_back(body.key);
+        boxes_[r].push_back(boxes[i]);
       }
-      const std::size_t place = homes_[i].rank - cluster_.first_hosted();
-      keys_[place].push_back(homes_[i].key);
-      boxes_[place].push_back(boxes[i]);
     }
     for (std::size_t i = last_.size(); i < boxes.size(); ++i) {
       const std::size_t place = i * cluster_.ranks() / boxes.size() - cluster_.first_hosted();
@@ -167,7 +163,6 @@ class ClusterEngine {
     }
     grows_ = boxes.size() > last_.size();
     last_.assign(boxes.begin(), boxes.end());
-    homes_.resize(boxes.size());
   }
 
   /// No process begins before all others are there.
@@ -184,14 +179,21 @@ class ClusterEngine {
     if (grows_) require_ok(ranks_.add(fresh_, fresh_boxes_), "add");
   }
 
+  /// A rank's own bodies stay in the order of their keys, in which it is told fastest of them.
   void follow() {
-    for (std::size_t r = 0; r < keys_.size(); ++r) {
-      for (const BodyName name : cluster_.departed(rank_of(r))) homes_[name].rank = kElsewhere;
-    }
-    for (std::size_t r = 0; r < keys_.size(); ++r) {
-      for (const ClusterBody& body : cluster_.arrived(rank_of(r))) {
-        homes_[body.name] = {rank_of(r), body.key};
+    for (std::size_t r = 0; r < bodies_.size(); ++r) {
+      std::vector<ClusterBody>& bodies = bodies_[r];
+      const std::span<const BodyName> departed = cluster_.departed(rank_of(r));
+      const std::span<const ClusterBody> arrived = cluster_.arrived(rank_of(r));
+      if (departed.empty() && arrived.empty()) continue;
+      const std::unordered_set<BodyName> gone(departed.begin(), departed.end());
+      if (!gone.empty()) {
+        std::erase_if(bodies, [&](const ClusterBody& body) { return gone.contains(body.name); });
       }
+      const auto id_of = [](const ClusterBody& body) { return body.key.id; };
+      const auto fresh = bodies.insert(bodies.end(), arrived.begin(), arrived.end());
+      std::ranges::sort(fresh, bodies.end(), {}, id_of);
+      std::ranges::inplace_merge(bodies, fresh, {}, id_of);
     }
   }
 
@@ -217,13 +219,13 @@ class ClusterEngine {
   Transport& transport_;
   Ranks& ranks_;
   decltype(Ranks::cluster)& cluster_;
+  std::vector<std::vector<ClusterBody>> bodies_;  // of each hosted rank
   // What each hosted rank is told of a frame.
   std::vector<std::vector<Key>> keys_;
   std::vector<std::vector<Aabb>> boxes_;
   std::vector<std::vector<BodyName>> fresh_;
   std::vector<std::vector<Aabb>> fresh_boxes_;
   std::vector<Aabb> last_;
-  std::vector<Home> homes_;  // by row
   bool grows_ = false;
 };
 

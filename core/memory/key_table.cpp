@@ -64,32 +64,42 @@ void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std:
   live_ += slots - first;
 }
 
+// Nothing in the loops of these waits for a branch.
+
 KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept {
   if (keys.empty()) return {};
-  const ObjectId first = keys.front().id;
-  // Mostly they are all that there are, in order. Nothing in these loops waits for a branch.
-  std::uint32_t apart = first + keys.size() <= stamps_.size() ? 0U : 1U;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    apart |= keys[i].id ^ (first + static_cast<std::uint32_t>(i));
+  std::uint32_t falls = 0;
+  for (std::size_t i = 1; i < keys.size(); ++i) falls |= keys[i - 1].id < keys[i].id ? 0U : 1U;
+  if (falls != 0) return {.valid = are_valid(keys), .ascending = false};
+  const bool known = keys.back().id < stamps_.size();
+  return {.valid = known && are_valid_ascending(keys), .ascending = true};
+}
+
+bool KeyTable::are_valid(std::span<const Key> keys) const noexcept {
+  if (stamps_.empty()) return false;
+  std::uint32_t wrong = 0;
+  for (const Key key : keys) {
+    const std::uint32_t unknown = key.id < stamps_.size() ? 0U : 1U;
+    wrong |= (stamps_[unknown != 0 ? 0 : key.id] ^ key.stamp) | unknown | (~key.stamp & 1U);
   }
-  if (apart == 0) {
-    std::uint32_t wrong = 0;
+  return wrong == 0;
+}
+
+/// Of keys whose ids ascend, the last one below the number of slots.
+bool KeyTable::are_valid_ascending(std::span<const Key> keys) const noexcept {
+  std::uint32_t wrong = 0;
+  const ObjectId first = keys.front().id;
+  if (keys.back().id - first + std::size_t{1} == keys.size()) {
+    // Each is that after the one before: no look-ups but a comparison of two columns.
     const std::uint32_t* const stamps = stamps_.data() + first;
     for (std::size_t i = 0; i < keys.size(); ++i) {
       wrong |= (keys[i].stamp ^ stamps[i]) | (~stamps[i] & 1U);
     }
-    return {.valid = wrong == 0, .ascending = true};
+  } else {
+    const std::uint32_t* const stamps = stamps_.data();
+    for (const Key key : keys) wrong |= (stamps[key.id] ^ key.stamp) | (~key.stamp & 1U);
   }
-  if (stamps_.empty()) return {.valid = false};
-  std::uint32_t wrong = 0;
-  std::uint32_t falls = 0;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Key key = keys[i];
-    const std::uint32_t unknown = key.id < stamps_.size() ? 0U : 1U;
-    wrong |= (stamps_[unknown != 0 ? 0 : key.id] ^ key.stamp) | unknown | (~key.stamp & 1U);
-    falls |= i == 0 || keys[i - 1].id < key.id ? 0U : 1U;
-  }
-  return {.valid = wrong == 0, .ascending = falls == 0};
+  return wrong == 0;
 }
 
 void KeyTable::release(ObjectId id) noexcept {

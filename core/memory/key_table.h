@@ -119,6 +119,9 @@ class KeyTable {
   [[nodiscard]] Bytes client_data_bytes() const noexcept { return data_.bytes(); }
 
  private:
+  [[nodiscard]] bool are_valid(std::span<const Key> keys) const noexcept;
+  [[nodiscard]] bool are_valid_ascending(std::span<const Key> keys) const noexcept;
+
   static constexpr unsigned kGenerationBits = 32 - KeyTags::kBits;
   static constexpr std::uint32_t kGenerationMask = (1U << kGenerationBits) - 1;
 

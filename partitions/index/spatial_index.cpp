@@ -83,6 +83,8 @@ Status SpatialIndex::absorb_changes(bool all) {
   const std::uint64_t builds = builds_;
   const Status status = look_for_strays();
   if (status != Status::ok || builds_ != builds) return status;
+  // What nobody asked after did not wear anything, and is no step towards a build.
+  if (!questioned_.exchange(false, std::memory_order_relaxed)) return Status::ok;
   tail_growth_.note(tail());
   wear_growth_.note(excess_tests());
   departures_.note_refresh();
@@ -250,6 +252,7 @@ bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept
 
 void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
                              Asked asked) const noexcept {
+  questioned_.store(true, std::memory_order_relaxed);
   // The first query after a build sets what a query costs on a fresh structure.
   std::atomic<std::uint64_t>& base = asked == Asked::all ? full_base_ : moved_base_;
   const std::uint64_t each = tests / queries + 1;

@@ -85,7 +85,10 @@ class SpatialIndex {
   [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
 
   /// Queries other than pairs are about to come, after changes.
-  void note_asked() const noexcept { asked_.fetch_add(1, std::memory_order_relaxed); }
+  void note_asked() const noexcept {
+    asked_.fetch_add(1, std::memory_order_relaxed);
+    questioned_.store(true, std::memory_order_relaxed);
+  }
   /// True if `refresh_queries` has to be called, by one thread, before queries other than pairs.
   [[nodiscard]] bool queries_stale() const noexcept {
     return queries_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
@@ -197,6 +200,7 @@ class SpatialIndex {
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};
   mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build
+  mutable std::atomic<bool> questioned_{false};  // in any way since the last refresh
 
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
   std::size_t known_wide_ = 0;   // blocks that are wide, but not by objects that have jumped

@@ -81,36 +81,52 @@ template <bool Listed>
   return k < box_of.ids ? box_of.table[k] : kNoBox;
 }
 
+/// Where the boxes of sixteen rows are; lanes of `missing` have none.
+struct BoxesOfRows {
+  const float* box[kLanes];
+  Mask16 missing;
+};
+
+template <bool Listed>
+[[gnu::always_inline]] inline void find_boxes(const float* floats, const BoxOfId& box_of,
+                                              const std::uint32_t* id, BoxesOfRows& rows) {
+  rows.missing = 0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t number = number_of<Listed>(box_of, id[lane]);
+    const bool none = number == kNoBox;
+    rows.missing |= static_cast<Mask16>(unsigned{none} << lane);
+    rows.box[lane] = floats + (none ? 0 : std::size_t{number} * kFloats);
+    __builtin_prefetch(rows.box[lane]);
+  }
+}
+
 template <bool Listed>
 void write_boxes(const float* floats, const BoxOfId& box_of, const std::uint32_t* id,
                  float* const* column, std::size_t begin, std::size_t end) {
   const Floats most = Floats(kLargest<float>);
   const Floats least = Floats(-kLargest<float>);
-  for (std::size_t row = begin; row < end; row += kLanes) {
-    // Boxes are met in any order: those of the next but one block are on their way meanwhile.
-    std::uint32_t inside = 0;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const std::uint32_t* const at = id + row + static_cast<std::size_t>(lane);
-      const std::uint32_t ahead = number_of<Listed>(box_of, at[2 * kLanes]);
-      if (ahead != kNoBox) __builtin_prefetch(floats + ahead * kFloats);
-      inside += number_of<Listed>(box_of, at[0]) != kNoBox ? 1U : 0U;
-    }
-    const auto box = [&](int lane) {
-      const std::uint32_t k = id[row + static_cast<std::size_t>(lane)] - box_of.first;
-      return floats + std::size_t{Listed ? box_of.table[k] : k} * kFloats;
-    };
-    if (inside == kLanes) {
-      const Box16 boxes = load_boxes(box);
-      for (int s = 0; s < 3; ++s) {
-        max(boxes.low[s], least).store_unaligned(column[s] + row);
-        min(boxes.high[s], most).store_unaligned(column[3 + s] + row);
+  // Boxes are met in any order: those of the next two blocks are on their way meanwhile.
+  constexpr std::size_t kBlocks = 3;
+  BoxesOfRows blocks[kBlocks];
+  find_boxes<Listed>(floats, box_of, id + begin, blocks[0]);
+  find_boxes<Listed>(floats, box_of, id + begin + kLanes, blocks[1]);
+  std::size_t now = 0;
+  for (std::size_t row = begin; row < end; row += kLanes, now = (now + 1) % kBlocks) {
+    find_boxes<Listed>(floats, box_of, id + row + 2 * kLanes, blocks[(now + 2) % kBlocks]);
+    BoxesOfRows& rows = blocks[now];
+    if (rows.missing == kAllRows) continue;
+    alignas(64) float old[kLanes][kFloats];
+    for (unsigned missing = rows.missing; missing != 0; missing &= missing - 1) {
+      const int lane = __builtin_ctz(missing);
+      for (std::size_t c = 0; c < kFloats; ++c) {
+        old[lane][c] = column[c][row + static_cast<std::size_t>(lane)];
       }
-      continue;
+      rows.box[lane] = old[lane];
     }
-    for (int lane = 0; lane < kLanes && inside != 0; ++lane) {
-      const std::size_t r = row + static_cast<std::size_t>(lane);
-      if (number_of<Listed>(box_of, id[r]) == kNoBox) continue;
-      for (std::size_t c = 0; c < kFloats; ++c) column[c][r] = clamp(box(lane)[c]);
+    const Box16 boxes = load_boxes([&](int lane) { return rows.box[lane]; });
+    for (int s = 0; s < 3; ++s) {
+      max(boxes.low[s], least).store_unaligned(column[s] + row);
+      min(boxes.high[s], most).store_unaligned(column[3 + s] + row);
     }
   }
 }
@@ -176,6 +192,19 @@ void within(const float* const* given, const float* const* stored, std::size_t c
   }
 }
 
+/// Calls visit(box) for each of sixteen boxes of which one of 96 floats is not `good`, ascending.
+template <typename Visit>
+[[gnu::always_inline]] inline void for_each_bad_box(const Mask16* good, const Visit& visit) {
+  unsigned last = kLanes;
+  for (unsigned part = 0; part < kFloats; ++part) {
+    for (unsigned bad = ~good[part] & kAllRows; bad != 0; bad &= bad - 1) {
+      const unsigned box = (part * kLanes + static_cast<unsigned>(__builtin_ctz(bad))) / kFloats;
+      if (box != last) visit(box);
+      last = box;
+    }
+  }
+}
+
 /// An infinite end is near itself alone.
 bool is_near(const float* box, const float* near, float margin) {
   for (std::size_t c = 0; c < kFloats; ++c) {
@@ -195,15 +224,19 @@ std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::s
   };
   std::size_t i = 0;
   for (; i + kLanes <= count && found <= most; i += kLanes) {
+    Mask16 good[kFloats];
     Mask16 all = kAllRows;
     for (std::size_t part = 0; part < kFloats; ++part) {
       const std::size_t at = i * kFloats + part * kLanes;
       const Floats box = Floats::load_unaligned(boxes + at);
       const Floats old = Floats::load_unaligned(near + at);
-      all &= bits((box - old <= limit) & (old - box <= limit)) | bits(box == old);
+      good[part] = bits((box - old <= limit) & (old - box <= limit)) | bits(box == old);
+      all &= good[part];
       box.store_unaligned(to + at);
     }
-    for (std::size_t k = i; k < i + kLanes && all != kAllRows; ++k) look(k);
+    if (all == kAllRows) continue;
+    for_each_bad_box(good,
+                     [&](unsigned box) { left[found++] = static_cast<std::uint32_t>(i + box); });
   }
   for (; i < count && found <= most; ++i) {
     for (std::size_t c = 0; c < kFloats; ++c) to[i * kFloats + c] = boxes[i * kFloats + c];
@@ -237,13 +270,17 @@ std::uint32_t beyond(const float* boxes, const float* around, std::size_t count,
   };
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) {
+    Mask16 good[kFloats];
     Mask16 all = kAllRows;
     for (std::size_t part = 0; part < kFloats; ++part) {
       const Floats end = Floats::load_unaligned(boxes + i * kFloats + part * kLanes);
       const std::size_t order = part % kOrders * kLanes;
-      all &= bits((Floats::load(least + order) <= end) & (end <= Floats::load(most + order)));
+      good[part] = bits((Floats::load(least + order) <= end) & (end <= Floats::load(most + order)));
+      all &= good[part];
     }
-    for (std::size_t k = i; k < i + kLanes && all != kAllRows; ++k) look(k);
+    if (all == kAllRows) continue;
+    for_each_bad_box(good,
+                     [&](unsigned box) { out[found++] = static_cast<std::uint32_t>(i + box); });
   }
   for (; i < count; ++i) look(i);
   return found;

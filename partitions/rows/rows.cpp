@@ -241,13 +241,19 @@ bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry
   entry_of = {first, static_cast<std::uint32_t>(ids)};
   if (ascending && ids == count && entries.number == nullptr) return true;
   if (!selection_.list.resize(ids)) return false;
-  std::fill(selection_.list.begin(), selection_.list.end(), kNoObject);
+  std::uint32_t* const table = selection_.list.data();
+  entry_of.table = table;
+  std::fill(table, table + ids, kNoObject);
+  if (ascending && entries.number == nullptr) {
+    std::uint32_t entry = 0;
+    for (const Key& key : entries.keys) table[key.id - first] = entry++;
+    return true;
+  }
   for (std::size_t j = 0; j < count; ++j) {
-    std::uint32_t& entry = selection_.list[entries.key(j).id - first];
+    std::uint32_t& entry = table[entries.key(j).id - first];
     if (entry != kNoObject) return false;
     entry = static_cast<std::uint32_t>(entries[j]);
   }
-  entry_of.table = selection_.list.data();
   return true;
 }
 

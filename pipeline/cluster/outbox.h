@@ -163,8 +163,13 @@ void Outbox<Content>::tell(std::uint32_t self, const Body& body, const Content& 
 template <typename Content>
 void Outbox<Content>::pack(std::uint32_t from, std::vector<Parcel>& parcels) {
   const auto by_receiver = [](const auto& a, const auto& b) { return a.to < b.to; };
-  std::stable_sort(held_.begin(), held_.end(), by_receiver);
-  std::stable_sort(gone_.begin(), gone_.end(), by_receiver);
+  // Between two ranks all are for the other.
+  const auto sort = [&](auto& entries) {
+    if (std::ranges::is_sorted(entries, by_receiver)) return;
+    std::stable_sort(entries.begin(), entries.end(), by_receiver);
+  };
+  sort(held_);
+  sort(gone_);
   names_.clear();
   contents_.clear();
   belongs_.clear();

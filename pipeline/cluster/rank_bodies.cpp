@@ -27,7 +27,7 @@ RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& opt
       names_(options.memory),
       flags_(options.memory),
       table_(options.memory),
-      kept_(options.memory) {}
+      sorted_(options.memory) {}
 
 // ---- what the rank is told
 
@@ -205,10 +205,9 @@ std::uint8_t RankBodies::flags_of(const Aabb& box, bool owned) const noexcept {
   unsigned flags = owned ? unsigned{kOwned} : 0U;
   if (is_within(box)) return static_cast<std::uint8_t>(flags);
   flags |= kCrosses;
-  constexpr std::array kBelow{kBelowX, kBelowY, kBelowZ};
+  constexpr std::array kBelowOf{kBelowX, kBelowY, kBelowZ};
   for (int axis = 0; axis < 3; ++axis) {
-    if (box.min[axis] < region_.min[axis]) flags |= kBelow[static_cast<std::size_t>(axis)];
-    if (box.min[axis] > region_.max[axis]) flags |= kAbove;
+    if (box.min[axis] < region_.min[axis]) flags |= kBelowOf[static_cast<std::size_t>(axis)];
   }
   return static_cast<std::uint8_t>(flags);
 }
@@ -340,57 +339,31 @@ Status RankBodies::apply_changes() {
 // ---- pairs, and the work that they make
 
 /// A pair is reported where its boxes meet: on each axis at the larger of their low corners. That
-/// is below the region where both are, and above it where one is. Of two boxes of which one lies
-/// within the region it is neither.
-void RankBodies::keep_reported() {
-  const Pair* const found = found_.begin();
-  const std::size_t count = found_.size();
-  kept_.resize(count);
-  Pair* out = kept_.data();
-  const auto meets_elsewhere = [flags = flags_.data()](const Pair& pair) -> unsigned {
-    const unsigned a = flags[pair.first];
-    const unsigned b = flags[pair.second];
-    return (a & b & (kBelowX | kBelowY | kBelowZ)) | ((a | b) & kAbove);
-  };
-  constexpr std::size_t kTogether = 16;
-  for (std::size_t begin = 0; begin < count; begin += kTogether) {
-    const std::size_t end = std::min(count, begin + kTogether);
-    unsigned some = 0;
-    for (std::size_t i = begin; i < end; ++i) some |= meets_elsewhere(found[i]);
-    if (some == 0) {
-      out = std::copy(found + begin, found + end, out);
-      continue;
-    }
-    for (std::size_t i = begin; i < end; ++i) {
-      *out = found[i];
-      out += meets_elsewhere(found[i]) == 0 ? 1 : 0;
-    }
-  }
-  kept_.resize(static_cast<std::size_t>(out - kept_.data()));
+/// is below the region where both are. It is never above: what a rank holds meets its region.
+std::size_t RankBodies::put_reported_first() noexcept {
+  return found_.partition([flags = flags_.data()](const Pair& pair) {
+    const unsigned below = flags[pair.first] & kBelow;
+    return below == 0 || (below & flags[pair.second]) == 0;
+  });
 }
 
 void RankBodies::sort_by_names() {
   const auto names_of = [this](const Pair& pair) {
     return *NamePairs::Iterator(&pair, names_.data());
   };
-  std::ranges::sort(kept_, {}, names_of);
+  std::ranges::sort(sorted_, {}, names_of);
 }
 
 Status RankBodies::find_pairs(Order order) {
   reported_ = {};
   const Status status = partition_.self_pairs(found_);
   if (status != Status::ok) return status;
-  if (alone_ && order == Order::fast) {
-    reported_ = found_.pairs();
-    return Status::ok;
-  }
-  if (alone_) {
-    kept_.assign(found_.begin(), found_.end());
-  } else {
-    keep_reported();
-  }
-  if (order == Order::canonical) sort_by_names();
-  reported_ = kept_;
+  reported_ = found_.pairs();
+  if (!alone_) reported_ = reported_.first(put_reported_first());
+  if (order == Order::fast) return Status::ok;
+  sorted_.assign(reported_.begin(), reported_.end());
+  sort_by_names();
+  reported_ = sorted_;
   return Status::ok;
 }
 

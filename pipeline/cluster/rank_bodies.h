@@ -71,11 +71,11 @@ class RankBodies {
     kCrosses = 2,  // its box does not lie within this rank's region
     kMoved = 4,    // in moved_
     kRemoved = 8,  // to be told to others and dropped
-    // Of boxes that cross: where the low corner is beside the region.
+    // Of boxes that cross: where the low corner is below the region.
     kBelowX = 16,
     kBelowY = 32,
     kBelowZ = 64,
-    kAbove = 128,  // on some axis
+    kBelow = kBelowX | kBelowY | kBelowZ,
   };
   /// A body whose box is not the one that others were last told.
   struct Moved {
@@ -93,7 +93,7 @@ class RankBodies {
   [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::vector<Key>& keys) const;
   void find_beyond(const BoxView& boxes);
   [[nodiscard]] bool note_moves(std::span<const Key> keys, const BoxView& boxes);
-  void keep_reported();
+  [[nodiscard]] std::size_t put_reported_first() noexcept;
   void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
@@ -115,7 +115,7 @@ class RankBodies {
   std::vector<BodyName> removed_;
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
-  std::pmr::vector<Pair> kept_;     // of those found, where not all are reported as they come
+  std::pmr::vector<Pair> sorted_;   // of those found, where they are not reported as they come
   std::span<const Pair> reported_;  // in one of these
   Outbox<Aabb> outbox_;
   BodyChanges<Aabb, Aabb> changes_;
