@@ -631,6 +631,7 @@ Status Rows::bounds(Key key, Aabb& box) const noexcept {
 void Rows::read_bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
   const RowView rows = view();
   for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i + kFetchAhead < keys.size()) fetch_row(keys_.row_of(keys[i + kFetchAhead].id));
     boxes[i] = stored_box(rows.column, keys_.row_of(keys[i].id));
   }
 }

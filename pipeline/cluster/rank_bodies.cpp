@@ -101,12 +101,22 @@ void RankBodies::find_beyond(const BoxView& boxes) {
 /// of this rank's own.
 bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   asked_.clear();
-  for (const Key key : keys) {
-    if (key.id >= flags_.size()) return false;
+  const auto look = [this](Key key) {
     const std::uint8_t flags = flags_[key.id];
-    if (flags == kOwned) continue;
     if ((flags & (kOwned | kRemoved)) != kOwned) return false;
-    if ((flags & kMoved) == 0) asked_.push_back(key);
+    if (flags != kOwned && (flags & kMoved) == 0) asked_.push_back(key);
+    return true;
+  };
+  constexpr std::size_t kTogether = 8;
+  for (std::size_t i = 0; i < keys.size(); i += kTogether) {
+    const std::span<const Key> some = keys.subspan(i, std::min(kTogether, keys.size() - i));
+    // Most have no other flag: such are told together, without a branch for each.
+    ObjectId last = 0;
+    for (const Key key : some) last = std::max(last, key.id);
+    if (last >= flags_.size()) return false;
+    unsigned other = 0;
+    for (const Key key : some) other |= flags_[key.id] ^ unsigned{kOwned};
+    if (other != 0 && !std::ranges::all_of(some, look)) return false;
   }
   find_beyond(boxes);
   for (const std::uint32_t i : beyond_) {
@@ -300,6 +310,7 @@ Status RankBodies::receive(std::span<const Parcel> parcels) {
 
 void RankBodies::take(const BodyNews<Aabb>& news) {
   for (std::size_t i = 0; i < news.names.size(); ++i) {
+    if (i + kFetchAhead < news.names.size()) table_.fetch(news.names[i + kFetchAhead]);
     const bool belongs = news.belongs[i] != 0;
     const std::uint32_t id = table_.find(news.names[i]);
     if (id == NameTable::kNone) {
