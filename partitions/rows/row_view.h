@@ -29,6 +29,9 @@ struct RowView {
   bool spheres = false;
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
+  bool environments = false;             ///< or false if all share one
+  /// Another number than before once a row has got another object, or an object another filter.
+  std::uint64_t arrangement = 0;
 };
 
 /// What becomes of a hit between query q and candidate c.

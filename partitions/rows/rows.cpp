@@ -137,6 +137,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   if (!make_room(keys_.size() + count)) return Status::out_of_memory;
   if (count == 0) return Status::ok;
   const std::size_t first = pool_.rows();
+  ++arrangement_;
   pool_.append(count);
   keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
   note_stale(std::span<const Key>(keys));
@@ -459,6 +460,7 @@ bool Rows::make_room(std::size_t objects) noexcept {
 }
 
 void Rows::compact() noexcept {
+  ++arrangement_;
   const PoolColumns columns(pool_);
   std::size_t to = 0;
   for (std::size_t from = 0; from < pool_.rows(); ++from) {
@@ -567,6 +569,7 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
     const ObjectId id = keys[i].id;
     if (filters_.of(id) == filters[i]) continue;
     filters_.set(id, filters[i]);
+    ++arrangement_;
     stale_.add(id);
     changed_ = true;
   }
@@ -656,6 +659,8 @@ RowView Rows::view() const noexcept {
   view.spheres = pool_.volume() == Volume::sphere;
   view.id = pool_.ids();
   view.filter = filters_.data();
+  view.environments = filters_.has_environments();
+  view.arrangement = arrangement_;
   return view;
 }
 
@@ -682,11 +687,13 @@ void Rows::settle(bool track_moves) noexcept {
 }
 
 void Rows::disorder() noexcept {
+  ++arrangement_;
   regions_ = {};
   changed_ = true;
 }
 
 void Rows::reorder(std::span<const std::uint32_t> order, Column<float>& spare) noexcept {
+  ++arrangement_;
   const Execution execution = execution_for(order.size());
   pool_.reorder(order, spare, execution);
   for_rows_by_target({pool_.ids(), order.size()}, keys_.slot_count(), execution,
@@ -695,6 +702,7 @@ void Rows::reorder(std::span<const std::uint32_t> order, Column<float>& spare) n
 
 void Rows::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
                         Column<float>& spare) noexcept {
+  ++arrangement_;
   pool_.reorder_tail(begin, order, spare);
   for (std::size_t row = begin; row < pool_.rows(); ++row) {
     keys_.set_row(pool_.ids()[row], static_cast<std::uint32_t>(row));
@@ -702,6 +710,7 @@ void Rows::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
 }
 
 void Rows::move_to_end(std::span<const std::uint32_t> rows) noexcept {
+  ++arrangement_;
   const PoolColumns columns(pool_);
   for (const std::uint32_t row : rows) {
     const std::size_t to = pool_.rows();

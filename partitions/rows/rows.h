@@ -187,6 +187,7 @@ class Rows {
   mutable ChangeList moved_;
   mutable RowSelection selection_;
   bool changed_ = false;
+  std::uint64_t arrangement_ = 1;  // see RowView
 };
 
 }  // namespace winnow

@@ -5,6 +5,7 @@
 #include "partitions/tree/hits.wide.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
+#include "simd/lanes/shared_bits.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -26,6 +27,7 @@ class BlockPairs {
       const float empty = s < 3 ? __builtin_inff() : -__builtin_inff();
       for (std::uint32_t i = end - begin; i < kLanes; ++i) own_[s][i] = empty;
     }
+    if constexpr (Filtered) note_filters(end - begin);
     for (int a = 0; a < 3; ++a) {
       low_[a] = reduce_min(Floats::load(own_[a]));
       high_[a] = reduce_max(Floats::load(own_[3 + a]));
@@ -70,6 +72,23 @@ class BlockPairs {
   // Blocks of neighbouring lines lie in six columns each, anywhere: they are fetched so many tests
   // before their turn.
   static constexpr unsigned kAhead = 6;
+
+  /// What the block's objects have in their filters.
+  void note_filters(std::uint32_t rows) {
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const std::uint32_t id = i < rows ? rows_.id[at_ + i] : ~0U;
+      own_layers_[i] = id == ~0U ? 0 : rows_.filter[id].layers;
+      own_masks_[i] = id == ~0U ? 0 : rows_.filter[id].mask;
+    }
+  }
+
+  /// Those of the own rows in `mask` that an object's filter lets meet it.
+  [[nodiscard]] Mask16 passing_own_rows(Mask16 mask, std::uint32_t id) const {
+    const FilterRange q = filters_.of(id);
+    if (rows_.environments) return passing_rows(rows_, at_, mask, q);
+    return mask & sharing(Uints::load(own_layers_), q.mask) &
+           sharing(Uints::load(own_masks_), q.layers);
+  }
 
   /// Of two rows of the block the one in front asks.
   void test_self() {
@@ -143,7 +162,7 @@ class BlockPairs {
       }
       const std::uint32_t id = row_id[hit_row_[k]];
       Mask16 mask = hit_mask_[k];
-      if constexpr (Filtered) mask = passing_rows(rows_, at_, mask, filters_.of(id));
+      if constexpr (Filtered) mask = passing_own_rows(mask, id);
       cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
     }
     sink_.cursor = cursor;
@@ -170,6 +189,8 @@ class BlockPairs {
   PairSink& sink_;
   const AskingFilters filters_;
   alignas(64) float own_[6][kLanes];
+  alignas(64) std::uint32_t own_layers_[kLanes];
+  alignas(64) std::uint32_t own_masks_[kLanes];
   std::uint32_t at_ = 0;
   std::uint32_t behind_ = 0;
   std::uint32_t next_ = 0;  // block of rows that is not listed yet

@@ -38,6 +38,7 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
 }  // namespace
 
 bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
+  filters_of_ = 0;
   TreeShape shape = levels_over(blocks);
   shape.first_block = static_cast<std::uint32_t>(first_block);
   shape_.clear();
@@ -85,6 +86,7 @@ TreeView BlockTree::view(const RowView& rows) const noexcept {
 void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexcept {
   const TreeView tree = view(rows);
   const BlockTreeKernels& kernels = block_tree_kernels();
+  const bool filters = has_filters() && filters_of_ != rows.arrangement;
   const std::size_t tasks = (blocks() + kLeavesPerTask - 1) / kLeavesPerTask;
   execution.for_each(tasks, [&](std::size_t task) {
     const std::size_t begin = task * kLeavesPerTask;
@@ -92,12 +94,13 @@ void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexc
     const auto first = static_cast<std::uint32_t>(begin);
     const auto last = static_cast<std::uint32_t>(end);
     if (!nodes_.empty()) kernels.refit_leaves(tree, first, last);
-    if (has_filters()) refit_leaf_filters(tree, first, last);
+    if (filters) refit_leaf_filters(tree, first, last);
   });
   for (std::uint32_t level = 1; level < tree.levels; ++level) {
     if (!nodes_.empty()) kernels.refit_nodes(tree, level, 0, tree.count[level]);
-    if (has_filters()) refit_node_filters(tree, level, 0, tree.count[level]);
+    if (filters) refit_node_filters(tree, level, 0, tree.count[level]);
   }
+  filters_of_ = rows.arrangement;
 }
 
 void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept {

@@ -36,7 +36,8 @@ class BlockTree {
   /// refused.
   [[nodiscard]] bool reserve(std::size_t blocks, Pages pages) noexcept;
 
-  /// Recomputes every node. O(blocks).
+  /// Recomputes every node, but what nodes know of filters only where rows were rearranged since
+  /// that was done last. O(blocks).
   void refit_all(const RowView& rows, const Execution& execution) noexcept;
 
   /// Recomputes the nodes above the given leaves (ascending, without repeats; overwritten).
@@ -81,7 +82,8 @@ class BlockTree {
 
   Column<float> nodes_;
   Column<std::uint32_t> filters_;
-  Column<TreeShape> shape_;  // one; none while the tree covers nothing
+  Column<TreeShape> shape_;       // one; none while the tree covers nothing
+  std::uint64_t filters_of_ = 0;  // the arrangement of rows that all filters are right for
 };
 
 }  // namespace winnow

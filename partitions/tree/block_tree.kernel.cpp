@@ -5,6 +5,7 @@
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/rows.h"
+#include "simd/lanes/shared_bits.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -160,9 +161,9 @@ bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 i
   return true;
 }
 
-/// Pairs of rows with filters, group by group: what filters keep apart is not entered.
-bool find_filtered_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
-                         PairSink& sink) {
+/// Pairs of rows of many environments, group by group: what filters keep apart is not entered.
+bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
+                                PairSink& sink) {
   LeafPairs pairs(tree, sink);
   for (std::uint32_t g = begin; g < end; ++g) {
     const std::uint32_t last =
@@ -192,17 +193,29 @@ bool find_filtered_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_
   return pairs.finish();
 }
 
-/// Pairs of rows without filters, leaf by leaf.
-bool find_plain_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
-                      PairSink& sink) {
-  BlockPairs<false> pairs(tree.rows, sink);
+/// Those of 16 nodes that may hold something that `own` may meet, of one environment.
+[[gnu::always_inline]] inline Mask16 nodes_that_meet(const NodeFilters& nodes,
+                                                     std::uint32_t first_node,
+                                                     const FilterRange& own) {
+  return sharing(Uints::load_unaligned(nodes.layers + first_node), own.mask) &
+         sharing(Uints::load_unaligned(nodes.mask + first_node), own.layers);
+}
+
+/// Pairs of rows without filters, or of one environment, leaf by leaf.
+template <bool Filtered>
+bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
+                          PairSink& sink) {
+  BlockPairs<Filtered> pairs(tree.rows, sink);
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
     if (!pairs.start(row, row + kLanes)) continue;
+    const FilterRange own = range_of(tree.filters[0], leaf);
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
-      return overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
+      const Mask16 met =
+          overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
+      return Filtered ? met & nodes_that_meet(tree.filters[level], first_node, own) : met;
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
@@ -217,8 +230,9 @@ bool find_plain_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t e
 }
 
 bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return tree.rows.filter != nullptr ? find_filtered_pairs(tree, begin, end, sink)
-                                     : find_plain_pairs(tree, begin, end, sink);
+  if (tree.rows.filter == nullptr) return find_pairs_of_leaves<false>(tree, begin, end, sink);
+  return tree.rows.environments ? find_pairs_of_environments(tree, begin, end, sink)
+                                : find_pairs_of_leaves<true>(tree, begin, end, sink);
 }
 
 /// The boxes of a batch on their way down the tree together.
