@@ -5,7 +5,6 @@
 #include "partitions/tree/hits.wide.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/shared_bits.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

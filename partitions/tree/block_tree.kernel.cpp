@@ -5,7 +5,6 @@
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/rows.h"
-#include "simd/lanes/shared_bits.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -193,14 +192,6 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
-/// Those of 16 nodes that may hold something that `own` may meet, of one environment.
-[[gnu::always_inline]] inline Mask16 nodes_that_meet(const NodeFilters& nodes,
-                                                     std::uint32_t first_node,
-                                                     const FilterRange& own) {
-  return sharing(Uints::load_unaligned(nodes.layers + first_node), own.mask) &
-         sharing(Uints::load_unaligned(nodes.mask + first_node), own.layers);
-}
-
 /// Pairs of rows without filters, or of one environment, leaf by leaf.
 template <bool Filtered>
 bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
@@ -215,7 +206,7 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
       ++sink.tests;
       const Mask16 met =
           overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
-      return Filtered ? met & nodes_that_meet(tree.filters[level], first_node, own) : met;
+      return Filtered ? passing_nodes(tree.filters[level], first_node, met, own) : met;
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);

@@ -19,6 +19,7 @@ struct NodeFilters {
   std::uint32_t* first_environment = nullptr;
   std::uint32_t* last_environment = nullptr;
   std::uint32_t* alike = nullptr;  ///< 1 if all objects have the same filter
+  bool environments = false;       ///< or false if all objects share one
 };
 
 /// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and

@@ -7,6 +7,7 @@
 #include "partitions/tree/block_tree.kernel.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
+#include "simd/lanes/shared_bits.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -56,13 +57,18 @@ static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, 
   return passing_rows(rows, first_row, candidates, range_of(q));
 }
 
-/// Those of the candidate nodes from `first_node` on that may hold something that `q` may meet.
+/// Those of the candidates among 16 nodes from `first_node` on that may hold something that `q` may
+/// meet.
 static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
                                    Mask16 candidates, const FilterRange& q) {
+  const Mask16 met = candidates &
+                     sharing(Uints::load_unaligned(nodes.layers + first_node), q.mask) &
+                     sharing(Uints::load_unaligned(nodes.mask + first_node), q.layers);
+  if (!nodes.environments) return met;
   Mask16 passed = 0;
-  for (Mask16 left = candidates; left != 0; left &= left - 1) {
-    const bool met = may_meet(range_of(nodes, first_node + first(left)), q);
-    passed |= static_cast<Mask16>(met) << first(left);
+  for (Mask16 left = met; left != 0; left &= left - 1) {
+    const bool both = may_meet(range_of(nodes, first_node + first(left)), q);
+    passed |= static_cast<Mask16>(both) << first(left);
   }
   return passed;
 }

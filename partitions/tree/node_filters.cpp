@@ -61,7 +61,11 @@ bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
     const std::size_t stride = padded_nodes(shape.count[level]);
     NodeFilters& nodes = shape.filters[level];
-    nodes = {at, at + stride, at + 2 * stride, at + 3 * stride, at + 4 * stride};
+    nodes = {.layers = at,
+             .mask = at + stride,
+             .first_environment = at + 2 * stride,
+             .last_environment = at + 3 * stride,
+             .alike = at + 4 * stride};
     for (std::size_t i = shape.count[level]; i < stride; ++i) {
       Joined{}.store(nodes, static_cast<std::uint32_t>(i));
     }
