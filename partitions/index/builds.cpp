@@ -163,7 +163,7 @@ Status SpatialIndex::build_flat() {
     rows_.reorder({order.data(), rows}, spare_);
     regions.sorted = rows;
   }
-  tail_changed_ = true;
+  order_changed_ = true;
   if (!refit_trees()) return Status::out_of_memory;
   regions.built = true;
   ++builds_;

@@ -5,6 +5,7 @@
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -189,26 +190,41 @@ bool SpatialIndex::refit_trees() noexcept {
 bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
                          BlockTree::Nodes nodes) noexcept {
   const RowView rows = rows_.view();
+  const bool filters = rows_.filters().in_use() && blocks != 0;
+  const std::size_t blocks_before = tree.blocks();
   const bool reshape =
-      blocks != tree.blocks() || tree.has_filters() != (rows_.filters().in_use() && blocks != 0);
-  const bool of_tail = &tree == &tree_ || structure_->is_flat();
-  const bool tail_changed = tail_changed_ && of_tail;
-  if (reshape || tail_changed || rows_.stale().all()) {
-    if (reshape && !tree.cover(first, blocks, nodes)) {
-      rows_.regions().built = false;
-      return false;
-    }
-    tree.refit_all(rows, rows_.execution_for(rows_.pool().rows()));
-    if (tail_changed) tail_changed_ = false;
-    return true;
+      tree.has_filters() != filters || (blocks != blocks_before && !tree.stretch(blocks));
+  if (reshape && !tree.cover(first, blocks, nodes)) {
+    rows_.regions().built = false;
+    return false;
   }
+  const bool has_tail = &tree == &tree_ || structure_->is_flat();
+  const bool tail_changed = has_tail && std::exchange(tail_changed_, false);
+  const bool order_changed = has_tail && std::exchange(order_changed_, false);
+  const auto refit_all = [&] {
+    tree.refit_all(rows, rows_.execution_for(rows_.pool().rows()));
+    return true;
+  };
+  if (reshape || order_changed || rows_.stale().all()) return refit_all();
+  // Rows of the tail were sorted, and blocks at the end came or went.
+  std::size_t changed_from = std::min(blocks, blocks_before) - (blocks < blocks_before ? 1 : 0);
+  if (tail_changed) {
+    changed_from = std::min(changed_from, rows_.regions().ordered / kBlockRows - first);
+  }
+  const std::size_t behind = blocks - changed_from;
+  constexpr std::size_t kMost = 4;  // of so many blocks one: all together take less
+  if (kMost * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
-  if (!leaves.start(rows_.stale().ids().size()) || !leaves.reserve_bits(blocks)) return false;
+  if (!leaves.start(rows_.stale().ids().size() + behind) || !leaves.reserve_bits(blocks)) {
+    rows_.regions().built = false;
+    return false;
+  }
   for (const ObjectId id : rows_.stale().ids()) {
     if (!rows_.keys().is_live(id)) continue;
     const std::size_t block = rows_.keys().row_of(id) / kBlockRows;
     if (block >= first && block - first < blocks) leaves.add(block - first);
   }
+  for (std::size_t block = changed_from; block < blocks; ++block) leaves.add(block);
   leaves.sort(blocks);
   tree.refit(rows, leaves.entries());
   return true;

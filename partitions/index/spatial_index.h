@@ -199,14 +199,15 @@ class SpatialIndex {
   Column<Held> waiting_;            // to be taken, with what was reserved for them
   mutable float leaf_edge_ = 0.0F;  // of a typical block
   mutable std::atomic<bool> queries_stale_{true};
-  mutable std::atomic<std::size_t> asked_{0};  // refreshes for such queries since the last build
+  mutable std::atomic<std::size_t> asked_{0};    // refreshes for such queries since the last build
   mutable std::atomic<bool> questioned_{false};  // in any way since the last refresh
 
   float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
   std::size_t known_wide_ = 0;   // blocks that are wide, but not by objects that have jumped
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
-  bool tail_changed_ = false;
-  bool reserved_ = false;  // memory is there to stay, whatever the structure
+  bool tail_changed_ = false;    // rows of it stand elsewhere
+  bool order_changed_ = false;   // so do others
+  bool reserved_ = false;        // memory is there to stay, whatever the structure
 
   Column<float> spare_;               // what columns are permuted through
   Column<std::uint32_t> tail_order_;  // while the tail is sorted

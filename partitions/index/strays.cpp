@@ -113,7 +113,7 @@ Status SpatialIndex::take_out_strays() {
   if (!strays.list.empty()) {
     // The rows of a plan have to stay in their order, and these are in none.
     give_up_plan();
-    tail_changed_ = true;
+    order_changed_ = true;
     if (!move_to_tail(strays.entries()) || !sort_tail() || !refit_trees()) {
       return Status::out_of_memory;
     }

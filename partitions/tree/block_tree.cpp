@@ -35,6 +35,17 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
   return total;
 }
 
+// Empties nodes [begin, end) of a level.
+void empty_nodes(const TreeShape& shape, std::uint32_t level, std::uint32_t begin,
+                 std::uint32_t end) noexcept {
+  if (begin >= end) return;
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  for (std::size_t c = 0; c < 6 && shape.node[level][c] != nullptr; ++c) {
+    std::fill(shape.node[level][c] + begin, shape.node[level][c] + end, c < 3 ? inf : -inf);
+  }
+  if (shape.filters[level].layers != nullptr) empty_filters(shape.filters[level], begin, end);
+}
+
 }  // namespace
 
 bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
@@ -48,6 +59,21 @@ bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) 
   if (first_block == 0 && blocks == 0) return true;
   return (nodes == Nodes::filters || lay_boxes(shape)) &&
          (nodes == Nodes::boxes || lay_out_filters(shape, filters_)) && shape_.push_back(shape);
+}
+
+bool BlockTree::stretch(std::size_t blocks) noexcept {
+  if (shape_.empty() || blocks == 0) return false;
+  TreeShape& shape = shape_[0];
+  const TreeShape wanted = levels_over(blocks);
+  if (wanted.levels != shape.levels) return false;
+  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+    if (padded_nodes(wanted.count[level]) != padded_nodes(shape.count[level])) return false;
+  }
+  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+    empty_nodes(shape, level, wanted.count[level], shape.count[level]);
+    shape.count[level] = wanted.count[level];
+  }
+  return true;
 }
 
 bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {

@@ -32,6 +32,11 @@ class BlockTree {
   [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
                            Nodes nodes = Nodes::boxes) noexcept;
 
+  /// Covers another number of blocks, not 0, from the same one on, if their nodes have room where
+  /// those of now are. Nodes above the blocks that come, or above the last one, are then to be
+  /// refitted. False, and unchanged, if they have not.
+  [[nodiscard]] bool stretch(std::size_t blocks) noexcept;
+
   /// Makes room for the boxes of a tree over so many blocks. False, and unchanged, if memory is
   /// refused.
   [[nodiscard]] bool reserve(std::size_t blocks, Pages pages) noexcept;

@@ -66,12 +66,14 @@ bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
              .first_environment = at + 2 * stride,
              .last_environment = at + 3 * stride,
              .alike = at + 4 * stride};
-    for (std::size_t i = shape.count[level]; i < stride; ++i) {
-      Joined{}.store(nodes, static_cast<std::uint32_t>(i));
-    }
+    empty_filters(nodes, shape.count[level], static_cast<std::uint32_t>(stride));
     at += 5 * stride;
   }
   return true;
+}
+
+void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t end) noexcept {
+  for (std::uint32_t i = begin; i < end; ++i) Joined{}.store(nodes, i);
 }
 
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept {

@@ -17,6 +17,9 @@ namespace winnow {
 /// False if memory is refused.
 [[nodiscard]] bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept;
 
+/// Makes nodes [begin, end) such that nothing meets them.
+void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t end) noexcept;
+
 /// Recomputes the filters of nodes [begin, end) of level 0 from those of the rows.
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept;
 
