@@ -16,6 +16,12 @@ namespace {
   return true;
 }
 
+/// Of four keys.
+[[nodiscard]] bool follow_each_other(std::span<const Key> keys) noexcept {
+  const ObjectId first = keys[0].id;
+  return ((keys[1].id - first - 1) | (keys[2].id - first - 2) | (keys[3].id - first - 3)) == 0;
+}
+
 }  // namespace
 
 RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options)
@@ -102,21 +108,23 @@ void RankBodies::find_beyond(const BoxView& boxes) {
 bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   asked_.clear();
   const auto look = [this](Key key) {
+    if (key.id >= flags_.size()) return false;
     const std::uint8_t flags = flags_[key.id];
     if ((flags & (kOwned | kRemoved)) != kOwned) return false;
     if (flags != kOwned && (flags & kMoved) == 0) asked_.push_back(key);
     return true;
   };
-  constexpr std::size_t kTogether = 8;
+  constexpr std::size_t kTogether = 4;
   for (std::size_t i = 0; i < keys.size(); i += kTogether) {
     const std::span<const Key> some = keys.subspan(i, std::min(kTogether, keys.size() - i));
-    // Most have no other flag: such are told together, without a branch for each.
-    ObjectId last = 0;
-    for (const Key key : some) last = std::max(last, key.id);
-    if (last >= flags_.size()) return false;
-    unsigned other = 0;
-    for (const Key key : some) other |= flags_[key.id] ^ unsigned{kOwned};
-    if (other != 0 && !std::ranges::all_of(some, look)) return false;
+    if (some.size() == kTogether && follow_each_other(some)) {
+      // Most have no other flag.
+      std::array<std::uint8_t, kTogether> flags{};
+      if (some.back().id >= flags_.size()) return false;
+      std::copy_n(flags_.begin() + some.front().id, kTogether, flags.begin());
+      if (flags == std::array<std::uint8_t, kTogether>{kOwned, kOwned, kOwned, kOwned}) continue;
+    }
+    if (!std::ranges::all_of(some, look)) return false;
   }
   find_beyond(boxes);
   for (const std::uint32_t i : beyond_) {
