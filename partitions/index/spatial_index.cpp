@@ -84,13 +84,20 @@ Status SpatialIndex::absorb_changes(bool all) {
   const std::uint64_t builds = builds_;
   const Status status = look_for_strays();
   if (status != Status::ok || builds_ != builds) return status;
-  // What nobody asked after did not wear anything, and is no step towards a build.
-  if (!questioned_.exchange(false, std::memory_order_relaxed)) return Status::ok;
+  if (!is_next_frame()) return Status::ok;
   tail_growth_.note(tail());
   wear_growth_.note(excess_tests());
   departures_.note_refresh();
   go_on_planning();
   return Status::ok;
+}
+
+// A second refresh, of a few more changes that nobody asked for in between, is none: what a build is
+// expected by grows from frame to frame.
+bool SpatialIndex::is_next_frame() const noexcept {
+  const ChangeList& stale = rows_.stale();
+  const bool asked = questioned_.exchange(false, std::memory_order_relaxed);
+  return asked || stale.all() || 4 * stale.ids().size() >= rows_.size();
 }
 
 // Where everything jumped, one query of a tree in the old order would cost many builds: leaves tell

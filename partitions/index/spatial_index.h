@@ -163,6 +163,7 @@ class SpatialIndex {
   void take_next_structure() noexcept;
   Status build_flat();
   Status absorb_changes(bool all);
+  [[nodiscard]] bool is_next_frame() const noexcept;
   [[nodiscard]] bool is_torn() const noexcept;
   [[nodiscard]] bool collect_misfits(bool all, std::size_t limit) noexcept;
   [[nodiscard]] std::size_t ordered_blocks() const noexcept;

@@ -1,6 +1,7 @@
 #include "core/memory/key_table.h"
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <random>
 #include <set>
@@ -82,6 +83,35 @@ TEST(KeyTable, tells_of_many_keys_whether_all_are_valid_and_ascend) {
   table.release(keys[20].id);
   EXPECT_FALSE(look_at(keys).first);
   EXPECT_TRUE(look_at({keys.begin(), keys.begin() + 20}).first);
+}
+
+TEST(KeyTable, tells_of_many_keys_what_it_tells_of_each) {
+  CountingMemory memory;
+  KeyTable table(&memory);
+  const std::vector<Key> keys = fill(table, 300);
+  for (const Key key : keys) {
+    if (key.id % 41 == 7) table.release(key.id);
+  }
+  std::mt19937 random(3);
+  for (int round = 0; round < 2000; ++round) {
+    // All but a few of a stretch, of which some may be stale, foreign or out of order.
+    const std::uint32_t gaps = 2 + random() % 20;
+    std::vector<Key> some;
+    for (std::size_t i = random() % 290; i < keys.size() && some.size() < 40; ++i) {
+      if (random() % gaps != 0 && (round % 2 == 0 || table.is_valid(keys[i]))) {
+        some.push_back(keys[i]);
+      }
+    }
+    if (!some.empty() && round % 5 == 0) some[random() % some.size()].stamp ^= 2U;
+    if (!some.empty() && round % 7 == 0) some.back().id = 300 + random() % 3;
+    if (!some.empty() && round % 3 == 0)
+      std::swap(some[random() % some.size()], some[random() % some.size()]);
+    const KeyTable::RunOfKeys run = table.look_at(some);
+    const auto is_valid = [&](Key key) { return table.is_valid(key); };
+    EXPECT_EQ(run.valid, std::ranges::all_of(some, is_valid));
+    const auto falls = [](Key a, Key b) { return a.id >= b.id; };
+    EXPECT_EQ(run.ascending, std::ranges::adjacent_find(some, falls) == some.end());
+  }
 }
 
 TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {

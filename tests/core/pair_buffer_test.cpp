@@ -2,6 +2,7 @@
 #include <winnow/core/pair_buffer.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "tests/support/counting_memory.h"
 
@@ -29,6 +30,28 @@ TEST(PairBuffer, keeps_its_memory_when_cleared) {
   EXPECT_EQ(memory.outstanding(), buffer.footprint().total().reserved);
   EXPECT_GE(buffer.footprint().results.reserved, 100 * sizeof(Pair));
   EXPECT_EQ(buffer.footprint().results.used, 0U);
+}
+
+TEST(PairBuffer, puts_the_pairs_first_that_are_asked_for_and_loses_none) {
+  for (const std::size_t count : {0U, 1U, 2U, 100U}) {
+    for (const ObjectId step : {1U, 2U, 7U, 1000U}) {
+      PairBuffer buffer;
+      std::vector<Pair> all;
+      for (ObjectId i = 0; i < count; ++i) {
+        all.push_back({i, i + 1});
+        ASSERT_TRUE(buffer.edit().push_back(all.back()));
+      }
+      const auto is_first = [step](const Pair& pair) { return pair.first % step != 0; };
+      const std::size_t first = buffer.partition(is_first);
+      EXPECT_EQ(first, static_cast<std::size_t>(std::ranges::count_if(all, is_first)));
+      const auto pairs = buffer.pairs();
+      EXPECT_TRUE(std::ranges::all_of(pairs.first(first), is_first));
+      EXPECT_TRUE(std::ranges::none_of(pairs.subspan(first), is_first));
+      std::vector<Pair> left(pairs.begin(), pairs.end());
+      std::ranges::sort(left);
+      EXPECT_EQ(left, all);
+    }
+  }
 }
 
 TEST(PairBuffer, takes_over_the_pairs_of_another) {

@@ -61,6 +61,34 @@ class PlannedBuilds : public Conformance {
   [[nodiscard]] static std::size_t count() { return scaled(1400); }
 };
 
+TEST(PlannedBuild, is_not_hastened_by_refreshes_that_nobody_asks_after) {
+  Drift drift(uniform_boxes(4000), 0.03F);
+  std::vector<Partition> partitions;
+  for (int i = 0; i < 2; ++i) partitions.emplace_back(linear_bvh());
+  std::vector<Key> keys(drift.boxes.size());
+  for (Partition& one : partitions) ASSERT_EQ(one.insert(drift.boxes, {}, keys), Status::ok);
+  // The first keys of the other one are as good: ids are the same.
+  std::vector<Key> others = keys;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    keys[i] = partitions[0].key_of(others[i].id);
+  }
+  PairBuffer pairs;
+  for (int frame = 0; frame < 2 * kFrames; ++frame) {
+    drift.go_on();
+    ASSERT_EQ(partitions[0].update(keys, drift.boxes), Status::ok);
+    ASSERT_EQ(partitions[1].update(others, drift.boxes), Status::ok);
+    // A few move once more.
+    ASSERT_EQ(partitions[1].refresh(), Status::ok);
+    const std::size_t few = 40;
+    ASSERT_EQ(partitions[1].update(std::span(others).first(few),
+                                   BoxView(std::span(drift.boxes).first(few))),
+              Status::ok);
+    for (const Partition& one : partitions) ASSERT_EQ(one.self_pairs(pairs), Status::ok);
+  }
+  EXPECT_GE(partitions[0].statistics().builds, 3U);
+  EXPECT_EQ(partitions[0].statistics().builds, partitions[1].statistics().builds);
+}
+
 TEST(PlannedBuild, is_taken_before_it_is_due) {
   for (const char* const name : {"FlatGrid", "HierarchicalGrid", "SweepAndPrune"}) {
     Drift drift(uniform_boxes(2000), 0.03F);

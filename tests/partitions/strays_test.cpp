@@ -70,6 +70,42 @@ TEST_P(StrayObjects, are_in_no_missing_pair) {
   }
 }
 
+class Newcomers : public Conformance {};
+
+// The tail grows and shrinks by a few blocks, is sorted and is moved from, with filters and
+// without.
+TEST_P(Newcomers, are_in_no_missing_pair_however_few_come_and_go) {
+  for (const bool filtered : {false, true}) {
+    World world(config());
+    const std::vector<Aabb> places = uniform_boxes(scaled(900));
+    std::vector<Key> keys = world.insert(places);
+    PairBuffer buffer;
+    Random random(12);
+    ASSERT_TRUE(world.agrees(buffer));
+    for (int frame = 0; frame < 50; ++frame) {
+      const std::size_t come = random.below(frame % 10 == 9 ? 60 : 12);
+      for (std::size_t i = 0; i < come; ++i) {
+        keys.push_back(world.insert(places[random.below(places.size())]));
+        if (filtered && i % 3 == 0) world.set_filter(keys.back(), {2, ~std::uint32_t{2}});
+      }
+      if (frame % 3 == 0) {
+        ASSERT_EQ(world.partition().refresh(), Status::ok);
+      }
+      for (std::size_t i = random.below(8); i > 0 && !keys.empty(); --i) {
+        std::swap(keys[random.below(keys.size())], keys.back());
+        world.remove(keys.back());
+        keys.pop_back();
+      }
+      for (std::size_t i = random.below(6); i > 0 && !keys.empty(); --i) {
+        world.update(keys[random.below(keys.size())], places[random.below(places.size())]);
+      }
+      ASSERT_TRUE(world.agrees(buffer)) << "frame " << frame << (filtered ? ", filtered" : "");
+    }
+    ASSERT_TRUE(world.holds_its_objects());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Newcomers, testing::ValuesIn(all_configs()));
 INSTANTIATE_TEST_SUITE_P(All, StrayObjects, testing::ValuesIn(all_configs()));
 
 }  // namespace

@@ -1,0 +1,127 @@
+// Boxes on their way into rows, and those that left where they were, box by box.
+
+#include <gtest/gtest.h>
+#include <winnow/simd/isa.h>
+#include "partitions/rows/box_input.kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/config.h"
+#include "tests/support/random.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr std::size_t kFloats = 6;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Six floats each; some reach to infinity.
+std::vector<float> some_boxes(Random& random, std::size_t count) {
+  std::vector<float> floats;
+  for (std::size_t i = 0; i < count; ++i) {
+    float box[kFloats];
+    for (int axis = 0; axis < 3; ++axis) {
+      box[axis] = static_cast<float>(random.uniform(-10.0, 10.0));
+      box[3 + axis] = box[axis] + static_cast<float>(random.uniform(0.0, 2.0));
+    }
+    if (i % 13 == 5) box[i % 3] = -kInfinity;
+    if (i % 17 == 3) box[3 + i % 3] = kInfinity;
+    floats.insert(floats.end(), box, box + kFloats);
+  }
+  return floats;
+}
+
+class BoxInput : public testing::TestWithParam<Isa> {};
+
+TEST_P(BoxInput, finds_the_boxes_that_do_not_lie_within_another) {
+  const IsaScope scope(GetParam());
+  Random random(1);
+  for (std::size_t count = 0; count < 120; ++count) {
+    const std::vector<float> boxes = some_boxes(random, count);
+    for (const float reach : {0.0F, 4.0F, 11.0F, 13.0F, kInfinity}) {
+      const float around[kFloats] = {-reach, -reach, -kInfinity, reach, kInfinity, reach};
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const float* const box = boxes.data() + i * kFloats;
+        bool inside = true;
+        for (int axis = 0; axis < 3; ++axis) {
+          inside = inside && around[axis] <= box[axis] && box[3 + axis] <= around[3 + axis];
+        }
+        if (!inside) expected.push_back(i);
+      }
+      std::vector<std::uint32_t> found(count);
+      found.resize(box_input_kernels().beyond(boxes.data(), around, count, found.data()));
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+TEST_P(BoxInput, copies_boxes_and_finds_those_that_are_not_near) {
+  const IsaScope scope(GetParam());
+  Random random(2);
+  for (std::size_t count = 0; count < 120; ++count) {
+    const std::vector<float> near = some_boxes(random, count);
+    std::vector<float> boxes = near;
+    for (float& end : boxes) end += static_cast<float>(random.uniform(-1.0, 1.0));
+    for (const float margin : {0.0F, 0.9F, 0.99F, 2.0F}) {
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        bool is_near = true;
+        for (std::size_t c = i * kFloats; c < (i + 1) * kFloats; ++c) {
+          is_near = is_near && (std::abs(boxes[c] - near[c]) <= margin || boxes[c] == near[c]);
+        }
+        if (!is_near) expected.push_back(i);
+      }
+      std::vector<float> to(boxes.size());
+      std::vector<std::uint32_t> left(count + 32);
+      left.resize(box_input_kernels().copy_near(boxes.data(), near.data(), to.data(), count, margin,
+                                                left.data(), static_cast<std::uint32_t>(count)));
+      EXPECT_EQ(left, expected);
+      EXPECT_EQ(to, boxes);
+    }
+  }
+}
+
+TEST_P(BoxInput, gives_rows_the_boxes_of_their_objects_and_leaves_others_alone) {
+  const IsaScope scope(GetParam());
+  Random random(3);
+  constexpr std::size_t kRows = 96;
+  for (int round = 0; round < 200; ++round) {
+    // Of ids from 10 on some have a box; rows hold any of them, or others, or none.
+    const std::vector<float> boxes = some_boxes(random, 60);
+    std::vector<std::uint32_t> table(80, ~0U);
+    const bool listed = round % 2 == 0;
+    for (std::uint32_t k = 0; listed && k < 60; ++k) table[k + k / 4] = k;
+    const BoxOfId box_of{10, listed ? 80U : 60U, listed ? table.data() : nullptr};
+    std::vector<std::uint32_t> ids(kRows + 32, ~0U);
+    for (std::uint32_t& id : ids) {
+      if (random.below(8) != 0) id = static_cast<std::uint32_t>(random.below(100));
+    }
+    std::vector<std::vector<float>> columns(kFloats, std::vector<float>(kRows + 16, 77.0F));
+    float* pointers[kFloats];
+    for (std::size_t c = 0; c < kFloats; ++c) pointers[c] = columns[c].data();
+    box_input_kernels().write_rows(boxes.data(), box_of, ids.data(), pointers, 16, kRows);
+    for (std::size_t row = 0; row < kRows + 16; ++row) {
+      const std::uint32_t k = ids[row] - 10;
+      const bool known = row >= 16 && row < kRows && k < box_of.ids;
+      const std::uint32_t number = !known ? ~0U : listed ? table[k] : k;
+      for (std::size_t c = 0; c < kFloats; ++c) {
+        float expected = 77.0F;
+        if (number != ~0U) {
+          constexpr float kMost = std::numeric_limits<float>::max();
+          expected = std::clamp(boxes[number * kFloats + c], -kMost, kMost);
+        }
+        ASSERT_EQ(columns[c][row], expected) << row << " " << c;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BoxInput,
+                         testing::ValuesIn(available_isas().begin(), available_isas().end()));
+
+}  // namespace
+}  // namespace winnow::test
