@@ -27,7 +27,7 @@ class Wanted {
   [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
     if (!filter_.by_object || candidates == 0) return candidates;
-    return passing_nodes(tree.filters[level], first_node, candidates, filter_.object);
+    return passing_nodes(tree, level, first_node, candidates, range_of(filter_.object));
   }
   [[nodiscard]] Mask16 rows(std::uint32_t first_row, Mask16 candidates) const {
     if (!filter_.by_object || candidates == 0) return candidates;

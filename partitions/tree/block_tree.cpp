@@ -110,7 +110,7 @@ TreeView BlockTree::view(const RowView& rows) const noexcept {
 }
 
 void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexcept {
-  note_environments(rows);
+  if (has_filters()) shape_[0].environments = rows.environments;
   const TreeView tree = view(rows);
   const BlockTreeKernels& kernels = block_tree_kernels();
   const bool filters = has_filters() && filters_of_ != rows.arrangement;
@@ -130,15 +130,8 @@ void BlockTree::refit_all(const RowView& rows, const Execution& execution) noexc
   filters_of_ = rows.arrangement;
 }
 
-void BlockTree::note_environments(const RowView& rows) noexcept {
-  if (!has_filters()) return;
-  for (std::uint32_t level = 0; level < shape_[0].levels; ++level) {
-    shape_[0].filters[level].environments = rows.environments;
-  }
-}
-
 void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept {
-  note_environments(rows);
+  if (has_filters()) shape_[0].environments = rows.environments;
   const TreeView tree = view(rows);
   const BlockTreeKernels& kernels = block_tree_kernels();
   for (const std::uint32_t leaf : leaves) {

@@ -82,7 +82,6 @@ class BlockTree {
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
-  void note_environments(const RowView& rows) noexcept;
   [[nodiscard]] bool lay_boxes(TreeShape& shape) noexcept;
   void aim_boxes(TreeShape& shape) noexcept;
 

@@ -44,7 +44,7 @@ void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
 /// filters `range` may meet.
 Mask16 open_nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                   const Box16& nodes, const QueryBox& q, const FilterRange& range) {
-  return passing_nodes(tree.filters[level], first_node, overlap(nodes, q.low, q.high), range);
+  return passing_nodes(tree, level, first_node, overlap(nodes, q.low, q.high), range);
 }
 
 /// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
@@ -206,7 +206,7 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
       ++sink.tests;
       const Mask16 met =
           overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
-      return Filtered ? passing_nodes(tree.filters[level], first_node, met, own) : met;
+      return Filtered ? passing_nodes(tree, level, first_node, met, own) : met;
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
@@ -253,7 +253,7 @@ class BoxQuestions {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
     if (Filtered && mask != 0) {
-      mask = passing_nodes(tree_.filters[level], first_node, mask, filters_.of(batch_.id[row]));
+      mask = passing_nodes(tree_, level, first_node, mask, filters_.of(batch_.id[row]));
     }
     ++sink_.tests;
     return mask;

@@ -19,7 +19,6 @@ struct NodeFilters {
   std::uint32_t* first_environment = nullptr;
   std::uint32_t* last_environment = nullptr;
   std::uint32_t* alike = nullptr;  ///< 1 if all objects have the same filter
-  bool environments = false;       ///< or false if all objects share one
 };
 
 /// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and
@@ -27,7 +26,8 @@ struct NodeFilters {
 /// empty boxes. The top level has at most 16 nodes.
 struct TreeShape {
   std::uint32_t first_block = 0;
-  std::uint32_t levels = 0;  ///< 0 if there are no blocks
+  std::uint16_t levels = 0;   ///< 0 if there are no blocks
+  bool environments = false;  ///< in filters; or false if all objects share one
   std::uint32_t count[kMaxTreeLevels] = {};
   float* node[kMaxTreeLevels][6] = {};
   NodeFilters filters[kMaxTreeLevels];

@@ -57,24 +57,25 @@ static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, 
   return passing_rows(rows, first_row, candidates, range_of(q));
 }
 
-/// Those of the candidates among 16 nodes from `first_node` on that may hold something that `q` may
-/// meet.
-static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
-                                   Mask16 candidates, const FilterRange& q) {
+/// Those of the candidates among 16 nodes from `first_node` of a level on that may hold something
+/// that `q` may meet.
+static inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
+                                   std::uint32_t first_node, Mask16 candidates,
+                                   const FilterRange& q) {
+  const NodeFilters& nodes = tree.filters[level];
+  if (nodes.layers == nullptr) {
+    return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+  }
   const Mask16 met = candidates &
                      sharing(Uints::load_unaligned(nodes.layers + first_node), q.mask) &
                      sharing(Uints::load_unaligned(nodes.mask + first_node), q.layers);
-  if (!nodes.environments) return met;
+  if (!tree.environments) return met;
   Mask16 passed = 0;
   for (Mask16 left = met; left != 0; left &= left - 1) {
     const bool both = may_meet(range_of(nodes, first_node + first(left)), q);
     passed |= static_cast<Mask16>(both) << first(left);
   }
   return passed;
-}
-static inline Mask16 passing_nodes(const NodeFilters& nodes, std::uint32_t first_node,
-                                   Mask16 candidates, const ObjectFilter& q) {
-  return passing_nodes(nodes, first_node, candidates, range_of(q));
 }
 
 // Columns of a sphere's centre and radius.

@@ -101,7 +101,7 @@ bool visit_blocks(const FlatView& view, std::uint32_t from, const FilterRange& r
     return true;
   }
   const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
-    return passing_nodes(view.blocks.filters[level], first_node, kAllRows, range);
+    return passing_nodes(view.blocks, level, first_node, kAllRows, range);
   };
   return traverse_from(view.blocks, 0, from, test, visit);
 }
