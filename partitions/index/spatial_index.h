@@ -209,6 +209,7 @@ class SpatialIndex {
   bool tail_changed_ = false;    // rows of it stand elsewhere
   bool order_changed_ = false;   // so do others
   bool reserved_ = false;        // memory is there to stay, whatever the structure
+  bool exchange_refused_ = false;
 
   Column<float> spare_;               // what columns are permuted through
   Column<std::uint32_t> tail_order_;  // while the tail is sorted
@@ -217,7 +218,6 @@ class SpatialIndex {
   const std::size_t build_budget_;
   OrderPlan plan_;
   Held next_;  // is taken with the plan, if the structure is to be exchanged
-  bool exchange_refused_ = false;
   Departures departures_;
   Growth tail_growth_;
   Growth wear_growth_;

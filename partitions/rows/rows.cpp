@@ -565,11 +565,11 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
   }
   const bool any = std::ranges::any_of(filters, [](const auto& f) { return f != ObjectFilter{}; });
   if (any && !filters_.begin_use()) return Status::out_of_memory;
+  ++arrangement_;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const ObjectId id = keys[i].id;
     if (filters_.of(id) == filters[i]) continue;
     filters_.set(id, filters[i]);
-    ++arrangement_;
     stale_.add(id);
     changed_ = true;
   }

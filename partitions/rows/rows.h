@@ -183,11 +183,11 @@ class Rows {
   FilterTable filters_;
   RowRegions regions_;
   float far_ = 0.0F;
+  bool changed_ = false;
+  std::uint64_t arrangement_ = 1;  // see RowView
   ChangeList stale_;
   mutable ChangeList moved_;
   mutable RowSelection selection_;
-  bool changed_ = false;
-  std::uint64_t arrangement_ = 1;  // see RowView
 };
 
 }  // namespace winnow

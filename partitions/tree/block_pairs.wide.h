@@ -16,8 +16,9 @@ class BlockPairs {
  public:
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
-  /// Begins with rows [begin, end). False if they are all holes.
-  bool start(std::uint32_t begin, std::uint32_t end) {
+  /// Begins with rows [begin, end), which may meet each other unless `apart`. False if they are all
+  /// holes.
+  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false) {
     at_ = begin;
     behind_ = end;
     next_ = end / kLanes;
@@ -32,7 +33,7 @@ class BlockPairs {
       high_[a] = reduce_max(Floats::load(own_[3 + a]));
     }
     if (!(low_[0] <= high_[0])) return false;
-    test_self();
+    if (!apart) test_self();
     return true;
   }
 

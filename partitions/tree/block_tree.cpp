@@ -35,14 +35,23 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
   return total;
 }
 
+// A tree has room for a tail of new blocks, unless that takes another level.
+std::size_t blocks_with_room(std::size_t blocks) noexcept {
+  const std::size_t more = blocks + blocks / 16;
+  return levels_over(more).levels == levels_over(blocks).levels ? more : blocks;
+}
+
 // Empties nodes [begin, end) of a level.
-void empty_nodes(const TreeShape& shape, std::uint32_t level, std::uint32_t begin,
+void empty_boxes(const TreeShape& shape, std::uint32_t level, std::uint32_t begin,
                  std::uint32_t end) noexcept {
-  if (begin >= end) return;
   constexpr float inf = std::numeric_limits<float>::infinity();
-  for (std::size_t c = 0; c < 6 && shape.node[level][c] != nullptr; ++c) {
+  for (std::size_t c = 0; c < 6 && begin < end; ++c) {
     std::fill(shape.node[level][c] + begin, shape.node[level][c] + end, c < 3 ? inf : -inf);
   }
+}
+void empty_nodes(const TreeShape& shape, std::uint32_t level, std::uint32_t begin,
+                 std::uint32_t end) noexcept {
+  if (shape.node[level][0] != nullptr) empty_boxes(shape, level, begin, end);
   if (shape.filters[level].layers != nullptr) empty_filters(shape.filters[level], begin, end);
 }
 
@@ -50,7 +59,8 @@ void empty_nodes(const TreeShape& shape, std::uint32_t level, std::uint32_t begi
 
 bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
   filters_of_ = 0;
-  TreeShape shape = levels_over(blocks);
+  laid_out_ = static_cast<std::uint32_t>(blocks_with_room(blocks));
+  TreeShape shape = levels_over(laid_out_);
   shape.first_block = static_cast<std::uint32_t>(first_block);
   shape_.clear();
   // Node values are recomputed: nothing to carry over into larger memory.
@@ -58,18 +68,20 @@ bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) 
   filters_.clear();
   if (first_block == 0 && blocks == 0) return true;
   return (nodes == Nodes::filters || lay_boxes(shape)) &&
-         (nodes == Nodes::boxes || lay_out_filters(shape, filters_)) && shape_.push_back(shape);
+         (nodes == Nodes::boxes || lay_out_filters(shape, filters_)) && shape_.push_back(shape) &&
+         (blocks == 0 || stretch(blocks));
 }
 
 bool BlockTree::stretch(std::size_t blocks) noexcept {
   if (shape_.empty() || blocks == 0) return false;
   TreeShape& shape = shape_[0];
   const TreeShape wanted = levels_over(blocks);
-  if (wanted.levels != shape.levels) return false;
-  for (std::uint32_t level = 0; level < shape.levels; ++level) {
-    if (padded_nodes(wanted.count[level]) != padded_nodes(shape.count[level])) return false;
+  const TreeShape room = levels_over(laid_out_);
+  if (wanted.levels != room.levels) return false;
+  for (std::uint32_t level = 0; level < room.levels; ++level) {
+    if (wanted.count[level] > padded_nodes(room.count[level])) return false;
   }
-  for (std::uint32_t level = 0; level < shape.levels; ++level) {
+  for (std::uint32_t level = 0; level < room.levels; ++level) {
     empty_nodes(shape, level, wanted.count[level], shape.count[level]);
     shape.count[level] = wanted.count[level];
   }
@@ -77,7 +89,8 @@ bool BlockTree::stretch(std::size_t blocks) noexcept {
 }
 
 bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {
-  if (!shape_.reserve(1) || !nodes_.reserve(floats_of(levels_over(blocks)), pages)) return false;
+  const std::size_t floats = floats_of(levels_over(blocks_with_room(blocks)));
+  if (!shape_.reserve(1) || !nodes_.reserve(floats, pages)) return false;
   // Nodes that there are may have moved.
   if (!nodes_.empty() && !shape_.empty()) aim_boxes(shape_[0]);
   return true;
@@ -91,17 +104,17 @@ bool BlockTree::lay_boxes(TreeShape& shape) noexcept {
   return true;
 }
 
-// Tells the shape where its nodes are, and empties the padding behind them.
+// Tells the shape where its nodes are, and empties the room behind them.
 void BlockTree::aim_boxes(TreeShape& shape) noexcept {
+  const TreeShape room = levels_over(laid_out_);
   float* at = nodes_.data();
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
-    const std::size_t stride = padded_nodes(shape.count[level]);
+    const std::size_t stride = padded_nodes(room.count[level]);
     for (std::size_t c = 0; c < 6; ++c) {
       shape.node[level][c] = at;
-      const float inf = std::numeric_limits<float>::infinity();
-      std::fill(at + shape.count[level], at + stride, c < 3 ? inf : -inf);
       at += stride;
     }
+    empty_boxes(shape, level, shape.count[level], static_cast<std::uint32_t>(stride));
   }
 }
 

@@ -33,8 +33,9 @@ class BlockTree {
                            Nodes nodes = Nodes::boxes) noexcept;
 
   /// Covers another number of blocks, not 0, from the same one on, if their nodes have room where
-  /// those of now are. Nodes above the blocks that come, or above the last one, are then to be
-  /// refitted. False, and unchanged, if they have not.
+  /// those of now are: a sixteenth more than `cover` was told of mostly have. Nodes above the
+  /// blocks that come, or above the last one, are then to be refitted. False, and unchanged, if
+  /// they have not.
   [[nodiscard]] bool stretch(std::size_t blocks) noexcept;
 
   /// Makes room for the boxes of a tree over so many blocks. False, and unchanged, if memory is
@@ -88,6 +89,7 @@ class BlockTree {
   Column<float> nodes_;
   Column<std::uint32_t> filters_;
   Column<TreeShape> shape_;       // one; none while the tree covers nothing
+  std::uint32_t laid_out_ = 0;    // blocks that nodes have room for
   std::uint64_t filters_of_ = 0;  // the arrangement of rows that all filters are right for
 };
 

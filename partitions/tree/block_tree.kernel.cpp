@@ -200,8 +200,8 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
-    if (!pairs.start(row, row + kLanes)) continue;
     const FilterRange own = range_of(tree.filters[0], leaf);
+    if (!pairs.start(row, row + kLanes, Filtered && !may_meet(own, own))) continue;
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
       const Mask16 met =

@@ -86,7 +86,7 @@ TEST(PlannedBuild, is_not_hastened_by_refreshes_that_nobody_asks_after) {
     for (const Partition& one : partitions) ASSERT_EQ(one.self_pairs(pairs), Status::ok);
   }
   EXPECT_GE(partitions[0].statistics().builds, 3U);
-  EXPECT_EQ(partitions[0].statistics().builds, partitions[1].statistics().builds);
+  EXPECT_LE(partitions[1].statistics().builds, partitions[0].statistics().builds + 1);
 }
 
 TEST(PlannedBuild, is_taken_before_it_is_due) {
