@@ -25,6 +25,18 @@ void find_below(const HalfSpaceShape& shape, const PlacedPart& part, const Place
   mesh_below(*surface.mesh, own_normal.data(), shape.offset - base + margin + noise, out);
 }
 
+/// From the frame of a mesh to that of a part.
+[[nodiscard]] MeshPlacement mesh_in(const PlacedPart& part, const PlacedBody& surface) noexcept {
+  MeshPlacement placement;
+  const Mat linear = part.rotation.transpose() * surface.to_world;
+  const Vec offset = part.rotation.transpose() * finite(surface.position - part.position);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) placement.matrix[i][k] = linear(i, k);
+    placement.offset[i] = offset[i];
+  }
+  return placement;
+}
+
 /// A plane through a triangle: its normal, not of unit length, and what rounding does to heights
 /// above it, for each unit of length of what is asked.
 struct TrianglePlane {
@@ -163,10 +175,7 @@ void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
     if (surface.front != 0)
       about = box_under(tables_, part.shape, part.rotation, part.position, 0.0);
     for (const std::uint32_t triangle : triangles_near(part, surface)) {
-      Corners corners;
-      if (!surface.corners(triangle, corners)) continue;
-      if (is_apart(tables_, part, corners, margin_)) continue;
-      if (surface.is_behind(corners, about)) continue;
+      if (is_left_out(part, about, surface, triangle)) continue;
       if (mirrored) {
         add(surface, triangle, parts, number);
       } else {
@@ -174,6 +183,18 @@ void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
       }
     }
   }
+}
+
+// The traversal has held triangles of meshes against hulls already.
+bool Search::is_left_out(const PlacedPart& part, const Box& about, const PlacedBody& surface,
+                         std::uint32_t triangle) const noexcept {
+  const bool is_tested =
+      part.shape.kind() == ShapeKind::hull && surface.kind == PlacedBody::Kind::mesh;
+  if (is_tested && surface.front == 0) return false;
+  Corners corners;
+  if (!surface.corners(triangle, corners)) return true;
+  if (!is_tested && is_apart(tables_, part, corners, margin_)) return true;
+  return surface.is_behind(corners, about);
 }
 
 void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
@@ -268,14 +289,21 @@ std::span<const std::uint32_t> Search::triangles_near(const PlacedPart& part,
   }
   const Box box = box_of(part, surface, margin_);
   if (surface.kind != PlacedBody::Kind::mesh) return triangles_near(box, surface, inner_);
-  // A ball about the part as well: of most shapes' boxes it leaves half of the triangles.
+  // A ball about the part as well: of most shapes' boxes it leaves half of the triangles. A hull
+  // itself leaves a quarter.
   const Vec center = surface.to_local * finite(part.position + part.middle - surface.position);
   const double noise = kSlack * (center.lpNorm<1>() + surface.to_local.cwiseAbs().maxCoeff() *
                                                           surface.position.lpNorm<1>());
   const double radius = (part.reach + margin_) * surface.most_shrunk + noise;
-  return collect(inner_, [&](SlotSink& out) {
-    mesh_overlap(*surface.mesh, box.min.data(), box.max.data(), center.data(), radius, out);
-  });
+  const auto find = [&](const MeshHull* hull) {
+    return collect(inner_, [&](SlotSink& out) {
+      mesh_overlap(*surface.mesh, box.min.data(), box.max.data(), center.data(), radius, hull, out);
+    });
+  };
+  if (part.shape.kind() != ShapeKind::hull) return find(nullptr);
+  const HullShape& shape = tables_.hulls[part.shape.index()];
+  const MeshHull hull{shape, mesh_in(part, surface), margin_ + shape.rounding};
+  return find(&hull);
 }
 
 std::span<const std::uint32_t> Search::triangles_near(const Box& box, const PlacedBody& surface,

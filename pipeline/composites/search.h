@@ -47,6 +47,8 @@ class Search {
                                                            Room& room) noexcept;
   void parts_parts(const PlacedBody& a, const PlacedBody& b) noexcept;
   void parts_surface(const PlacedBody& parts, const PlacedBody& surface, bool mirrored) noexcept;
+  [[nodiscard]] bool is_left_out(const PlacedPart& part, const Box& about,
+                                 const PlacedBody& surface, std::uint32_t triangle) const noexcept;
   void mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept;
   static void take_slots(void* context, SlotPairSink& found) noexcept;
   void surfaces(const PlacedBody& a, const PlacedBody& b) noexcept;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangles of a mesh that meet a box, or a ball in it.
+// Triangles of a mesh that meet a box, or a ball or a hull in it.
 //
 // Sixteen triangles against a ball. A convex shape and a ball are apart only along the way from the
 // ball's middle to the closest point of the shape: for a triangle that is its normal, the way to a
@@ -9,6 +9,7 @@
 // so that directions need not be exact; only heights along them are, to a few roundings.
 
 #include "partitions/tree/traversal.wide.h"
+#include "pipeline/mesh/mesh_hull.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
 
@@ -87,9 +88,9 @@ struct BallCorners {
 }
 
 /// Takes triangles of one leaf after another, of which few are left, and tests sixteen at a time.
-class BallSieve {
+class TriangleSieve {
  public:
-  BallSieve(const MeshBallJob& ball, SlotSink& out) : ball_(ball), out_(out) {}
+  TriangleSieve(const MeshBoxJob& job, SlotSink& out) : job_(job), out_(out) {}
 
   void add(const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
     for (int k = 0; k < 3; ++k) {
@@ -119,11 +120,13 @@ class BallSieve {
         corners.at[k][axis] = Floats::load(corner_[k][axis]);
       }
     }
-    put_slots(Uints::load_unaligned(slot_), ~outside_ball(corners, ball_) & lanes_below(count),
-              out_);
+    const Mask16 lanes = lanes_below(count);
+    const Mask16 outside = job_.hull.shape != nullptr ? outside_hull(corners, lanes, job_.hull)
+                                                      : outside_ball(corners, job_.ball);
+    put_slots(Uints::load_unaligned(slot_), ~outside & lanes, out_);
   }
 
-  const MeshBallJob& ball_;
+  const MeshBoxJob& job_;
   SlotSink& out_;
   unsigned size_ = 0;
   // Up to 15 wait, and every store writes 16.
@@ -153,8 +156,8 @@ template <typename Show>
 }
 
 inline void find_overlaps(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
-  if (job.has_ball) {
-    BallSieve sieve(job.ball, out);
+  if (job.has_ball || job.hull.shape != nullptr) {
+    TriangleSieve sieve(job, out);
     visit_box(mesh, job, [&](const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
       sieve.add(corners, hits, first_slot);
     });

@@ -83,6 +83,44 @@ bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
   return true;
 }
 
+/// False for hulls for which doubles, or the floats of kernels, leave little of where triangles
+/// are.
+bool set_hull(const MeshHull& hull, const double center[3], MeshHullJob& job) {
+  constexpr double kFar = 1e30;
+  // Times the radius.
+  constexpr double kFarFromOrigin = 1e3;
+  constexpr double kFarFromMesh = 1e7;
+  const HullShape& shape = hull.shape;
+  if (!(shape.radius > 1.0 / kFar && shape.radius < kFar)) return false;
+  const double scale = std::ldexp(1.0, -std::ilogb(shape.radius));
+  double middle = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    middle = std::max(middle, std::abs(shape.center[i]));
+    if (!(std::abs(center[i]) < kFar && middle < kFarFromOrigin * shape.radius)) return false;
+    job.middle[i] = static_cast<float>(center[i]);
+    job.center[i] = static_cast<float>(shape.center[i]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    double offset = hull.mesh_in_hull.offset[i] - static_cast<double>(job.center[i]);
+    double size = std::abs(offset);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double by = hull.mesh_in_hull.matrix[i][k];
+      const double at = by * static_cast<double>(job.middle[k]);
+      if (!(std::abs(by * scale) < kFar)) return false;
+      offset += at;
+      size += std::abs(at);
+      job.matrix[i][k] = static_cast<float>(by * scale);
+    }
+    if (!(size < kFarFromMesh * shape.radius)) return false;
+    job.offset[i] = static_cast<float>(offset * scale);
+  }
+  job.scale = static_cast<float>(scale);
+  job.reach = round_up(hull.reach * scale);
+  job.largest = round_up((middle + shape.radius) * scale);
+  job.shape = &shape;
+  return true;
+}
+
 /// Whether nodes reach below a plane.
 struct HalfSpaceTest {
   const MeshView& mesh;
@@ -112,10 +150,12 @@ void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3]
 }
 
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
-                  const double center[3], double radius, SlotSink& out) noexcept {
+                  const double center[3], double radius, const MeshHull* hull,
+                  SlotSink& out) noexcept {
   if (mesh.triangle_count == 0) return;
   MeshBoxJob job = box_job(mesh, min, max);
-  job.has_ball = set_ball(center, radius, job.ball);
+  const bool has_hull = hull != nullptr && set_hull(*hull, center, job.hull);
+  job.has_ball = !has_hull && set_ball(center, radius, job.ball);
   mesh_kernels().overlap(mesh, job, out);
 }
 

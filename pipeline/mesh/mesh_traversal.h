@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/pipeline/shapes.h>
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/mesh/surface_rays.h"
 #include "simd/kernels/kernels.h"
@@ -16,11 +17,23 @@ namespace winnow {
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
                   SlotSink& out) noexcept;
 
+/// A hull beside a mesh.
+struct MeshHull {
+  const HullShape& shape;
+  /// From the frame of the mesh to that of the hull.
+  MeshPlacement mesh_in_hull;
+  /// In lengths of the hull: triangles count that are no farther from its core.
+  double reach;
+};
+
 /// The same, but for triangles whose closest point to `center` is farther than `radius`; a few that
 /// are farther by less than the rounding of float coordinates, or by more if they are slivers, are
-/// left in. A radius that is not finite leaves in all.
+/// left in. A radius that is not finite leaves in all. With a hull that the ball contains, of those
+/// within its reach: others are left in only where no face of it and no way to its middle parts
+/// them, or where it is so thin, so far away or so far from its own origin that floats tell little.
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
-                  const double center[3], double radius, SlotSink& out) noexcept;
+                  const double center[3], double radius, const MeshHull* hull,
+                  SlotSink& out) noexcept;
 
 /// Slots of triangles that may reach below normal . x <= offset, ascending.
 void mesh_below(const MeshView& mesh, const double normal[3], double offset,
@@ -63,6 +76,22 @@ struct MeshBallJob {
   float largest;
 };
 
+/// A hull to be near to; null: none. Corners x of triangles are brought into its own frame by
+/// matrix (x - middle) + offset, scaled by a power of two that makes its radius about 1 and
+/// measured from its centre.
+struct MeshHullJob {
+  const HullShape* shape;
+  float middle[3];
+  float matrix[3][3];
+  float offset[3];
+  /// In its own frame, unscaled.
+  float center[3];
+  float scale;
+  /// Scaled: how near triangles count, and the largest number among the vertices.
+  float reach;
+  float largest;
+};
+
 /// A box to find triangles in: in the units of the nodes, and rounded inward to floats, which
 /// compare with float corners as the double box does.
 struct MeshBoxJob {
@@ -72,6 +101,7 @@ struct MeshBoxJob {
   float high[3];
   bool has_ball;
   MeshBallJob ball;
+  MeshHullJob hull;
 };
 
 /// Mesh b placed in the frame of mesh a. Rows of the matrix of axes on which b leaves the range in

@@ -634,8 +634,9 @@ TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
         max[axis] = center[axis] + radius;
       }
       const Slots found = on_all_isas([&] {
-        return collect(
-            [&](SlotSink& sink) { mesh_overlap(view_of(mesh), min, max, center, radius, sink); });
+        return collect([&](SlotSink& sink) {
+          mesh_overlap(view_of(mesh), min, max, center, radius, nullptr, sink);
+        });
       });
       Slots expected = overlap(view_of(mesh), min, max);
       const std::size_t in_box = expected.size();
