@@ -70,8 +70,8 @@ struct SceneOptions {
   /// another fixed body that is as deep, or below it, by 1/1000 of the dynamic body's radius, and
   /// its normal differs from that one's by more than 5 degrees and less than 120: it is with a side
   /// or an edge of a seam then. Steps, walls and ridges stay. Pairs with fixed bodies are not
-  /// carried over, and the search, O(n log n + pairs of contacts of one body with floors), runs on
-  /// the thread that calls.
+  /// carried over, and the search, O(n log n + pairs of contacts of one body whose normals are that
+  /// far apart), runs on the thread that calls.
   bool seamless_floors = false;
   /// Contacts tell where each pair and each point was in the last frame (Contacts::previous_pair
   /// and previous_point), so that a solver starts from the impulses that it found then. Takes 4

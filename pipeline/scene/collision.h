@@ -69,6 +69,7 @@ class Collision {
   class FloorWriter;
   [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();
+  void drop_seams_of(FloorContact* first, FloorContact* end) noexcept;
   [[nodiscard]] bool list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
                                        std::uint32_t at, const double* offset, FloorWriter& writer);
   [[nodiscard]] bool list_floor_parts(std::uint32_t pair, FloorWriter& writer);

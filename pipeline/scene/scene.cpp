@@ -109,6 +109,7 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       composite(given.memory),
       gaps(given.memory),
       floor_contacts(given.memory),
+      floor_order(given.memory),
       ignored(given.memory),
       ignores(given.memory) {
   if (given.composites != nullptr) composites_seen = given.composites->revision();
@@ -346,6 +347,7 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.narrow_phase += s.convex.bytes();
   footprint.narrow_phase += s.slot.bytes();
   footprint.narrow_phase += s.floor_contacts.bytes();
+  footprint.narrow_phase += s.floor_order.bytes();
   footprint.narrow_phase += s.narrow.footprint().total();
   footprint.narrow_phase += s.answers.footprint().total();
   return footprint;

@@ -129,6 +129,8 @@ struct SceneState {
   PartAnswers* parts = nullptr;
   /// Not used unless floors are seamless.
   Column<FloorContact> floor_contacts;
+  /// Room for the order in which those of one body are looked at.
+  Column<std::uint32_t> floor_order;
   SceneStatistics statistics;
   /// Bodies that never meet, as (smaller id << 32 | larger id), sorted; and by id whether a body
   /// is among them, where there were that many when it was told.

@@ -45,6 +45,72 @@ constexpr double kOppositeCosine = -0.5;
                      [&](const double(&p)[3]) { return up.dot(Vec::Map(p)) <= plane; });
 }
 
+/// Contacts of one body by their normals. Most are with the same plane, of which none is a seam of
+/// another: a plate on n tiles is told so in O(n).
+class FloorGroups {
+ public:
+  /// `order`: room for a number for each contact.
+  FloorGroups(std::span<FloorContact> contacts, std::uint32_t* order) noexcept
+      : contacts_(contacts), order_(order) {
+    for (FloorContact& contact : contacts_) {
+      contact.group = group_of(Vec::Map(contact.normal));
+      ++end_[contact.group];
+    }
+    for (std::size_t g = 1; g < count_; ++g) end_[g] += end_[g - 1];
+    for (std::size_t i = contacts_.size(); i-- > 0;) {
+      order_[--end_[contacts_[i].group]] = static_cast<std::uint32_t>(i);
+    }
+    // Each began where the one before ended.
+    for (std::size_t g = 0; g < count_; ++g) {
+      end_[g] = g + 1 < count_ ? end_[g + 1] : static_cast<std::uint32_t>(contacts_.size());
+    }
+  }
+
+  /// Whether one of the others that were not dropped is a floor to it.
+  [[nodiscard]] bool is_seam_of_any(const FloorContact& one, double radius) const noexcept {
+    std::uint32_t at = 0;
+    for (std::size_t g = 0; g < count_; at = end_[g++]) {
+      if (!may_be_floor(g, Vec::Map(one.normal))) continue;
+      for (std::uint32_t i = at; i < end_[g]; ++i) {
+        const FloorContact& floor = contacts_[order_[i]];
+        if (floor.source != FloorContact::Source::dropped && is_seam(one, floor, radius)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  /// The last group takes what no other does.
+  static constexpr std::size_t kMostGroups = 32;
+  /// Lengths of differences between unit normals of one group, and more than what a cosine with one
+  /// of them may be off by.
+  static constexpr double kSameNormal = 1e-3;
+  static constexpr double kCosineSlack = 1.001e-3;
+
+  [[nodiscard]] std::uint8_t group_of(const Vec& normal) noexcept {
+    std::size_t g = 0;
+    for (; g < count_ && g + 1 < kMostGroups; ++g) {
+      if ((normal - normal_[g]).squaredNorm() <= kSameNormal * kSameNormal) break;
+    }
+    if (g == count_) normal_[count_++] = normal;
+    return static_cast<std::uint8_t>(g);
+  }
+
+  [[nodiscard]] bool may_be_floor(std::size_t group, const Vec& normal) const noexcept {
+    if (group + 1 == kMostGroups) return true;
+    const double cosine = normal_[group].dot(normal);
+    return cosine < kRegionCosine + kCosineSlack && cosine >= kOppositeCosine - kCosineSlack;
+  }
+
+  std::span<FloorContact> contacts_;
+  std::uint32_t* order_;
+  std::size_t count_ = 0;
+  Vec normal_[kMostGroups];
+  std::uint32_t end_[kMostGroups] = {};
+};
+
 }  // namespace
 
 /// Takes the points of manifolds, to a point on the fixed body's surface each.
@@ -164,28 +230,35 @@ bool Collision::drop_seams() {
   if (!scene_.options.seamless_floors || level_ < ContactLevel::distance) return true;
   if (!list_floor_contacts()) return false;
   Column<FloorContact>& all = scene_.floor_contacts;
+  if (!scene_.floor_order.resize(all.size())) return false;
   // Of a body next to each other, as they were listed.
-  std::sort(all.begin(), all.end(), [](const FloorContact& one, const FloorContact& other) {
+  const auto is_before = [](const FloorContact& one, const FloorContact& other) {
     return std::tuple(one.body, one.source, one.answer) <
            std::tuple(other.body, other.source, other.answer);
-  });
+  };
+  if (!std::is_sorted(all.begin(), all.end(), is_before)) {
+    std::sort(all.begin(), all.end(), is_before);
+  }
   for (FloorContact* first = all.begin(); first != all.end();) {
     FloorContact* const end = std::find_if(
         first, all.end(), [&](const FloorContact& other) { return other.body != first->body; });
-    const double radius = scene_.radius(first->body);
-    for (FloorContact* one = first; one != end && std::isfinite(radius); ++one) {
-      if (std::none_of(first, end, [&](const FloorContact& floor) {
-            return floor.source != FloorContact::Source::dropped && is_seam(*one, floor, radius);
-          })) {
-        continue;
-      }
-      drop(*one);
-      one->source = FloorContact::Source::dropped;
-    }
+    drop_seams_of(first, end);
     first = end;
   }
   close_regions();
   return true;
+}
+
+// Of one body.
+void Collision::drop_seams_of(FloorContact* first, FloorContact* end) noexcept {
+  const double radius = scene_.radius(first->body);
+  if (end - first < 2 || !std::isfinite(radius)) return;
+  const FloorGroups groups({first, end}, scene_.floor_order.data());
+  for (FloorContact* one = first; one != end; ++one) {
+    if (!groups.is_seam_of_any(*one, radius)) continue;
+    drop(*one);
+    one->source = FloorContact::Source::dropped;
+  }
 }
 
 // Regions that were dropped have no points.

@@ -18,6 +18,8 @@ struct FloorContact {
   /// How many points there are, on the fixed body's surface; the deepest of them.
   std::uint8_t count;
   std::uint8_t deepest;
+  /// Which of the body's contacts have about the same normal: see FloorGroups.
+  std::uint8_t group;
   double distance;
   /// Unit, to the dynamic body.
   double normal[3];

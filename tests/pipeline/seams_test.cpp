@@ -169,6 +169,104 @@ TEST(Seams, steps_walls_ditches_and_valleys_stay) {
   EXPECT_FALSE(ditch.touches_second(Pose::at(-0.49, 0.0, 0.49)));
 }
 
+/// A manifold as the rule of SceneOptions::seamless_floors sees it.
+struct FloorManifold {
+  Key floor;
+  Eigen::Vector3d up;
+  double distance;
+  std::vector<Eigen::Vector3d> points;
+  bool is_dropped = false;
+
+  /// Of pair i, which has one, with floors as a.
+  FloorManifold(const Contacts& contacts, std::size_t i)
+      : floor(contacts.a()[i]),
+        up(contacts.normal(0)[i], contacts.normal(1)[i], contacts.normal(2)[i]),
+        distance(contacts.distance()[i]) {
+    for (std::uint32_t p = contacts.point_first()[i]; p < contacts.point_first()[i + 1]; ++p) {
+      const ContactPoint point = contacts.contact(p);
+      const Eigen::Vector3d at = Eigen::Map<const Point>(point.position).cast<double>();
+      points.push_back(at + 0.5 * static_cast<double>(point.depth) * up);
+    }
+  }
+};
+
+/// Points come deepest first.
+bool is_seam_of(const FloorManifold& one, const Eigen::Vector3d& one_at, const FloorManifold& other,
+                const Eigen::Vector3d& other_at, double radius) {
+  const double cosine = one.up.dot(other.up);
+  if (other.is_dropped || other.distance > one.distance + 1e-6 * radius ||
+      cosine >= kRegionCosine || cosine < -0.5) {
+    return false;
+  }
+  const double plane = other.up.dot(other.points[0] + other_at) + 1e-3 * radius;
+  return std::ranges::all_of(
+      one.points, [&](const Eigen::Vector3d& at) { return other.up.dot(at + one_at) <= plane; });
+}
+
+/// 8 x 8 tiles and a plate on all of them. Those that are not flush are tilted and a little higher
+/// or lower.
+std::vector<BodyDefinition> plate_on_tiles(const SeamWorld& world, ShapeId plate, double flush,
+                                           Random& random) {
+  std::vector<BodyDefinition> bodies;
+  for (int i = 0; i < 64; ++i) {
+    BodyDefinition tile = world.tile(Tiles::boxes, 4.0 * (i % 8) - 14.0, 4.0 * (i / 8) - 14.0);
+    if (!random.chance(flush)) {
+      tile.pose.position[2] += random.uniform(-0.02, 0.02);
+      for (int k = 1; k < 4; ++k) tile.pose.orientation[k] = random.uniform(-0.06, 0.06);
+    }
+    bodies.push_back(tile);
+  }
+  bodies.push_back({.shape = plate, .pose = Pose::at(0.0, 0.0, 0.27)});
+  return bodies;
+}
+
+/// Ids of the floors whose manifolds stay, by the rule, each held against each.
+std::vector<ObjectId> kept_floors(const Scene& scene, const Contacts& contacts, double radius) {
+  std::vector<FloorManifold> raw;
+  std::vector<Eigen::Vector3d> place;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    BodyDefinition body;
+    EXPECT_EQ(scene.body(contacts.a()[i], body), Status::ok);
+    raw.emplace_back(contacts, i);
+    place.push_back(Eigen::Vector3d::Map(body.pose.position));
+  }
+  std::vector<ObjectId> kept;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    for (std::size_t k = 0; k < raw.size() && !raw[i].is_dropped; ++k) {
+      raw[i].is_dropped = k != i && is_seam_of(raw[i], place[i], raw[k], place[k], radius);
+    }
+    if (!raw[i].is_dropped) kept.push_back(raw[i].floor.id);
+  }
+  return kept;
+}
+
+TEST(Seams, of_a_plate_on_many_tiles_are_those_that_all_against_all_find) {
+  SeamWorld world;
+  Random random(82);
+  const double half = 15.0;
+  const ShapeId plate = add(world.shapes, BoxShape{{half, half, 0.3}, 0.0});
+  const double radius = std::sqrt(2.0 * half * half + 0.09);
+  std::size_t dropped = 0;
+  for (std::size_t round = 0; round < scaled(20); ++round) {
+    // In every second round hardly any two normals are alike.
+    const auto bodies = plate_on_tiles(world, plate, round % 2 == 0 ? 0.8 : 0.2, random);
+    std::vector<Key> keys(bodies.size());
+    Scene raw(world.shapes, {.margin = 0.05});
+    Contacts all;
+    ASSERT_EQ(raw.add(bodies, keys), Status::ok);
+    ASSERT_EQ(raw.collide(ContactLevel::manifold, all), Status::ok);
+    Scene seamless(world.shapes, {.margin = 0.05, .seamless_floors = true});
+    Contacts contacts;
+    ASSERT_EQ(seamless.add(bodies, keys), Status::ok);
+    ASSERT_EQ(seamless.collide(ContactLevel::manifold, contacts), Status::ok);
+    std::vector<ObjectId> shown;
+    for (const Key& key : contacts.a()) shown.push_back(key.id);
+    EXPECT_EQ(shown, kept_floors(raw, all, radius));
+    dropped += all.size() - contacts.size();
+  }
+  EXPECT_GT(dropped, scaled(20));
+}
+
 /// Bodies that are not fixed are no floor, and what is told of bytes holds.
 TEST(Seams, floors_are_fixed_and_their_bytes_are_counted) {
   SeamWorld world;
