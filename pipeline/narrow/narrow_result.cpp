@@ -1,5 +1,6 @@
 #include <winnow/pipeline/narrow_result.h>
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/steady_column.h"
 
 namespace winnow {
 ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept
@@ -41,14 +42,16 @@ NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
 bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
   const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };
-  bool ok = overlap_.resize(size_of(!distances)) && distance_.resize(size_of(distances)) &&
-            error_bound_.resize(size_of(distances));
-  for (Column<double>& column : normal_) ok = ok && column.resize(size_of(distances));
+  bool ok = resize_steadily(overlap_, size_of(!distances)) &&
+            resize_steadily(distance_, size_of(distances)) &&
+            resize_steadily(error_bound_, size_of(distances));
+  for (Column<double>& column : normal_) ok = ok && resize_steadily(column, size_of(distances));
   for (Column<double>& column : point_) {
-    ok = ok && column.resize(size_of(level == ContactLevel::distance));
+    ok = ok && resize_steadily(column, size_of(level == ContactLevel::distance));
   }
   const bool manifolds = level == ContactLevel::manifold;
-  ok = ok && contact_first_.resize(size_of(manifolds)) && contact_count_.resize(size_of(manifolds));
+  ok = ok && resize_steadily(contact_first_, size_of(manifolds)) &&
+       resize_steadily(contact_count_, size_of(manifolds));
   contacts_.set_size(0);
   level_ = level;
   return ok;

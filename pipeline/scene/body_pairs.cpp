@@ -2,6 +2,7 @@
 
 #include "core/sort/radix_sort.h"
 #include "core/sort/stretches.h"
+#include "pipeline/narrow/steady_column.h"
 
 #include <algorithm>
 #include <bit>
@@ -78,7 +79,8 @@ Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes,
                          const Execution& execution, const PairSelection* selection) {
   std::size_t count = 0;
   for (const Source& source : sources) count += source.pairs.size();
-  if (!items_.resize(count) || !spare_.resize(count) || !pairs_.resize(count)) {
+  if (!resize_steadily(items_, count) || !resize_steadily(spare_, count) ||
+      !resize_steadily(pairs_, count)) {
     clear();
     return Status::out_of_memory;
   }

@@ -5,6 +5,7 @@
 #include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
 #include "pipeline/narrow/answer_slots.h"
+#include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
 
 #include <limits>
@@ -60,7 +61,13 @@ Status Collision::run() {
       if (status != Status::ok) return status;
     }
     if (!drop_seams()) return Status::out_of_memory;
-    contacts_.frame.swap(contacts_.before);
+    if (reads_last_manifolds()) {
+      contacts_.frame.swap(contacts_.before);
+    } else {
+      // Another level may have left more.
+      contacts_.before.clear();
+      contacts_.frame.swap_pairs(contacts_.before);
+    }
     // The same pairs keep their records in place.
     if (!same_pairs_) {
       contacts_.records.swap(contacts_.records_before);
@@ -85,7 +92,7 @@ bool Collision::list_pairs() {
   scene_.composite.clear();
   if (level_ == ContactLevel::pairs) return true;
   const auto pairs = scene_.pairs.pairs();
-  if (!contacts_.source.resize(pairs.size())) return false;
+  if (!resize_steadily(contacts_.source, pairs.size())) return false;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto origin = static_cast<Origin>(contacts_.origin[i]);
     if (origin == Origin::carried) continue;
@@ -106,7 +113,7 @@ namespace {
 // Where the answer about each pair of the input lies.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
-  if (!slots.resize(answers.size())) return false;
+  if (!resize_steadily(slots, answers.size())) return false;
   find_slots(answers, execution, slots.data());
   return true;
 }
@@ -300,7 +307,7 @@ bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
 bool Collision::show() {
   ContactsState& c = contacts_;
   const std::size_t tasks = task_count();
-  if (!c.sums.resize(tasks + 1) || !c.shown_again.resize(c.before.pairs())) return false;
+  if (!c.sums.resize(tasks + 1) || !resize_steadily(c.shown_again, c.before.pairs())) return false;
   std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
   for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t end) {
     c.sums[task] = count(first, end);
@@ -312,12 +319,15 @@ bool Collision::show() {
     end += taken;
   }
   const std::size_t records = carries_ ? pair_count() : end.pair;
-  if (!c.frame.resize(level_, end.pair, end.manifold, end.point) || !c.records.resize(records) ||
-      !c.carried.resize(carries_ ? records : 0) || !make_history()) {
+  if (!c.frame.resize(level_, end.pair, end.manifold, end.point) ||
+      !resize_steadily(c.records, records) || !c.carried.resize(carries_ ? records : 0) ||
+      !make_history()) {
     return false;
   }
   // The frames change places at the next call, which may find as much as this one.
-  if (!c.before.reserve_as(c.frame) || !c.records_before.reserve(c.records.capacity()) ||
+  const bool has_room =
+      reads_last_manifolds() ? c.before.reserve_as(c.frame) : c.before.reserve_pairs_as(c.frame);
+  if (!has_room || !c.records_before.reserve(c.records.capacity()) ||
       !c.carried_before.reserve(c.carried.capacity())) {
     return false;
   }

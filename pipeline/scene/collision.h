@@ -79,6 +79,7 @@ class Collision {
   void close_regions() noexcept;
 
   // The frame (collide.cpp).
+  [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || remembers_places_; }
   [[nodiscard]] bool show();
   /// The place in the last frame of a pair's contacts; kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;

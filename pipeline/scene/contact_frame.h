@@ -43,10 +43,13 @@ struct ContactFrame {
   /// Room for so much at a level, and for every run there may be. False if memory is refused.
   [[nodiscard]] bool reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                              std::size_t contact_points, Pages pages) noexcept;
-  /// As much room as another frame has, so that the two can change places.
+  /// As much room as another frame has, so that the two can change places; or their pairs alone.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
+  [[nodiscard]] bool reserve_pairs_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
   void swap(ContactFrame& other) noexcept;
+  /// The bodies of pairs and what became of them, nothing else.
+  void swap_pairs(ContactFrame& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
   /// Where something is written: the next pair, manifold and point.
@@ -65,7 +68,7 @@ struct ContactFrame {
   /// How much pairs [first, first + count) take.
   [[nodiscard]] Place extent(std::uint32_t first, std::uint32_t count = 1) const noexcept;
   /// Copies pairs [first, first + count) of another frame of the same level to a place, with their
-  /// manifolds and points, but for runs.
+  /// manifolds and points, but for runs; without any where the other has pairs alone.
   void copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
             const Place& to) noexcept;
   /// Writes what ends the columns of firsts.
@@ -113,6 +116,7 @@ struct ContactsState {
 
   ContactLevel level = ContactLevel::pairs;
   ContactFrame frame;
+  /// The last one: its pairs alone, unless manifolds are carried over or points are to be found.
   ContactFrame before;
   Column<EndedContact> ended;
   Column<PairRecord> records;

@@ -2,6 +2,7 @@
 
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
+#include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/contact_frame.h"
 
 #include <algorithm>
@@ -57,7 +58,9 @@ bool ContactFrame::make_columns(ContactLevel level, std::size_t pairs, std::size
 
 bool ContactFrame::resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                           std::size_t contact_points) noexcept {
-  const auto resize_one = [](auto& column, std::size_t count) { return column.resize(count); };
+  const auto resize_one = [](auto& column, std::size_t count) {
+    return resize_steadily(column, count);
+  };
   if (!make_columns(level, pairs, manifolds, resize_one) || !points.grow(contact_points)) {
     return false;
   }
@@ -79,18 +82,24 @@ bool ContactFrame::reserve(ContactLevel level, std::size_t pairs, std::size_t ma
   return true;
 }
 
+bool ContactFrame::reserve_pairs_as(const ContactFrame& other) noexcept {
+  bool good = event.reserve(other.event.capacity());
+  for (int side = 0; side < 2; ++side) {
+    good = good && key[side].reserve(other.key[side].capacity()) &&
+           data[side].reserve(other.data[side].capacity());
+  }
+  return good;
+}
+
 bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
-  bool good = event.reserve(other.event.capacity()) &&
-              manifold_first.reserve(other.manifold_first.capacity()) &&
+  bool good = reserve_pairs_as(other) && manifold_first.reserve(other.manifold_first.capacity()) &&
               distance.reserve(other.distance.capacity()) &&
               error_bound.reserve(other.error_bound.capacity()) &&
               point_first.reserve(other.point_first.capacity()) &&
               points.depth.reserve(other.points.depth.capacity()) &&
               points.feature.reserve(other.points.feature.capacity());
   for (int side = 0; side < 2; ++side) {
-    good = good && key[side].reserve(other.key[side].capacity()) &&
-           data[side].reserve(other.data[side].capacity()) &&
-           part[side].reserve(other.part[side].capacity());
+    good = good && part[side].reserve(other.part[side].capacity());
   }
   for (int axis = 0; axis < 3; ++axis) {
     good = good && normal[axis].reserve(other.normal[axis].capacity()) &&
@@ -119,15 +128,19 @@ void ContactFrame::clear() noexcept {
   points.set_size(0);
 }
 
-void ContactFrame::swap(ContactFrame& other) noexcept {
-  runs.swap(other.runs);
+void ContactFrame::swap_pairs(ContactFrame& other) noexcept {
   event.swap(other.event);
-  manifold_first.swap(other.manifold_first);
   for (int side = 0; side < 2; ++side) {
     key[side].swap(other.key[side]);
     data[side].swap(other.data[side]);
-    part[side].swap(other.part[side]);
   }
+}
+
+void ContactFrame::swap(ContactFrame& other) noexcept {
+  swap_pairs(other);
+  runs.swap(other.runs);
+  manifold_first.swap(other.manifold_first);
+  for (int side = 0; side < 2; ++side) part[side].swap(other.part[side]);
   distance.swap(other.distance);
   error_bound.swap(other.error_bound);
   for (int axis = 0; axis < 3; ++axis) {
@@ -175,7 +188,10 @@ void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uin
     copy_range(other.data[side], first, count, data[side], to.pair);
   }
   copy_range(other.event, first, count, event, to.pair);
-  if (other.manifold_first.empty()) return;
+  if (other.manifold_first.empty()) {
+    if (!manifold_first.empty()) std::fill_n(manifold_first.data() + to.pair, count, to.manifold);
+    return;
+  }
   const std::uint32_t begin = other.manifold_first[first];
   const std::uint32_t manifolds = other.manifold_first[first + count] - begin;
   for (std::uint32_t i = 0; i < count; ++i) {

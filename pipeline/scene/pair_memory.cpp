@@ -2,6 +2,7 @@
 // where they have hardly moved, told where they have ended.
 
 #include <winnow/core/rotation.h>
+#include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/motion_bound.h"
 
@@ -101,9 +102,9 @@ bool Collision::match() {
   const auto pairs = scene_.pairs.pairs();
   same_pairs_ = carries_ && same_level_ && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs.size() && c.carried.size() == pairs.size();
-  if (level_ != ContactLevel::pairs && !c.origin.resize(pairs.size())) return false;
+  if (level_ != ContactLevel::pairs && !resize_steadily(c.origin, pairs.size())) return false;
   if (same_pairs_) return true;
-  if (!c.old_record.resize(pairs.size())) return false;
+  if (!resize_steadily(c.old_record, pairs.size())) return false;
   const auto order_of_pair = [&](std::uint32_t i) {
     return std::tuple(code_of(scene_, pairs[i]), pairs[i].a, pairs[i].b);
   };

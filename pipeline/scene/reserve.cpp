@@ -163,9 +163,15 @@ bool ContactsState::reserve(const SceneRoom& room, bool carries, bool remembers_
   const std::size_t shown = shown_pairs(room);
   const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
-  for (ContactFrame* const one : {&frame, &before, &dormant}) {
-    if (one == &dormant && !may_sleep) continue;
-    if (!one->reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
+  if (!frame.reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
+  // What is kept of the last frame, and of pairs that sleep, are pairs alone unless more is read.
+  const bool has_more = carries || remembers_places;
+  const std::size_t manifolds = has_more ? room.manifolds : 0;
+  const std::size_t points_kept = has_more ? room.points : 0;
+  if (!before.reserve(has_more ? room.level : ContactLevel::pairs, shown, manifolds, points_kept,
+                      pages) ||
+      (may_sleep && !dormant.reserve(room.level, shown, manifolds, points_kept, pages))) {
+    return false;
   }
   const std::size_t points = room.level == ContactLevel::manifold ? room.points : 0;
   if (remembers_places && !history.reserve(shown, points, bodies_of(room), pages)) return false;

@@ -158,6 +158,26 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
   }
 }
 
+// Of the last frame only its pairs are read, unless contacts are carried over or warm started.
+TEST(SceneBytes, what_is_not_read_of_the_last_frame_is_not_held) {
+  const auto remembered = [](const SceneOptions& options) {
+    SceneWorld world(scaled(600), 19);
+    Scene scene(world.pool, options);
+    Contacts contacts;
+    EXPECT_EQ(add_all(scene, world), Status::ok);
+    for (int frame = 0; frame < 4; ++frame) {
+      EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    }
+    EXPECT_GT(contacts.points(), 0U);
+    const Footprint bytes = contacts.footprint();
+    return static_cast<double>(bytes.scratch.reserved) /
+           static_cast<double>(bytes.results.reserved);
+  };
+  EXPECT_LT(remembered({}), 1.0);
+  EXPECT_GT(remembered({.warm_start = true}), 1.0);
+  EXPECT_GT(remembered({.carry_over = 0.01}), 1.0);
+}
+
 TEST(SceneBytes, twenty_bodies_take_a_kilobyte_each) {
   constexpr std::size_t kBodies = 20;
   CountingMemory memory;

@@ -130,6 +130,37 @@ TEST(Scene, contacts_of_bodies_that_fell_asleep_are_neither_shown_nor_ended_and_
   }
 }
 
+TEST(Scene, contacts_persist_on_waking_after_other_levels_were_asked_for) {
+  for (const double carry_over : {0.0, 0.01}) {
+    ShapePool pool;
+    const ShapeId ball = pool.add(SphereShape{1});
+    Scene scene(pool, {.carry_over = carry_over});
+    Key keys[12];
+    for (ClientData i = 0; i < 12; ++i) {
+      const double x = 1.9 * static_cast<double>(i);
+      ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0), .data = i}, keys[i]),
+                Status::ok);
+    }
+    Contacts contacts;
+    for (const ContactLevel level :
+         {ContactLevel::manifold, ContactLevel::boolean, ContactLevel::distance,
+          ContactLevel::boolean, ContactLevel::manifold}) {
+      for (int round = 0; round < 2; ++round) {
+        ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+        EXPECT_EQ(contacts.size(), 11U);
+        EXPECT_EQ(contacts.manifolds(), 11U);
+      }
+      ASSERT_EQ(scene.set_motion(keys, Motion::sleeping), Status::ok);
+      ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+      EXPECT_EQ(contacts.size() + contacts.ended().size(), 0U);
+      ASSERT_EQ(scene.set_motion(keys, Motion::dynamic), Status::ok);
+      ASSERT_EQ(scene.collide(level, contacts), Status::ok);
+      EXPECT_EQ(contacts.manifold_first()[11], 11U);
+      for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
+    }
+  }
+}
+
 TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_set) {
   std::vector<std::uint64_t> first;
   const Isa isas[] = {available_isas().front(), available_isas().back()};
