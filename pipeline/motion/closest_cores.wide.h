@@ -75,6 +75,113 @@ struct ClosestOptions {
   const Doubles& noise;
 };
 
+/// Where a point of the simplex is the farthest, rounding may make the gap look worse than it is by
+/// this share.
+inline constexpr double kRounding = 1e-2;
+
+/// A point of the difference of two cores, which are farthest there, and what of each it is made
+/// of.
+struct FarthestPoint {
+  const Vector& of_a;
+  const Vector& of_b;
+  const Vector& w;
+};
+
+/// The nearest feature of a new point and one old one at most, in slot 0: as `hull::nearest_of`
+/// finds it.
+[[nodiscard]] static inline hull::SimplexNearest<double> nearest_of_edge(
+    const hull::Simplex<double>& others, const Vector& w) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const Truth none = zero > one;
+  const Vector edge = select(others.present[0], others.point[0] - w, zero_vector());
+  const Doubles square = dot(edge, edge);
+  const Doubles reach = -dot(edge, w);
+  const Doubles t = min(reach / max(square, Doubles(hull::kVanishing<double>)), one);
+  const Vector x = w + edge * t;
+  const Truth nearer = (reach > zero) & (dot(x, x) < dot(w, w));
+  const Truth repeated = others.present[0] & (square <= zero);
+  return {select(nearer, x, w), {nearer, none, none}, none, none, repeated};
+}
+
+/// The nearest feature with a new point, by no more work than the lane with the most points needs.
+[[nodiscard]] static inline hull::SimplexNearest<double> nearest_feature(
+    const hull::Simplex<double>& others, const Vector& w, const Truth& lanes) {
+  if (bits(lanes & (others.present[1] | others.present[2])) != 0) {
+    return hull::nearest_of(others, w);
+  }
+  if (bits(lanes & others.present[0]) != 0) return nearest_of_edge(others, w);
+  const Truth none = lanes & !lanes;
+  return {w, {none, none, none}, none, none, none};
+}
+
+/// A simplex but for a point that is the same: the nearest feature of an old simplex need not be
+/// the nearest any more where its points are now.
+[[nodiscard]] static inline hull::Simplex<double> without(const hull::Simplex<double>& simplex,
+                                                          const Vector& w) {
+  hull::Simplex<double> others = simplex;
+  for (int s = 0; s < kSlots; ++s) {
+    const Vector& p = others.point[s];
+    others.present[s] = others.present[s] & !((p.x == w.x) & (p.y == w.y) & (p.z == w.z));
+  }
+  return others;
+}
+
+[[nodiscard]] static inline Truth holds_more_than(const hull::Simplex<double>& simplex,
+                                                  const hull::Simplex<double>& others) {
+  Truth more = simplex.present[0] & !others.present[0];
+  for (int s = 1; s < kSlots; ++s) more = more | (simplex.present[s] & !others.present[s]);
+  return more;
+}
+
+/// Where `moves`: the nearest feature becomes the simplex.
+static inline void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves,
+                        const FarthestPoint& added, hull::Simplex<double>& simplex,
+                        WitnessLanes& witness) {
+  Truth placed = !moves;
+  for (int s = 0; s < kSlots; ++s) {
+    const Truth take = (!placed) & (!nearest.keep[s]);
+    placed = placed | take;
+    simplex.point[s] = select(take, added.w, simplex.point[s]);
+    witness.a[s] = select(take, added.of_a, witness.a[s]);
+    witness.b[s] = select(take, added.of_b, witness.b[s]);
+    simplex.present[s] = (moves & (take | nearest.keep[s])) | ((!moves) & simplex.present[s]);
+  }
+}
+
+/// A point of a simplex, by shares of its points in slots 1 and 2.
+struct Shares {
+  Doubles s;
+  Doubles t;
+
+  [[nodiscard]] [[gnu::always_inline]] Vector of(const Vector (&point)[kSlots]) const {
+    return point[0] + (point[1] - point[0]) * s + (point[2] - point[0]) * t;
+  }
+};
+
+/// Those that make `gap`.
+[[nodiscard]] static inline Shares shares_of(const hull::Simplex<double>& simplex,
+                                             const Vector& gap) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  Vector edge[2];
+  Doubles square[2];
+  Doubles along[2];
+  const Vector from = gap - simplex.point[0];
+  for (int i = 0; i < 2; ++i) {
+    const Truth present = simplex.present[i + 1];
+    edge[i] = select(present, simplex.point[i + 1] - simplex.point[0], zero_vector());
+    square[i] = select(present, dot(edge[i], edge[i]), one);
+    along[i] = dot(edge[i], from);
+  }
+  const Doubles mixed = dot(edge[0], edge[1]);
+  const Doubles area = square[0] * square[1] - mixed * mixed;
+  const Truth wide = area > square[0] * square[1] * Doubles(1e-14);
+  const Doubles over = one / select(wide, area, one);
+  return {select(wide, (along[0] * square[1] - along[1] * mixed) * over, along[0] / square[0]),
+          select(wide, (along[1] * square[0] - along[0] * mixed) * over, zero)};
+}
+
 class ClosestSearch {
  public:
   ClosestSearch(const CorePair& pair, const ClosestOptions& options, WitnessLanes& witness)
@@ -90,9 +197,6 @@ class ClosestSearch {
   }
 
  private:
-  /// Where a point of the simplex is the farthest, rounding may make the gap look worse than it is
-  /// by this share.
-  static constexpr double kRounding = 1e-2;
   /// A search that ends this much worse than it may be is begun anew, without what was there.
   static constexpr double kLost = 4.0;
 
@@ -115,7 +219,7 @@ class ClosestSearch {
     }
     hull::Simplex<double> others = simplex_;
     others.present[0] = zero > Doubles(1.0);
-    const hull::SimplexNearest<double> nearest = nearest_of(others, simplex_.point[0], kept);
+    const hull::SimplexNearest<double> nearest = nearest_feature(others, simplex_.point[0], kept);
     gap_ = select(kept, nearest.point, from);
     for (int s = 1; s < kSlots; ++s) {
       simplex_.present[s] = simplex_.present[s] & nearest.keep[s];
@@ -138,51 +242,24 @@ class ClosestSearch {
     const Doubles left = distance - options_.roundings;
     const Doubles share = select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
     const Doubles known = max(options_.noise, share * left) * distance;
-    const hull::Simplex<double> others = without(w);
-    const Truth ends = (gain <= Doubles(kRounding) * distance * left) & holds_more_than(others);
+    const hull::Simplex<double> others = without(simplex_, w);
+    const Truth ends =
+        (gain <= Doubles(kRounding) * distance * left) & holds_more_than(simplex_, others);
     const Truth close = (!fresh_) & ((gain <= known) | ends);
     if (bits(open_ & !close) == 0) {
       open_ = fresh_ & !fresh_;
       return;
     }
-    const hull::SimplexNearest<double> nearest = nearest_of(others, w, open_);
+    const hull::SimplexNearest<double> nearest = nearest_feature(others, w, open_);
     const Doubles next_square = dot(nearest.point, nearest.point);
     const Truth stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
     const Truth moves = open_ & !(close | stuck | nearest.inside);
-    keep(nearest, moves, own_a, own_b, w);
+    keep(nearest, moves, {own_a, own_b, w}, simplex_, witness_);
+    gap_ = select(moves, nearest.point, gap_);
+    fresh_ = fresh_ & !moves;
     const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
     open_ = moves | lost;
     if (bits(lost) != 0) begin_anew(lost);
-  }
-
-  /// The nearest feature with a new point, which needs no search where no lane has another one.
-  [[nodiscard]] static hull::SimplexNearest<double> nearest_of(const hull::Simplex<double>& others,
-                                                               const Vector& w,
-                                                               const Truth& lanes) {
-    Truth has = lanes & others.present[0];
-    for (int s = 1; s < kSlots; ++s) has = has | (lanes & others.present[s]);
-    if (bits(has) != 0) return hull::nearest_of(others, w);
-    const Truth none = has & !has;
-    return {w, {none, none, none}, none, none, none};
-  }
-
-  /// The simplex but for a point that is the same: the nearest feature of an old simplex need not
-  /// be the nearest any more where its points are now.
-  [[nodiscard]] hull::Simplex<double> without(const Vector& w) const {
-    hull::Simplex<double> others = simplex_;
-    for (int s = 0; s < kSlots; ++s) {
-      const Vector& p = others.point[s];
-      others.present[s] = others.present[s] & !((p.x == w.x) & (p.y == w.y) & (p.z == w.z));
-    }
-    return others;
-  }
-
-  [[nodiscard]] Truth holds_more_than(const hull::Simplex<double>& others) const {
-    Truth more = fresh_ & !fresh_;
-    for (int s = 0; s < kSlots; ++s) {
-      more = more | (simplex_.present[s] & !others.present[s]);
-    }
-    return more;
   }
 
   /// Keeps the direction that shows the most.
@@ -196,55 +273,18 @@ class ClosestSearch {
     found_.high_b = select(better, -dot(axis, on_b), found_.high_b);
   }
 
-  /// Where `moves`: the nearest feature becomes the simplex.
-  void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves, const Vector& own_a,
-            const Vector& own_b, const Vector& w) {
-    Truth placed = !moves;
-    for (int s = 0; s < kSlots; ++s) {
-      const Truth take = (!placed) & (!nearest.keep[s]);
-      placed = placed | take;
-      simplex_.point[s] = select(take, w, simplex_.point[s]);
-      witness_.a[s] = select(take, own_a, witness_.a[s]);
-      witness_.b[s] = select(take, own_b, witness_.b[s]);
-      simplex_.present[s] = (moves & (take | nearest.keep[s])) | ((!moves) & simplex_.present[s]);
-    }
-    gap_ = select(moves, nearest.point, gap_);
-    fresh_ = fresh_ & !moves;
-  }
-
   void begin_anew(const Truth& lanes) {
     begun_anew_ = begun_anew_ | lanes;
     fresh_ = fresh_ | lanes;
     for (Truth& present : simplex_.present) present = present & !lanes;
   }
 
-  /// Where on the cores the gap begins and ends: by weights of the points of the simplex.
   void finish() {
-    const Doubles zero(0.0);
-    const Doubles one(1.0);
-    Vector edge[2];
-    Doubles square[2];
-    Doubles along[2];
-    const Vector from = gap_ - simplex_.point[0];
-    for (int i = 0; i < 2; ++i) {
-      const Truth present = simplex_.present[i + 1];
-      edge[i] = select(present, simplex_.point[i + 1] - simplex_.point[0], zero_vector());
-      square[i] = select(present, dot(edge[i], edge[i]), one);
-      along[i] = dot(edge[i], from);
-    }
-    const Doubles mixed = dot(edge[0], edge[1]);
-    const Doubles area = square[0] * square[1] - mixed * mixed;
-    const Truth wide = area > square[0] * square[1] * Doubles(1e-14);
-    const Doubles over = one / select(wide, area, one);
-    const Doubles s =
-        select(wide, (along[0] * square[1] - along[1] * mixed) * over, along[0] / square[0]);
-    const Doubles t = select(wide, (along[1] * square[0] - along[0] * mixed) * over, zero);
     found_.between = gap_;
     found_.upper = length(gap_);
-    found_.on_a = pair_.on_a(witness_.a[0] + (witness_.a[1] - witness_.a[0]) * s +
-                             (witness_.a[2] - witness_.a[0]) * t);
-    found_.on_b = pair_.on_b(witness_.b[0] + (witness_.b[1] - witness_.b[0]) * s +
-                             (witness_.b[2] - witness_.b[0]) * t);
+    const Shares shares = shares_of(simplex_, gap_);
+    found_.on_a = pair_.on_a(shares.of(witness_.a));
+    found_.on_b = pair_.on_b(shares.of(witness_.b));
     for (int i = 0; i < kSlots; ++i) witness_.present[i] = one_where(simplex_.present[i]);
   }
 

@@ -15,13 +15,22 @@ namespace {
 
 constexpr std::size_t kLaneKinds = 8;
 /// Of pairs without lanes.
-constexpr std::size_t kNoLanes = kLaneKinds * kLaneKinds;
+constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
 
-[[nodiscard]] std::size_t kinds_of(const ImpactQuery& query) noexcept {
+[[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
+  const double(&turn)[3] = query.motion[side]->turn;
+  return query.shape[side].kind() == ShapeKind::sphere ||
+         (turn[0] == 0.0 && turn[1] == 0.0 && turn[2] == 0.0);
+}
+
+/// Of pairs that one job may have: an even number if none of the bodies turns.
+[[nodiscard]] std::uint16_t kinds_of(const ImpactQuery& query) noexcept {
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
   if (!has_impact_lanes(a) || !has_impact_lanes(b)) return kNoLanes;
-  return static_cast<std::size_t>(a) * kLaneKinds + static_cast<std::size_t>(b);
+  const bool straight = is_straight(query, 0) && is_straight(query, 1);
+  const std::size_t kinds = static_cast<std::size_t>(a) * kLaneKinds + static_cast<std::size_t>(b);
+  return static_cast<std::uint16_t>(2 * kinds + (straight ? 0 : 1));
 }
 
 /// Distances of pairs of one pair of kinds at the start of their motions, in lanes.
@@ -99,17 +108,18 @@ void ImpactBatch::add(std::size_t name, ShapeId a, const RigidMotion& of_a, Shap
   } else {
     query = {{a, b}, {&of_a, &of_b}, until};
   }
+  kinds_[count_] = kinds_of(query);
   ++count_;
 }
 
 void ImpactBatch::sort_by_kinds() noexcept {
   std::array<std::uint16_t, kNoLanes + 2> first{};
-  for (std::size_t i = 0; i < count_; ++i) ++first[kinds_of(queries_[i]) + 1];
+  for (std::size_t i = 0; i < count_; ++i) ++first[kinds_[i] + 1U];
   for (std::size_t k = 1; k < first.size(); ++k) {
     first[k] = static_cast<std::uint16_t>(first[k] + first[k - 1]);
   }
   for (std::size_t i = 0; i < count_; ++i) {
-    order_[first[kinds_of(queries_[i])]++] = static_cast<std::uint16_t>(i);
+    order_[first[kinds_[i]]++] = static_cast<std::uint16_t>(i);
   }
 }
 
@@ -139,16 +149,18 @@ void ImpactBatch::search(std::size_t i) noexcept {
 
 void ImpactBatch::find() noexcept {
   sort_by_kinds();
-  ImpactJob job{tables_, queries_.data(), nullptr, 0, tolerance_, found_.data(), verdicts_.data()};
+  ImpactJob job{false, tables_,    queries_.data(), nullptr,
+                0,     tolerance_, found_.data(),   verdicts_.data()};
   for (std::size_t at = 0; at < count_; at += job.count) {
-    const std::size_t kinds = kinds_of(queries_[order_[at]]);
+    const std::uint16_t kinds = kinds_[order_[at]];
     job.order = order_.data() + at;
     job.count = 1;
     while (at + job.count < count_ && job.count < kImpactJobQueries &&
-           kinds_of(queries_[job.order[job.count]]) == kinds) {
+           kinds_[job.order[job.count]] == kinds) {
       ++job.count;
     }
     if (kinds != kNoLanes) {
+      job.straight = kinds % 2 == 0;
       impact_lane_kernels().run(job);
       find_starts(job);
       continue;

@@ -62,6 +62,8 @@ class ImpactBatch {
   std::array<bool, kRoom> mirrored_;
   std::array<Impact, kRoom> found_;
   std::array<ImpactVerdict, kRoom> verdicts_;
+  /// What a job has in common.
+  std::array<std::uint16_t, kRoom> kinds_;
   /// By kinds.
   std::array<std::uint16_t, kRoom> order_;
 };

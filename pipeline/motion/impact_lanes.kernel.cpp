@@ -6,18 +6,15 @@
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
-#include "pipeline/motion/closed_forms.wide.h"
+#include "pipeline/motion/impact_block.wide.h"
+#include "pipeline/motion/straight_step.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::impact {
 namespace {
 
-/// Shapes that stay so long within the tolerance as they near each other have met.
-constexpr double kMostWithin = 64.0;
 /// Distances need to be no better than this share of them until the last one.
-constexpr double kGoodEnough = 1e-3;
-/// Of the noise: what distances need not be better than.
-constexpr double kEnough = 0.125;
+constexpr double kGoodEnough = 0.3;
 /// Steps of one search for closest points; more are not needed but where rounding leads astray.
 constexpr int kMostSteps = 32;
 /// More rounds take the search that has one pair alone.
@@ -25,116 +22,6 @@ constexpr int kMostRounds = 256;
 /// Lengths whose products of six are in the range of double, and keep their digits.
 constexpr double kShortest = 1e-40;
 constexpr double kLongest = 1e40;
-
-/// Two moving shapes and what is known of them. All members are lanes.
-struct PairLanes {
-  MovingCore a;
-  MovingCore b;
-  /// From body a to body b at time 0, and how that changes.
-  Vector start;
-  Vector travel;
-  Doubles roundings;
-  Doubles sizes;
-  /// What rounding does to any gap but for that of the place.
-  Doubles still_noise;
-  Doubles tolerance;
-  Doubles last;
-  Doubles until;
-  /// They are apart before; and what is known of them then, by a look.
-  Doubles time;
-  Vector axis;
-  Doubles gap;
-  Doubles slope;
-  Doubles free;
-  /// When to look next, and whether that is to prove that they are apart until then.
-  Doubles next;
-  Doubles proves;
-  /// As in ImpactSearch.
-  Doubles touching;
-  Doubles aim;
-  Doubles within;
-  /// 1 while there is more to do.
-  Doubles active;
-  WitnessLanes witness;
-};
-
-struct PairBlockTables {
-  CoreTable a;
-  CoreTable b;
-  /// Index of the query in each lane.
-  std::uint32_t query[kWidth];
-};
-
-struct ImpactBlock {
-  PairLanes lanes;
-  PairBlockTables tables;
-};
-
-/// What the lanes show where they are placed.
-struct LookLanes {
-  ClosestLanes closest;
-  Vector between;
-  Doubles noise;
-  Doubles gap;
-  Doubles most;
-  Doubles slope;
-  Truth parted;
-};
-
-/// Writes answers of some lanes.
-class Answers {
- public:
-  Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
-
-  /// They are apart before.
-  void put_unsure(Mask16 lanes, const Doubles& time) {
-    if (lanes == 0) return;
-    alignas(64) double times[kWidth];
-    time.store(times);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const unsigned lane = first(lanes);
-      job_.verdicts[tables_.query[lane]] = ImpactVerdict::unsure;
-      job_.found[tables_.query[lane]].time = times[lane];
-    }
-  }
-
-  void put_apart(Mask16 lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const std::uint32_t query = tables_.query[first(lanes)];
-      job_.verdicts[query] = ImpactVerdict::known;
-      job_.found[query] = {};
-    }
-  }
-
-  void put_meeting(Mask16 lanes, const PairLanes& p, const LookLanes& look) {
-    if (lanes == 0) return;
-    const Doubles distance = look.closest.upper;
-    const Doubles gap = distance - p.roundings;
-    const Vector normal = look.closest.between * (Doubles(1.0) / distance);
-    const Vector point = look.closest.on_a + normal * p.a.rounding;
-    const Doubles error = max(look.most - gap, gap - look.gap);
-    const Doubles columns[] = {
-        p.time, positive_part(gap), error, normal.x, normal.y, normal.z, point.x, point.y, point.z};
-    alignas(64) double stage[9][kWidth];
-    for (int k = 0; k < 9; ++k) columns[k].store(stage[k]);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const unsigned lane = first(lanes);
-      const std::uint32_t query = tables_.query[lane];
-      job_.verdicts[query] = ImpactVerdict::known;
-      job_.found[query] = {true,
-                           stage[0][lane],
-                           stage[1][lane],
-                           stage[2][lane],
-                           {stage[3][lane], stage[4][lane], stage[5][lane]},
-                           {stage[6][lane], stage[7][lane], stage[8][lane]},
-                           0};
-    }
-  }
-
- private:
-  const ImpactJob& job_;
-  const PairBlockTables& tables_;
-};
 
 /// The share of an interval in which a gap that is `above` a target at its start, and `then` above
 /// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
@@ -439,8 +326,9 @@ class ImpactLoad {
       load_core(
           job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
       measure(table, core);
-      usable = usable & load_turn(
-                            table, [&](int lane) { return motion(side, lane); }, core);
+      usable =
+          usable & load_turn(
+                       table, [&](int lane) { return motion(side, lane); }, job_.straight, core);
     }
     return usable;
   }
@@ -488,6 +376,13 @@ class ImpactLoad {
     return (distance <= radius + slack) & (p_.time <= min(p_.last, p_.until));
   }
 
+  /// Of the search for closest points of a pair that does not turn.
+  [[nodiscard]] Vector first_axis() const {
+    const Vector between = p_.start + p_.travel * p_.time;
+    const Truth there = dot(between, between) > Doubles(0.0);
+    return select(there, between, Vector{Doubles(1.0), Doubles(0.0), Doubles(0.0)});
+  }
+
   void begin(const Truth& usable) {
     const Doubles zero(0.0);
     const Truth near = cut_to_window();
@@ -495,7 +390,7 @@ class ImpactLoad {
       p_.witness.a[i] = p_.witness.b[i] = zero_vector();
       p_.witness.present[i] = zero;
     }
-    p_.axis = zero_vector();
+    p_.axis = first_axis();
     p_.gap = Doubles(1.0);
     p_.slope = p_.free = p_.proves = p_.within = zero;
     p_.next = p_.time;
@@ -532,9 +427,9 @@ inline void move_members(const Members& from, unsigned lane_from, Members& to, u
 
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
-                      unsigned lane_to) {
-  constexpr std::size_t kCore = offsetof(MovingCore, corner);
-  constexpr std::size_t kTriangle = offsetof(MovingCore, axes);
+                      unsigned lane_to, bool is_placed) {
+  const std::size_t kCore = is_placed ? sizeof(MovingCore) : offsetof(MovingCore, corner);
+  const std::size_t kTriangle = is_placed ? sizeof(MovingCore) : offsetof(MovingCore, axes);
   constexpr std::size_t kCores = offsetof(PairLanes, start);
   constexpr std::size_t kPair = offsetof(PairLanes, witness) - kCores;
   const PairLanes& source = from.lanes;
@@ -569,7 +464,8 @@ class ImpactRounds {
     for (int round = 0; count_ > 0 && round < kMostRounds; ++round) {
       std::uint32_t lanes = 0;
       for (std::uint32_t i = 0; i < count_; ++i) {
-        active_[i] = ImpactStep(job_, block_[i], round == 0).run();
+        active_[i] = job_.straight ? StraightStep(job_, block_[i]).run()
+                                   : ImpactStep(job_, block_[i], round == 0).run();
         lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
       }
       close_ranks(lanes);
@@ -591,7 +487,7 @@ class ImpactRounds {
       for (; active_[from] != 0; active_[from] &= active_[from] - 1) {
         while (active_[to] == kAllLanes<double>) ++to;
         const unsigned lane_to = first(~active_[to]);
-        move_lane(block_[from], first(active_[from]), block_[to], lane_to);
+        move_lane(block_[from], first(active_[from]), block_[to], lane_to, job_.straight);
         active_[to] |= 1U << lane_to;
       }
     }

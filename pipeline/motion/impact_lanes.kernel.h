@@ -28,6 +28,8 @@ inline constexpr std::uint32_t kImpactJobQueries = 64;
 
 /// Queries of one pair of kinds, all of which have lanes, and where their answers go.
 struct ImpactJob {
+  /// None of the bodies turns; else some do.
+  bool straight;
   ShapeTables tables;
   const ImpactQuery* queries;
   /// Which of the queries: indices, here and of the answers.

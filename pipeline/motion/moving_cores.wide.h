@@ -16,6 +16,8 @@ inline constexpr int kWidth = Doubles::kCount;
 inline constexpr double kPlace = 0x1p-52;
 /// Axes that differ by less are the same: what that changes is counted as noise.
 inline constexpr double kAxisDoubt = 16.0 * kPlace;
+/// Radians.
+inline constexpr double kFarTurn = 2.0;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
   const Doubles zero(0.0);
@@ -279,9 +281,61 @@ static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, c
       return sqrt(square);
     }
     default:
-      // All vertices are in the ball about the hull's middle.
-      return length(cross(core.half, w)) + core.extent - core.rounding;
+      return Doubles(0.0);
   }
+}
+
+/// The greatest number of each row, which is a lane's.
+static inline Doubles greatest_of_rows(const double (&row)[kWidth][kWidth]) {
+  Doubles most(-__builtin_inf());
+  for (int half = 0; half < kWidth; half += 4) {
+    Doubles four[4];
+    load_rows4([&](int lane) { return row[lane] + half; }, four);
+    for (const Doubles& values : four) most = max(most, values);
+  }
+  return most;
+}
+
+/// The same of hulls, and how far along the axis they reach: by the ball about their middle, which
+/// contains all vertices, or by the vertices of those that turn so far that it pays.
+static inline void measure_turning_hulls(const CoreTable& table, const Vector& w,
+                                         MovingCore& core) {
+  const Doubles radius = core.extent - core.rounding;
+  const Doubles height = dot(core.half, w);
+  core.reach = length(cross(core.half, w)) + radius;
+  core.low = height - radius;
+  core.high = height + radius;
+  const Truth far = core.angle > Doubles(kFarTurn);
+  if (bits(far) == 0) return;
+  alignas(64) double axis[3][kWidth];
+  alignas(64) double found[3][kWidth][kWidth] = {};
+  w.x.store(axis[0]);
+  w.y.store(axis[1]);
+  w.z.store(axis[2]);
+  for (Mask16 lanes = bits(far); lanes != 0; lanes &= lanes - 1) {
+    const unsigned lane = first(lanes);
+    const HullShape& hull = *table.hull[lane];
+    const Vector about{Doubles(axis[0][lane]), Doubles(axis[1][lane]), Doubles(axis[2][lane])};
+    Doubles square(0.0);
+    Doubles high(-__builtin_inf());
+    Doubles low(-__builtin_inf());
+    // Padding repeats vertex 0.
+    for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
+      const Vector v{Doubles::load(hull.vertex[0] + row), Doubles::load(hull.vertex[1] + row),
+                     Doubles::load(hull.vertex[2] + row)};
+      const Vector arm = cross(v, about);
+      const Doubles along = dot(v, about);
+      square = max(square, dot(arm, arm));
+      high = max(high, along);
+      low = max(low, -along);
+    }
+    square.store(found[0][lane]);
+    high.store(found[1][lane]);
+    low.store(found[2][lane]);
+  }
+  core.reach = select(far, sqrt(greatest_of_rows(found[0])), core.reach);
+  core.high = select(far, greatest_of_rows(found[1]), core.high);
+  core.low = select(far, -greatest_of_rows(found[2]), core.low);
 }
 
 /// Loads the numbers of shapes; `shape(lane)` names them.
@@ -375,9 +429,10 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
   }
 }
 
-/// How the core turns with its body, of a core that is measured; true where double holds it.
+/// How the core turns with its body, of a core that is measured, and where it is at the start; true
+/// where double holds it. `straight`: it does not turn.
 template <typename Row>
-[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
+[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion, bool straight,
                                               MovingCore& core) {
   constexpr double kLongest = 1e200;
   constexpr double kLeastAngle = 1e-100;
@@ -393,6 +448,11 @@ template <typename Row>
   const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const Doubles shrink = one / sqrt(square);
   core.from = {q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
+  const Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
+  if (straight) {
+    core.axes = rotation_of(core.from);
+    return usable;
+  }
   Doubles turn[2];
   load_rows2([&](int lane) { return motion(lane) + kTurnAt; }, turn);
   const Vector about{turn[0], turn[1],
@@ -402,16 +462,15 @@ template <typename Row>
   core.angle = select(turns, angle, zero);
   core.axis = select(turns, about * (one / angle), core.axis);
   const Vector own = rotation_of(core.from).to_local(core.axis);
-  core.reach = reach_of(table, core, own) * Doubles(1.0 + kAxisDoubt);
   if (table.kind == ShapeKind::hull) {
-    const Doubles height = dot(core.half, own);
-    core.low = height - core.extent;
-    core.high = height + core.extent;
+    measure_turning_hulls(table, own, core);
   } else {
+    core.reach = reach_of(table, core, own);
     core.low = dot(own, farthest(table, core, -own, 0));
     core.high = dot(own, farthest(table, core, own, 0));
   }
-  return (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
+  core.reach = core.reach * Doubles(1.0 + kAxisDoubt);
+  return usable;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -55,14 +55,15 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 }
 
 bool RigidMotion::is_valid() const noexcept {
-  if (!start.is_valid()) return false;
-  bool finite = true;
+  // Of finite numbers it stays 0, of others it is no number.
+  double sum = 0.0;
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {
-    finite = finite && std::isfinite(travel[i]) && std::isfinite(start.position[i] + travel[i]);
+    const double end = start.position[i] + travel[i];
+    sum += (travel[i] - travel[i]) + (end - end);
     square += turn[i] * turn[i];
   }
-  return finite && square <= kMostTurn * kMostTurn;
+  return start.is_valid() && sum == 0.0 && square <= kMostTurn * kMostTurn;
 }
 
 Pose RigidMotion::at(double time) const noexcept {

@@ -1,0 +1,125 @@
+#pragma once
+
+// Pairs of moving cores, one per lane, what is known of them on their way, and where their answers
+// go.
+
+#include "pipeline/motion/closed_forms.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+/// Shapes that stay so long within the tolerance as they near each other have met.
+inline constexpr double kMostWithin = 64.0;
+/// Of the noise: what distances need not be better than.
+inline constexpr double kEnough = 0.125;
+
+/// Two moving shapes and what is known of them. All members are lanes.
+struct PairLanes {
+  MovingCore a;
+  MovingCore b;
+  /// From body a to body b at time 0, and how that changes.
+  Vector start;
+  Vector travel;
+  Doubles roundings;
+  Doubles sizes;
+  /// What rounding does to any gap but for that of the place.
+  Doubles still_noise;
+  Doubles tolerance;
+  Doubles last;
+  Doubles until;
+  /// They are apart before; and what is known of them then, by a look.
+  Doubles time;
+  Vector axis;
+  Doubles gap;
+  Doubles slope;
+  Doubles free;
+  /// When to look next, and whether that is to prove that they are apart until then.
+  Doubles next;
+  Doubles proves;
+  /// As in ImpactSearch.
+  Doubles touching;
+  Doubles aim;
+  Doubles within;
+  /// 1 while there is more to do.
+  Doubles active;
+  WitnessLanes witness;
+};
+
+struct PairBlockTables {
+  CoreTable a;
+  CoreTable b;
+  /// Index of the query in each lane.
+  std::uint32_t query[kWidth];
+};
+
+struct ImpactBlock {
+  PairLanes lanes;
+  PairBlockTables tables;
+};
+
+/// What the lanes show where they are placed.
+struct LookLanes {
+  ClosestLanes closest;
+  Vector between;
+  Doubles noise;
+  Doubles gap;
+  Doubles most;
+  Doubles slope;
+  Truth parted;
+};
+
+/// Writes answers of some lanes.
+class Answers {
+ public:
+  Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
+
+  /// They are apart before.
+  void put_unsure(Mask16 lanes, const Doubles& time) {
+    if (lanes == 0) return;
+    alignas(64) double times[kWidth];
+    time.store(times);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      job_.verdicts[tables_.query[lane]] = ImpactVerdict::unsure;
+      job_.found[tables_.query[lane]].time = times[lane];
+    }
+  }
+
+  void put_apart(Mask16 lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t query = tables_.query[first(lanes)];
+      job_.verdicts[query] = ImpactVerdict::known;
+      job_.found[query] = {};
+    }
+  }
+
+  void put_meeting(Mask16 lanes, const PairLanes& p, const LookLanes& look) {
+    if (lanes == 0) return;
+    const Doubles distance = look.closest.upper;
+    const Doubles gap = distance - p.roundings;
+    const Vector normal = look.closest.between * (Doubles(1.0) / distance);
+    const Vector point = look.closest.on_a + normal * p.a.rounding;
+    const Doubles error = max(look.most - gap, gap - look.gap);
+    const Doubles columns[] = {
+        p.time, positive_part(gap), error, normal.x, normal.y, normal.z, point.x, point.y, point.z};
+    alignas(64) double stage[9][kWidth];
+    for (int k = 0; k < 9; ++k) columns[k].store(stage[k]);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const unsigned lane = first(lanes);
+      const std::uint32_t query = tables_.query[lane];
+      job_.verdicts[query] = ImpactVerdict::known;
+      job_.found[query] = {true,
+                           stage[0][lane],
+                           stage[1][lane],
+                           stage[2][lane],
+                           {stage[3][lane], stage[4][lane], stage[5][lane]},
+                           {stage[6][lane], stage[7][lane], stage[8][lane]},
+                           0};
+    }
+  }
+
+ private:
+  const ImpactJob& job_;
+  const PairBlockTables& tables_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact

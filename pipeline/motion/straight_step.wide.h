@@ -1,0 +1,160 @@
+#pragma once
+
+// Pairs that travel and do not turn: the difference of the cores stands still and the origin
+// travels along a line, so that what a direction shows is known for all times. Each step of the
+// search for closest points brings the pair at once to where the direction that it tried shows a
+// gap no longer (van den Bergen, "Ray casting against general convex objects with application to
+// continuous collision detection", 2004).
+
+#include "pipeline/motion/impact_block.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+/// One step of all lanes of a block, which are placed. Of lanes without a closed form `axis` is the
+/// nearest point of the simplex, or any direction while there is none; the witness has its points
+/// in the axes of the world.
+class StraightStep {
+ public:
+  StraightStep(const ImpactJob& job, ImpactBlock& block)
+      : p_(block.lanes),
+        tables_(block.tables),
+        answers_(job, block.tables),
+        active_(p_.active > Doubles(0.0)) {}
+
+  /// Returns the lanes that go on.
+  [[nodiscard]] Mask16 run() {
+    look_.between = p_.start + p_.travel * p_.time;
+    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
+    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
+    if (has_closed_form(tables_.a.kind, tables_.b.kind)) {
+      look_.closest = closest_by_form(pair);
+      settled_ = active_;
+      decide();
+    } else {
+      const Doubles before = p_.time;
+      look_along(pair);
+      decide();
+      if (bits(active_) != 0) move_on(before);
+    }
+    p_.active = one_where(active_);
+    return bits(active_);
+  }
+
+ private:
+  void end_unsure(const Truth& lanes) {
+    answers_.put_unsure(bits(active_ & lanes), p_.time);
+    active_ = active_ & !lanes;
+  }
+  void end_apart(const Truth& lanes) {
+    answers_.put_apart(bits(active_ & lanes));
+    active_ = active_ & !lanes;
+  }
+
+  void place_simplex() {
+    for (int s = 0; s < kSlots; ++s) {
+      simplex_.present[s] = p_.witness.present[s] > Doubles(0.0);
+      simplex_.point[s] = look_.between + p_.witness.b[s] - p_.witness.a[s];
+    }
+  }
+
+  /// What the direction shows.
+  void look_along(const CorePair& pair) {
+    place_simplex();
+    const Vector& v = p_.axis;
+    ClosestLanes& closest = look_.closest;
+    square_ = dot(v, v);
+    closest.between = v;
+    closest.upper = sqrt(square_);
+    Vector own_a;
+    Vector own_b;
+    pair.facing(v, bits(active_), own_a, own_b);
+    closest.on_a = pair.on_a(own_a);
+    closest.on_b = pair.on_b(own_b);
+    const Vector w = look_.between + closest.on_b - closest.on_a;
+    const Doubles reach = dot(v, w);
+    const Doubles over = Doubles(1.0) / closest.upper;
+    closest.axis = v * over;
+    closest.lower = reach * over;
+    const Doubles gain = square_ - reach;
+    const Doubles left = closest.upper - p_.roundings;
+    const Truth ends = (gain <= Doubles(kRounding) * closest.upper * left) &
+                       holds_more_than(simplex_, without(simplex_, w));
+    const Truth is_there = simplex_.present[0];
+    settled_ = is_there & ((gain <= look_.noise * Doubles(kEnough) * closest.upper) | ends |
+                           (p_.proves > Doubles(0.0)));
+  }
+
+  /// Whether the lanes have met, or until when they are apart.
+  void decide() {
+    const ClosestLanes& closest = look_.closest;
+    look_.gap = closest.lower - p_.roundings - look_.noise;
+    look_.most = closest.upper - p_.roundings + look_.noise;
+    look_.slope = dot(closest.axis, p_.travel);
+    look_.parted = look_.gap > Doubles(0.0);
+    const Truth within =
+        look_.parted & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
+    const Truth near = within & settled_;
+    const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
+    p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
+    const Truth met = active_ & near & (meets | (p_.within > Doubles(kMostWithin)));
+    if (bits(met) != 0) meet(met);
+    const Doubles free = free_until();
+    end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
+    // Touching, too near for double to tell, or no number left between.
+    end_unsure(settled_ & ((!look_.parted) | (free <= p_.time)));
+    // What is within the tolerance is first known as well as can be.
+    p_.time = select(look_.parted & ((!within) | settled_), free, p_.time);
+  }
+
+  [[nodiscard]] Doubles free_until() const {
+    const Doubles target = min(p_.tolerance * Doubles(0.25), look_.gap * Doubles(0.5));
+    const Truth closes = look_.slope < Doubles(0.0);
+    const Doubles step = (look_.gap - target) / select(closes, -look_.slope, Doubles(1.0));
+    const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
+    return select(closes & (until < p_.last), until, p_.last);
+  }
+
+  void meet(const Truth& met) {
+    if (!has_closed_form(tables_.a.kind, tables_.b.kind)) {
+      const Vector on_a = shares_of(simplex_, p_.axis).of(p_.witness.a);
+      LookLanes look = look_;
+      look.closest.on_a = on_a;
+      answers_.put_meeting(bits(met), p_, look);
+    } else {
+      answers_.put_meeting(bits(met), p_, look_);
+    }
+    active_ = active_ & !met;
+  }
+
+  /// To the next direction, from where the lanes are now; they were elsewhere `before`.
+  void move_on(const Doubles& before) {
+    const ClosestLanes& closest = look_.closest;
+    const Truth fresh = !simplex_.present[0];
+    look_.between = p_.start + p_.travel * p_.time;
+    place_simplex();
+    const Vector w = look_.between + closest.on_b - closest.on_a;
+    const auto nearest = nearest_feature(without(simplex_, w), w, active_);
+    const Doubles square = dot(nearest.point, nearest.point);
+    const Truth stands = (!fresh) & (p_.time <= before);
+    const Truth stuck = stands & (square >= square_);
+    end_unsure(nearest.inside | !(square > Doubles(0.0)));
+    p_.proves = one_where(stuck);
+    const Truth moves = active_ & !stuck;
+    keep(nearest, moves, {closest.on_a, closest.on_b, w}, simplex_, p_.witness);
+    for (int s = 0; s < kSlots; ++s) p_.witness.present[s] = one_where(simplex_.present[s]);
+    p_.axis = select(moves, nearest.point, p_.axis);
+  }
+
+  PairLanes& p_;
+  const PairBlockTables& tables_;
+  Answers answers_;
+  Truth active_;
+  /// No direction shows more than the one that was tried.
+  Truth settled_;
+  LookLanes look_;
+  /// Of the distance to the simplex.
+  Doubles square_;
+  hull::Simplex<double> simplex_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact
