@@ -141,11 +141,13 @@ class WINNOW_API ImpactResult {
 /// for spans of different lengths, `out_of_memory`: then `result` is empty. What is wrong with one
 /// pair is in its status. Usually some three looks for closest points per pair, of fast turns
 /// seven; where shapes whirl around each other without touching, up to |turn| / sqrt(tolerance).
-/// Eight pairs of the same kinds look at once, in double, 256 being sorted by kind at a time;
-/// half-spaces, ellipsoids, tapered capsules, support functions and pairs that touch at the start
-/// do so one by one. What is said of a pair does not depend on the others. Of composite shapes that
-/// for each pair of parts whose boxes meet on the way, and a traversal for each half radian or so
-/// that they turn past each other within reach.
+/// Where neither turns, the looks are steps of one search for closest points (van den Bergen, "Ray
+/// casting against general convex objects with application to continuous collision detection",
+/// 2004): some six. Eight pairs of the same kinds look at once, in double, 256 being sorted by kind
+/// at a time; half-spaces that turn, support functions and pairs that touch at the start do so one
+/// by one. What is said of a pair does not depend on the others. Of composite shapes that for each
+/// pair of parts whose boxes meet on the way, and a traversal for each half radian or so that they
+/// turn past each other within reach.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);

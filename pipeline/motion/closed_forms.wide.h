@@ -1,6 +1,7 @@
 #pragma once
 
-// Closest points of cores that are points and segments, by the closed forms of the narrow phase.
+// Closest points of cores that are points and segments, by the closed forms of the narrow phase,
+// and of any core and a half-space.
 
 #include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/motion/closest_cores.wide.h"
@@ -9,7 +10,10 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// Pairs of kinds, in their order, whose closest points need no search.
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
-  const bool of_point = a == ShapeKind::sphere && b != ShapeKind::cone && b != ShapeKind::hull;
+  if (b == ShapeKind::half_space) return true;
+  const bool of_point = a == ShapeKind::sphere &&
+                        (b == ShapeKind::sphere || b == ShapeKind::capsule || b == ShapeKind::box ||
+                         b == ShapeKind::cylinder || b == ShapeKind::triangle);
   return of_point ||
          (a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle));
 }
@@ -102,9 +106,25 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
   return {pair.between + e * feet.t - u * feet.s, u * feet.s};
 }
 
+/// Of a core and a half-space that are apart.
+static inline ClosestLanes closest_to_half_space(const CorePair& pair, Mask16 lanes) {
+  ClosestLanes found;
+  found.axis = -pair.b.axes.to_world(pair.b.half);
+  const Vector own = pair.own_facing(pair.table_a, pair.a, found.axis, lanes);
+  found.on_a = pair.on_a(own);
+  found.high_a = dot(found.axis, found.on_a);
+  found.high_b = pair.b.corner[0].x;
+  found.lower = dot(found.axis, pair.between) - found.high_a - found.high_b;
+  found.upper = positive_part(found.lower);
+  found.between = found.axis * found.upper;
+  found.on_b = found.between + found.on_a - pair.between;
+  return found;
+}
+
 /// Of cores whose kinds have a closed form, and the proof of what is said: along the way between
 /// the closest points they are apart by as much as their farthest points say.
-static inline ClosestLanes closest_by_form(const CorePair& pair) {
+static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
+  if (pair.table_b.kind == ShapeKind::half_space) return closest_to_half_space(pair, lanes);
   const ClosestWay closest = closest_way(pair);
   ClosestLanes found;
   found.between = closest.way;

@@ -30,15 +30,15 @@ struct CorePair {
 
   [[gnu::always_inline]] Vector to_world(const CoreTable& table, const MovingCore& core,
                                          const Vector& v) const {
-    return table.kind == ShapeKind::sphere ? v : core.axes.to_world(v);
+    return table.in_world ? v : core.axes.to_world(v);
   }
   [[gnu::always_inline]] Vector on_a(const Vector& own) const { return to_world(table_a, a, own); }
   /// From the middle of b.
   [[gnu::always_inline]] Vector on_b(const Vector& own) const { return to_world(table_b, b, own); }
   [[gnu::always_inline]] Vector own_facing(const CoreTable& table, const MovingCore& core,
                                            const Vector& direction, Mask16 lanes) const {
-    if (table.kind == ShapeKind::sphere) return zero_vector();
-    return farthest(table, core, core.axes.to_local(direction), lanes);
+    const Vector own = table.in_world ? direction : core.axes.to_local(direction);
+    return farthest(table, core, own, lanes);
   }
   /// What of each core is farthest towards the other along a direction from a to b, in their own
   /// frames.

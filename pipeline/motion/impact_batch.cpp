@@ -13,7 +13,8 @@ WINNOW_DEFINE_KERNELS(ImpactLaneKernels, impact_lane_kernels)
 namespace impact {
 namespace {
 
-constexpr std::size_t kLaneKinds = 8;
+/// Numbers of kinds that have lanes are below.
+constexpr std::size_t kLaneKinds = 13;
 /// Of pairs without lanes.
 constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
 
@@ -28,6 +29,8 @@ constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
   if (!has_impact_lanes(a) || !has_impact_lanes(b)) return kNoLanes;
+  if (a == ShapeKind::half_space) return kNoLanes;
+  if (b == ShapeKind::half_space && !is_straight(query, 1)) return kNoLanes;
   const bool straight = is_straight(query, 0) && is_straight(query, 1);
   const std::size_t kinds = static_cast<std::size_t>(a) * kLaneKinds + static_cast<std::size_t>(b);
   return static_cast<std::uint16_t>(2 * kinds + (straight ? 0 : 1));

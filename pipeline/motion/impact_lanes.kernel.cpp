@@ -136,7 +136,8 @@ class ImpactStep {
   }
 
   [[nodiscard]] ClosestLanes closest_points(const CorePair& pair) {
-    if (has_closed_form(tables_.a.kind, tables_.b.kind)) return closest_by_form(pair);
+    if (has_closed_form(tables_.a.kind, tables_.b.kind))
+      return closest_by_form(pair, bits(active_));
     const Doubles precise = p_.tolerance * Doubles(2.0);
     const Doubles enough = look_.noise * Doubles(kEnough);
     const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
@@ -323,6 +324,8 @@ class ImpactLoad {
       CoreTable& table = side == 0 ? tables_.a : tables_.b;
       MovingCore& core = side == 0 ? p_.a : p_.b;
       table.kind = query(0).shape[side].kind();
+      table.in_world =
+          table.kind == ShapeKind::sphere || (job_.straight && table.kind == ShapeKind::triangle);
       load_core(
           job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
       measure(table, core);
@@ -354,14 +357,19 @@ class ImpactLoad {
     p_.still_noise =
         Doubles(kPlace) * (way * Doubles(8.0) +
                            (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
+    // A half-space's normal turns by rounding, and with it what is far from its position.
+    if (has_half_space()) p_.still_noise += Doubles(64.0 * kPlace) * way;
     const Doubles least = min(p_.a.extent, p_.b.extent);
     const Doubles most = max(p_.a.extent, p_.b.extent);
     p_.tolerance = select(least > Doubles(0.0), least, most) * Doubles(job_.tolerance);
   }
 
+  [[nodiscard]] bool has_half_space() const { return tables_.b.kind == ShapeKind::half_space; }
+
   /// Between when the balls around both touch first and last.
   [[nodiscard]] Truth cut_to_window() {
     const Doubles zero(0.0);
+    if (has_half_space()) return p_.time <= p_.until;
     const Doubles speed = length(p_.travel);
     const Doubles from = length(p_.start);
     const Doubles radius = p_.sizes + (from + speed + p_.sizes) * Doubles(64.0 * kPlace);
@@ -428,18 +436,18 @@ inline void move_members(const Members& from, unsigned lane_from, Members& to, u
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
                       unsigned lane_to, bool is_placed) {
-  const std::size_t kCore = is_placed ? sizeof(MovingCore) : offsetof(MovingCore, corner);
-  const std::size_t kTriangle = is_placed ? sizeof(MovingCore) : offsetof(MovingCore, axes);
+  const auto bytes_of = [is_placed](ShapeKind kind) {
+    if (is_placed) return sizeof(MovingCore);
+    return has_corners(kind) ? offsetof(MovingCore, axes) : offsetof(MovingCore, corner);
+  };
   constexpr std::size_t kCores = offsetof(PairLanes, start);
   constexpr std::size_t kPair = offsetof(PairLanes, witness) - kCores;
   const PairLanes& source = from.lanes;
   PairLanes& target = to.lanes;
   const ShapeKind a = to.tables.a.kind;
   const ShapeKind b = to.tables.b.kind;
-  move_members(source.a, lane_from, target.a, lane_to,
-               a == ShapeKind::triangle ? kTriangle : kCore);
-  move_members(source.b, lane_from, target.b, lane_to,
-               b == ShapeKind::triangle ? kTriangle : kCore);
+  move_members(source.a, lane_from, target.a, lane_to, bytes_of(a));
+  move_members(source.b, lane_from, target.b, lane_to, bytes_of(b));
   move_members(source.start, lane_from, target.start, lane_to, kPair);
   if (!has_closed_form(a, b)) {
     move_members(source.witness, lane_from, target.witness, lane_to, sizeof(WitnessLanes));

@@ -47,11 +47,9 @@ struct ImpactLaneKernels {
 
 WINNOW_KERNELS(ImpactLaneKernels, impact_lane_kernels);
 
-/// Kinds that have lanes.
+/// Kinds that have lanes; half-spaces that do not turn.
 [[nodiscard]] constexpr bool has_impact_lanes(ShapeKind kind) noexcept {
-  return kind == ShapeKind::sphere || kind == ShapeKind::capsule || kind == ShapeKind::box ||
-         kind == ShapeKind::hull || kind == ShapeKind::triangle || kind == ShapeKind::cylinder ||
-         kind == ShapeKind::cone;
+  return kind != ShapeKind::support;
 }
 
 }  // namespace winnow

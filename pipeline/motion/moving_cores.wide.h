@@ -108,21 +108,29 @@ struct MovingCore {
   Doubles low;
   Doubles high;
   /// Box: half extents. Segment, cylinder, cone: radius, radius, half length. Hull: its middle.
+  /// Ellipsoid: radii. Tapered capsule: by how much one ball is larger than the other, twice, and
+  /// how high its centre is. Half-space: its normal.
   Vector half;
   Doubles rounding;
   /// No point of the shape is farther from the body's position.
   Doubles size;
   /// Of which tolerances are shares.
   Doubles extent;
-  /// Of a triangle.
+  /// Of a triangle. Of a half-space the first number is its offset.
   Vector corner[3];
   /// Where it is placed: its axes in the world.
   Rotation<double> axes;
 };
 
+[[nodiscard]] constexpr bool has_corners(ShapeKind kind) {
+  return kind == ShapeKind::triangle || kind == ShapeKind::half_space;
+}
+
 /// What of a core is not a number.
 struct CoreTable {
   ShapeKind kind;
+  /// Its own frame is the world, but for its place.
+  bool in_world;
   const HullShape* hull[kWidth];
 };
 
@@ -205,7 +213,34 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
   return select(is_first, core.corner[0], select(on[1] >= on[2], core.corner[1], core.corner[2]));
 }
 
-/// A point of the core that is farthest along a direction, both in its own frame.
+/// Of an ellipsoid's surface, the least; 0 of a flat one.
+[[gnu::always_inline]] inline Doubles least_curvature_radius(const Vector& radius) {
+  const Doubles least = min(min(radius.x, radius.y), radius.z);
+  const Doubles most = max(max(radius.x, radius.y), radius.z);
+  return least * select(most > Doubles(0.0), least / most, Doubles(0.0));
+}
+
+/// Of what is left of an ellipsoid once that radius is taken from it everywhere: eroded_core.
+static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d) {
+  const Vector stretched{radius.x * d.x, radius.y * d.y, radius.z * d.z};
+  const Doubles along = length(stretched);
+  const Doubles share = select(along > Doubles(1e-150), Doubles(1.0) / along, Doubles(0.0));
+  const Vector eroded = d * (least_curvature_radius(radius) / length(d));
+  return Vector{radius.x * stretched.x, radius.y * stretched.y, radius.z * stretched.z} * share -
+         eroded;
+}
+
+/// Of the smaller ball's centre, and a ball of the difference of the radii about the larger one's.
+static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
+  const Doubles zero(0.0);
+  const Vector out = d * (half.x / length(d));
+  const Vector large{out.x, out.y, out.z + half.z};
+  const Vector small{zero, zero, -half.z};
+  return select(dot(small, d) >= dot(large, d), small, large);
+}
+
+/// A point of the core that is farthest along a direction, both in its own frame; of a half-space
+/// along its normal.
 [[gnu::always_inline]] inline Vector farthest(const CoreTable& table, const MovingCore& core,
                                               const Vector& d, Mask16 lanes) {
   const auto facing = [](const Doubles& along, const Doubles& reach) {
@@ -227,6 +262,12 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
     }
     case ShapeKind::triangle:
       return farthest_of_corners(core, d);
+    case ShapeKind::half_space:
+      return core.half * core.corner[0].x;
+    case ShapeKind::ellipsoid:
+      return farthest_of_ellipsoid(core.half, d);
+    case ShapeKind::tapered_capsule:
+      return farthest_of_taper(core.half, d);
     default:
       return farthest_of_hulls(table, d, lanes);
   }
@@ -235,7 +276,7 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
 /// Brings a core to where it is at a time.
 [[gnu::always_inline]] inline void place(const CoreTable& table, const Doubles& time,
                                          MovingCore& core) {
-  if (table.kind == ShapeKind::sphere) return;
+  if (table.in_world) return;
   core.axes = rotation_of(turned(core.from, core.axis, core.angle * time));
 }
 
@@ -280,6 +321,10 @@ static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, c
       }
       return sqrt(square);
     }
+    case ShapeKind::ellipsoid:
+      return core.extent - core.rounding;
+    case ShapeKind::tapered_capsule:
+      return abs(core.half.z) * sqrt(w.x * w.x + w.y * w.y) + core.half.x;
     default:
       return Doubles(0.0);
   }
@@ -393,6 +438,32 @@ template <typename Shape>
       core.rounding = two[1];
       break;
     }
+    case ShapeKind::half_space: {
+      Doubles r[4];
+      load_rows4([&](int lane) { return numbers(tables.half_spaces[shape(lane).index()]); }, r);
+      core.half = {r[0], r[1], r[2]};
+      core.corner[0].x = r[3];
+      break;
+    }
+    case ShapeKind::ellipsoid: {
+      Doubles r[4];
+      load_rows4([&](int lane) { return numbers(tables.ellipsoids[shape(lane).index()]); }, r);
+      core.half = {r[0], r[1], r[2]};
+      core.rounding = r[3] + least_curvature_radius(core.half);
+      break;
+    }
+    case ShapeKind::tapered_capsule: {
+      const auto row = [&](int lane) {
+        return numbers(tables.tapered_capsules[shape(lane).index()]);
+      };
+      Doubles r[2];
+      load_rows2(row, r);
+      const Doubles height = load_rows1([&](int lane) { return row(lane) + 2; });
+      const Doubles excess = abs(r[1] - r[0]);
+      core.half = {excess, excess, select(r[1] > r[0], height, -height)};
+      core.rounding = min(r[0], r[1]);
+      break;
+    }
     default: {
       for (int lane = 0; lane < kWidth; ++lane) {
         table.hull[lane] = &tables.hulls[shape(lane).index()];
@@ -423,10 +494,25 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
   } else if (table.kind == ShapeKind::cylinder || table.kind == ShapeKind::cone) {
     core.extent = sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
     core.size = core.extent;
+  } else if (table.kind == ShapeKind::ellipsoid) {
+    const Doubles most = max(max(core.half.x, core.half.y), core.half.z);
+    core.extent = core.size = most - least_curvature_radius(core.half) + core.rounding;
+  } else if (table.kind == ShapeKind::tapered_capsule) {
+    core.extent = core.size = abs(core.half.z) + core.half.x + core.rounding;
+  } else if (table.kind == ShapeKind::half_space) {
+    core.size = abs(core.corner[0].x);
+    core.extent = Doubles(0.0);
   } else {
     core.size = length(core.half) + core.rounding;
     core.extent = core.size;
   }
+}
+
+/// Of a triangle, whose frame is that of the world then.
+inline void bring_to_world(MovingCore& core) {
+  for (Vector& corner : core.corner) corner = core.axes.to_world(corner);
+  const Doubles one(1.0);
+  core.axes = rotation_of({one, zero_vector()});
 }
 
 /// How the core turns with its body, of a core that is measured, and where it is at the start; true
@@ -451,12 +537,14 @@ template <typename Row>
   const Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
   if (straight) {
     core.axes = rotation_of(core.from);
+    if (table.in_world) bring_to_world(core);
     return usable;
   }
   Doubles turn[2];
   load_rows2([&](int lane) { return motion(lane) + kTurnAt; }, turn);
   const Vector about{turn[0], turn[1],
                      load_rows1([&](int lane) { return motion(lane) + kTurnAt + 2; })};
+  if (table.kind == ShapeKind::half_space) return usable;
   const Doubles angle = length(about);
   const Truth turns = angle > Doubles(kLeastAngle);
   core.angle = select(turns, angle, zero);

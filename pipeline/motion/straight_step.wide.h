@@ -11,8 +11,8 @@
 namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// One step of all lanes of a block, which are placed. Of lanes without a closed form `axis` is the
-/// nearest point of the simplex, or any direction while there is none; the witness has its points
-/// in the axes of the world.
+/// nearest point of the simplex, or any direction while there is none; the witness has, in the axes
+/// of the world, its points of a and the ways from them to those of b.
 class StraightStep {
  public:
   StraightStep(const ImpactJob& job, ImpactBlock& block)
@@ -27,7 +27,7 @@ class StraightStep {
     look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     if (has_closed_form(tables_.a.kind, tables_.b.kind)) {
-      look_.closest = closest_by_form(pair);
+      look_.closest = closest_by_form(pair, bits(active_));
       settled_ = active_;
       decide();
     } else {
@@ -50,16 +50,31 @@ class StraightStep {
     active_ = active_ & !lanes;
   }
 
-  void place_simplex() {
+  /// Which slots of the simplex are in use, and of these which have another point than a new one.
+  void compare_with(const Vector& way) {
     for (int s = 0; s < kSlots; ++s) {
-      simplex_.present[s] = p_.witness.present[s] > Doubles(0.0);
-      simplex_.point[s] = look_.between + p_.witness.b[s] - p_.witness.a[s];
+      const Vector& old = p_.witness.b[s];
+      used_[s] = p_.witness.present[s] > Doubles(0.0);
+      differs_[s] = used_[s] & !((old.x == way.x) & (old.y == way.y) & (old.z == way.z));
     }
+  }
+  [[nodiscard]] Truth is_there_already() const {
+    Truth is = used_[0] & !differs_[0];
+    for (int s = 1; s < kSlots; ++s) is = is | (used_[s] & !differs_[s]);
+    return is;
+  }
+  /// The simplex where the lanes are.
+  [[nodiscard]] hull::Simplex<double> placed(const Truth (&present)[kSlots]) const {
+    hull::Simplex<double> simplex;
+    for (int s = 0; s < kSlots; ++s) {
+      simplex.present[s] = present[s];
+      simplex.point[s] = look_.between + p_.witness.b[s];
+    }
+    return simplex;
   }
 
   /// What the direction shows.
   void look_along(const CorePair& pair) {
-    place_simplex();
     const Vector& v = p_.axis;
     ClosestLanes& closest = look_.closest;
     square_ = dot(v, v);
@@ -69,19 +84,19 @@ class StraightStep {
     Vector own_b;
     pair.facing(v, bits(active_), own_a, own_b);
     closest.on_a = pair.on_a(own_a);
-    closest.on_b = pair.on_b(own_b);
-    const Vector w = look_.between + closest.on_b - closest.on_a;
+    way_ = pair.on_b(own_b) - closest.on_a;
+    compare_with(way_);
+    const Vector w = look_.between + way_;
     const Doubles reach = dot(v, w);
     const Doubles over = Doubles(1.0) / closest.upper;
     closest.axis = v * over;
     closest.lower = reach * over;
     const Doubles gain = square_ - reach;
     const Doubles left = closest.upper - p_.roundings;
-    const Truth ends = (gain <= Doubles(kRounding) * closest.upper * left) &
-                       holds_more_than(simplex_, without(simplex_, w));
-    const Truth is_there = simplex_.present[0];
-    settled_ = is_there & ((gain <= look_.noise * Doubles(kEnough) * closest.upper) | ends |
-                           (p_.proves > Doubles(0.0)));
+    const Truth ends = (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already();
+    // Rounding turns the direction, by more the shorter it is, and moves what is farthest along it.
+    settled_ = used_[0] & ((gain <= look_.noise * Doubles(kEnough) * (closest.upper + p_.sizes)) |
+                           ends | (p_.proves > Doubles(0.0)));
   }
 
   /// Whether the lanes have met, or until when they are apart.
@@ -116,7 +131,7 @@ class StraightStep {
 
   void meet(const Truth& met) {
     if (!has_closed_form(tables_.a.kind, tables_.b.kind)) {
-      const Vector on_a = shares_of(simplex_, p_.axis).of(p_.witness.a);
+      const Vector on_a = shares_of(placed(used_), p_.axis).of(p_.witness.a);
       LookLanes look = look_;
       look.closest.on_a = on_a;
       answers_.put_meeting(bits(met), p_, look);
@@ -128,21 +143,30 @@ class StraightStep {
 
   /// To the next direction, from where the lanes are now; they were elsewhere `before`.
   void move_on(const Doubles& before) {
-    const ClosestLanes& closest = look_.closest;
-    const Truth fresh = !simplex_.present[0];
     look_.between = p_.start + p_.travel * p_.time;
-    place_simplex();
-    const Vector w = look_.between + closest.on_b - closest.on_a;
-    const auto nearest = nearest_feature(without(simplex_, w), w, active_);
+    const Vector w = look_.between + way_;
+    const auto nearest = nearest_feature(placed(differs_), w, active_);
     const Doubles square = dot(nearest.point, nearest.point);
-    const Truth stands = (!fresh) & (p_.time <= before);
+    const Truth stands = used_[0] & (p_.time <= before);
     const Truth stuck = stands & (square >= square_);
     end_unsure(nearest.inside | !(square > Doubles(0.0)));
     p_.proves = one_where(stuck);
     const Truth moves = active_ & !stuck;
-    keep(nearest, moves, {closest.on_a, closest.on_b, w}, simplex_, p_.witness);
-    for (int s = 0; s < kSlots; ++s) p_.witness.present[s] = one_where(simplex_.present[s]);
+    keep(nearest, moves);
     p_.axis = select(moves, nearest.point, p_.axis);
+  }
+
+  /// Where `moves`: the nearest feature becomes the simplex.
+  void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves) {
+    Truth placed = !moves;
+    for (int s = 0; s < kSlots; ++s) {
+      const Truth take = (!placed) & (!nearest.keep[s]);
+      placed = placed | take;
+      p_.witness.a[s] = select(take, look_.closest.on_a, p_.witness.a[s]);
+      p_.witness.b[s] = select(take, way_, p_.witness.b[s]);
+      p_.witness.present[s] =
+          select(moves, one_where(take | nearest.keep[s]), p_.witness.present[s]);
+    }
   }
 
   PairLanes& p_;
@@ -154,7 +178,10 @@ class StraightStep {
   LookLanes look_;
   /// Of the distance to the simplex.
   Doubles square_;
-  hull::Simplex<double> simplex_;
+  /// From the point of a that is farthest to that of b, without the way between the middles.
+  Vector way_;
+  Truth used_[kSlots];
+  Truth differs_[kSlots];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -64,6 +64,12 @@ double reach_of(const ShapeTables& tables, ShapeId id) {
       for (const auto& corner : tables.triangles[i].vertex) most = std::max(most, norm_of(corner));
       return static_cast<double>(most) + tables.triangles[i].rounding;
     }
+    case ShapeKind::ellipsoid:
+      return *std::max_element(tables.ellipsoids[i].radius, tables.ellipsoids[i].radius + 3) +
+             tables.ellipsoids[i].rounding;
+    case ShapeKind::tapered_capsule:
+      return tables.tapered_capsules[i].half_length +
+             std::max(tables.tapered_capsules[i].radius[0], tables.tapered_capsules[i].radius[1]);
     default:
       return 0.0;
   }
@@ -145,6 +151,13 @@ const char* to_string(MotionStyle style) {
   constexpr const char* kNames[] = {"travelling", "turning",  "moving",   "whirling",
                                     "bullet",     "far_away", "touching", "grazing"};
   return kNames[static_cast<int>(style)];
+}
+
+std::vector<ShapeKind> moving_kinds() {
+  std::vector<ShapeKind> kinds = all_kinds();
+  kinds.push_back(ShapeKind::ellipsoid);
+  kinds.push_back(ShapeKind::tapered_capsule);
+  return kinds;
 }
 
 MovingShapes moving_pair(const PairScene& scene, BodyPair pair, MotionStyle style, Random& random) {

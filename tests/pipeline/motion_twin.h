@@ -41,6 +41,9 @@ inline constexpr MotionStyle kMotionStyles[] = {
     MotionStyle::bullet,     MotionStyle::far_away, MotionStyle::touching, MotionStyle::grazing};
 [[nodiscard]] const char* to_string(MotionStyle style);
 
+/// All kinds but convex sets of the program's own.
+[[nodiscard]] std::vector<ShapeKind> moving_kinds();
+
 /// Makes a pair of a scene pass at some time where the scene has it.
 [[nodiscard]] MovingShapes moving_pair(const PairScene& scene, BodyPair pair, MotionStyle style,
                                        Random& random);

@@ -137,6 +137,12 @@ class Maker {
         status = scene_.pool.add(HalfSpaceShape{{n.x(), n.y(), n.z()}, coordinate(size)}, id);
         break;
       }
+      case ShapeKind::ellipsoid:
+        status = scene_.pool.add(EllipsoidShape{{half[0], half[1], half[2]}, round}, id);
+        break;
+      case ShapeKind::tapered_capsule:
+        status = scene_.pool.add(TaperedCapsuleShape{{half[0], half[1]}, half[2]}, id);
+        break;
       default:
         status = Status::unsupported;
     }
@@ -221,6 +227,13 @@ double extent_of(const ShapeTables& tables, ShapeId id) {
     }
     case ShapeKind::half_space:
       return std::abs(tables.half_spaces[i].offset);
+    case ShapeKind::ellipsoid:
+      return *std::max_element(tables.ellipsoids[i].radius, tables.ellipsoids[i].radius + 3) +
+             tables.ellipsoids[i].rounding;
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape& taper = tables.tapered_capsules[i];
+      return taper.half_length + std::max(taper.radius[0], taper.radius[1]);
+    }
     default:
       break;
   }

@@ -63,7 +63,7 @@ RigidMotion moving(const Pose& start, Vec3d travel, Vec3d turn = {}) {
 }
 
 TEST(TimeOfImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
-  const std::vector<ShapeKind> kinds = all_kinds();
+  const std::vector<ShapeKind> kinds = moving_kinds();
   Random random(71);
   std::size_t unproved = 0;
   const std::size_t count = scaled(2500);
@@ -293,7 +293,7 @@ TEST(TimeOfImpact, bears_refused_memory) {
 TEST(TimeOfImpact, is_the_same_on_any_number_of_threads) {
   Random random(73);
   PairScene scene;
-  for (const ShapeKind kind : all_kinds()) {
+  for (const ShapeKind kind : moving_kinds()) {
     add_pairs(scene, ShapeKind::box, kind, PairStyle::ordinary, 40, random);
   }
   std::vector<RigidMotion> motions(scene.shapes.size());
