@@ -26,22 +26,26 @@ struct PairLanes {
   Doubles tolerance;
   Doubles last;
   Doubles until;
-  /// They are apart before; and what is known of them then, by a look.
+  /// They are apart before; and the axis of the last look, or of the next one of a pair that does
+  /// not turn.
   Doubles time;
   Vector axis;
-  Doubles gap;
-  Doubles slope;
-  Doubles free;
-  /// When to look next, and whether that is to prove that they are apart until then.
-  Doubles next;
+  /// Whether the next look is to prove that they are apart until then; of a pair that does not
+  /// turn, that its axis is as good as can be.
   Doubles proves;
   /// As in ImpactSearch.
-  Doubles touching;
-  Doubles aim;
   Doubles within;
   /// 1 while there is more to do.
   Doubles active;
   WitnessLanes witness;
+  /// Of pairs that turn: what else is known by the last look, when to look next, and as in
+  /// ImpactSearch.
+  Doubles gap;
+  Doubles slope;
+  Doubles free;
+  Doubles next;
+  Doubles touching;
+  Doubles aim;
 };
 
 struct PairBlockTables {

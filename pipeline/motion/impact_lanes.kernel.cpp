@@ -423,38 +423,47 @@ class ImpactLoad {
   Doubles span_;
 };
 
-/// Copies a lane of members that lie one after the other, up to a number of bytes.
+/// Copies a lane of members, from one byte of them to another.
 template <typename Members>
 inline void move_members(const Members& from, unsigned lane_from, Members& to, unsigned lane_to,
-                         std::size_t bytes) {
+                         std::size_t first, std::size_t last) {
   const auto* const source = reinterpret_cast<const double*>(&from) + lane_from;
   auto* const target = reinterpret_cast<double*>(&to) + lane_to;
-  const std::size_t end = bytes / sizeof(double);
-  for (std::size_t i = 0; i < end; i += kWidth) target[i] = source[i];
+  const std::size_t end = last / sizeof(double);
+  for (std::size_t i = first / sizeof(double); i < end; i += kWidth) target[i] = source[i];
+}
+
+/// How the core turns, or, of one that is placed for good, its axes; and its lengths.
+inline void move_core(const CoreTable& table, bool is_placed, const MovingCore& from,
+                      unsigned lane_from, MovingCore& to, unsigned lane_to) {
+  constexpr std::size_t kHalf = offsetof(MovingCore, half);
+  constexpr std::size_t kCorner = offsetof(MovingCore, corner);
+  constexpr std::size_t kAxes = offsetof(MovingCore, axes);
+  move_members(from, lane_from, to, lane_to, is_placed ? kHalf : 0,
+               has_corners(table.kind) ? kAxes : kCorner);
+  if (is_placed && !table.in_world) {
+    move_members(from, lane_from, to, lane_to, kAxes, offsetof(MovingCore, size));
+  }
 }
 
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
                       unsigned lane_to, bool is_placed) {
-  const auto bytes_of = [is_placed](ShapeKind kind) {
-    if (is_placed) return sizeof(MovingCore);
-    return has_corners(kind) ? offsetof(MovingCore, axes) : offsetof(MovingCore, corner);
-  };
-  constexpr std::size_t kCores = offsetof(PairLanes, start);
-  constexpr std::size_t kPair = offsetof(PairLanes, witness) - kCores;
+  const PairBlockTables& tables = from.tables;
   const PairLanes& source = from.lanes;
   PairLanes& target = to.lanes;
-  const ShapeKind a = to.tables.a.kind;
-  const ShapeKind b = to.tables.b.kind;
-  move_members(source.a, lane_from, target.a, lane_to, bytes_of(a));
-  move_members(source.b, lane_from, target.b, lane_to, bytes_of(b));
-  move_members(source.start, lane_from, target.start, lane_to, kPair);
-  if (!has_closed_form(a, b)) {
-    move_members(source.witness, lane_from, target.witness, lane_to, sizeof(WitnessLanes));
+  move_core(tables.a, is_placed, source.a, lane_from, target.a, lane_to);
+  move_core(tables.b, is_placed, source.b, lane_from, target.b, lane_to);
+  constexpr std::size_t kLook = offsetof(PairLanes, gap);
+  const bool has_witness = !has_closed_form(tables.a.kind, tables.b.kind);
+  move_members(source, lane_from, target, lane_to, offsetof(PairLanes, start),
+               has_witness ? kLook : offsetof(PairLanes, witness));
+  if (!is_placed) {
+    move_members(source, lane_from, target, lane_to, kLook, sizeof(PairLanes));
   }
-  to.tables.a.hull[lane_to] = from.tables.a.hull[lane_from];
-  to.tables.b.hull[lane_to] = from.tables.b.hull[lane_from];
-  to.tables.query[lane_to] = from.tables.query[lane_from];
+  to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
+  to.tables.b.hull[lane_to] = tables.b.hull[lane_from];
+  to.tables.query[lane_to] = tables.query[lane_from];
 }
 
 /// All queries of a job.
