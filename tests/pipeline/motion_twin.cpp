@@ -209,7 +209,8 @@ double doubt_of(const ShapePool& pool, const MovingShapes& pair) {
   bool curved = false;
   for (const ShapeId shape : pair.shape) {
     sizes += reach_of(pool.tables(), shape);
-    curved = curved || shape.kind() == ShapeKind::cylinder || shape.kind() == ShapeKind::cone;
+    curved = curved || shape.kind() == ShapeKind::cylinder || shape.kind() == ShapeKind::cone ||
+             shape.kind() == ShapeKind::ellipsoid || shape.kind() == ShapeKind::tapered_capsule;
   }
   return curved ? 1e-8 * sizes : 0.0;
 }

@@ -82,8 +82,8 @@ enum class Before : std::uint8_t {
 /// where one is a point or has no end.
 [[nodiscard]] double size_of(const ShapePool& pool, const MovingShapes& pair);
 
-/// What the solver may be wrong by beyond its bound: of cylinders and cones beside others many
-/// times as large.
+/// What the solver may be wrong by beyond its bound: of curved shapes beside others many times as
+/// large.
 [[nodiscard]] double doubt_of(const ShapePool& pool, const MovingShapes& pair);
 
 /// What a gap is resolved to at best.
