@@ -8,7 +8,7 @@
 namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// Shapes that stay so long within the tolerance as they near each other have met.
-inline constexpr double kMostWithin = 64.0;
+inline constexpr double kMostLooksWithin = 64.0;
 /// Of the noise: what distances need not be better than.
 inline constexpr double kEnough = 0.125;
 

@@ -223,7 +223,7 @@ class ImpactStep {
     const Truth near = looked & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
-    const Truth met = near & (meets | (p_.within > Doubles(kMostWithin)));
+    const Truth met = near & (meets | (p_.within > Doubles(kMostLooksWithin)));
     answers_.put_meeting(bits(met), p_, look_);
     active_ = active_ & !met;
     const Doubles free = free_until();

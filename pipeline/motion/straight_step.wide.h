@@ -111,7 +111,7 @@ class StraightStep {
     const Truth near = within & settled_;
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
-    const Truth met = active_ & near & (meets | (p_.within > Doubles(kMostWithin)));
+    const Truth met = active_ & near & (meets | (p_.within > Doubles(kMostLooksWithin)));
     if (bits(met) != 0) meet(met);
     const Doubles free = free_until();
     end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
