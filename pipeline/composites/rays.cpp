@@ -62,21 +62,19 @@ struct NearBody {
   PlacedBody body;
 };
 
-/// A surface that rays come to, all about its position: its own is zero. Primitives are shown about
-/// another place.
+/// A surface that rays come to. Primitives are shown about another place.
 struct RayTarget {
   RayTarget(const PlacedBody& placed, const Vec& show_about) noexcept
       : body(placed), about(show_about) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
     Vec::Map(frame.position) = body.position;
-    body.position.setZero();
     for (int i = 0; i < 3; ++i) Vec::Map(frame.to_own[i]) = body.to_local.row(i);
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
 
-  PlacedBody body;
-  Vec about;
+  const PlacedBody& body;
+  const Vec& about;
   SurfaceFrame frame;
 };
 
@@ -270,10 +268,8 @@ double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& fo
 }
 
 double RayGuides::look(std::uint32_t i, std::uint32_t slot) const {
-  PlacedBody body = target_.body;
-  body.position = Vec::Map(target_.frame.position);
   Primitive primitive;
-  const NearBody near(body, target_.about, rays_[number_[i]]);
+  const NearBody near(target_.body, target_.about, rays_[number_[i]]);
   if (!near.body.primitive(slot, primitive)) return limit_[i];
   return visitor_.look(visitor_.context, number_[i], primitive, limit_[i]);
 }

@@ -116,45 +116,27 @@ inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns& wor
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;
 }
 
-/// A ray on its way through the nodes. `tau` is time from where it comes to the mesh, in another
-/// unit: it leaves the mesh's box before tau = 3.
-struct RayJob {
-  /// Where the ray is at tau = 0, and by how much it moves, in the mesh's lengths.
-  double origin[3];
-  double direction[3];
+/// Rays that are ready to go through a mesh, in columns. `tau` is time from where a ray comes to
+/// the mesh, in another unit: it leaves the mesh's box before tau = 3.
+struct ReadyRays {
   /// tau = (t - entry) * pace.
-  double entry;
-  double pace;
+  alignas(64) double entry[kRaysAtOnce];
+  alignas(64) double pace[kRaysAtOnce];
+  /// Where rays are at tau = 0, and by how much they move, in the mesh's lengths.
+  alignas(64) double origin[3][kRaysAtOnce];
+  alignas(64) double direction[3][kRaysAtOnce];
+  /// Of floats, more are written than are there: those of the next rays, or slack.
+  static constexpr std::uint32_t kFloats = kRaysAtOnce + kLanes;
   /// A bound of q units is passed at q * inverse + near, or + far, where the ray enters or leaves:
   /// not later, or earlier, than it is.
-  float inverse[3];
-  float near[3];
-  float far[3];
-  /// Where these bounds of sixteen nodes lie.
-  std::uint32_t near_bound[3];
-  std::uint32_t far_bound[3];
+  alignas(64) float inverse[3][kFloats];
+  alignas(64) float near[3][kFloats];
+  alignas(64) float far[3][kFloats];
   /// Rows that take a vector to where it is across the ray: along two axes, less what the ray moves
   /// along each while it does so along the third, the fastest one.
-  float across[2][3];
+  alignas(64) float across[2][3][kFloats];
   /// By how much corners of triangles may be wrong there before they are rounded.
-  float wrong;
-};
-
-/// Rays that are ready to go through a mesh, in columns.
-struct ReadyRays {
-  alignas(64) double entry[kRayLanes];
-  alignas(64) double pace[kRayLanes];
-  alignas(64) double origin[3][kRayLanes];
-  alignas(64) double direction[3][kRayLanes];
-  /// Of floats, half of the place is slack.
-  alignas(64) float inverse[3][kLanes];
-  alignas(64) float near[3][kLanes];
-  alignas(64) float far[3][kLanes];
-  alignas(64) float across[3][kLanes];
-  alignas(64) float wrong[kLanes];
-  /// Bits of those that are fastest along y and z.
-  Mask16 fastest_y;
-  Mask16 fastest_z;
+  alignas(64) float wrong[kFloats];
 };
 
 /// The part of [0, limit] in which rays are in the box of a mesh. Empty if in > out.
@@ -184,7 +166,7 @@ struct BoxPassage {
 /// How rays pass bounds on an axis. `from` is where they are, and `grow` by how much boxes are
 /// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one.
 template <int Parts>
-[[gnu::always_inline]] inline void set_axis(ReadyRays& ready, int axis,
+[[gnu::always_inline]] inline void set_axis(ReadyRays& ready, std::uint32_t first, int axis,
                                             const Lanes<double, Parts>& from,
                                             Lanes<double, Parts> inverse,
                                             const Lanes<double, Parts>& grow) {
@@ -193,26 +175,40 @@ template <int Parts>
   inverse = select(abs(inverse) <= D(1.0 / kStandingRate), inverse,
                    (inverse & sign) | D(kStandingInverse));
   const D forward_grow = (inverse & sign) | grow;
-  to_single(inverse).store(ready.inverse[axis]);
-  to_single((-from - forward_grow) * inverse).store(ready.near[axis]);
-  to_single((-from + forward_grow) * inverse).store(ready.far[axis]);
+  to_single(inverse).store_unaligned(ready.inverse[axis] + first);
+  to_single((-from - forward_grow) * inverse).store_unaligned(ready.near[axis] + first);
+  to_single((-from + forward_grow) * inverse).store_unaligned(ready.far[axis] + first);
 }
 
-/// Rows that take a vector across the ray are made of quotients of its direction.
+/// Rows that take a vector across the ray are made of quotients of its direction. Which way a ray
+/// goes is as hard to foresee as a coin: nothing branches on it.
 template <int Parts>
-[[gnu::always_inline]] inline void set_across(ReadyRays& ready,
+[[gnu::always_inline]] inline void set_across(ReadyRays& ready, std::uint32_t first,
                                               const Vec3<double, Parts>& direction,
                                               const Vec3<double, Parts>& inverse) {
+  using D = Lanes<double, Parts>;
   const auto y_is_faster = abs(direction.y) > abs(direction.x);
   const auto faster = select(y_is_faster, abs(direction.y), abs(direction.x));
   const auto z = abs(direction.z) > faster;
   const auto y = y_is_faster & !z;
-  const auto inverse_of_fastest = select(z, inverse.z, select(y, inverse.y, inverse.x));
-  to_single(-direction.x * inverse_of_fastest).store(ready.across[0]);
-  to_single(-direction.y * inverse_of_fastest).store(ready.across[1]);
-  to_single(-direction.z * inverse_of_fastest).store(ready.across[2]);
-  ready.fastest_y = bits(y);
-  ready.fastest_z = bits(z);
+  const auto by_fastest = [&](const D& if_x, const D& if_y, const D& if_z) {
+    return select(z, if_z, select(y, if_y, if_x));
+  };
+  const D back = -by_fastest(inverse.x, inverse.y, inverse.z);
+  const D along_x = direction.x * back;
+  const D along_y = direction.y * back;
+  const D along_z = direction.z * back;
+  const D one(1.0);
+  const D none(0.0);
+  const D row[2][3] = {{by_fastest(along_y, none, one), by_fastest(one, along_z, none),
+                        by_fastest(none, one, along_x)},
+                       {by_fastest(along_z, one, none), by_fastest(none, along_x, one),
+                        by_fastest(one, none, along_y)}};
+  for (int k = 0; k < 2; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      to_single(row[k][axis]).store_unaligned(ready.across[k][axis] + first);
+    }
+  }
 }
 
 /// Makes rays [first, first + kRayLanes) ready, or the only one there is. Gives back bits of those
@@ -238,7 +234,7 @@ inline Mask16 make_ready(const MeshSpan& mesh, const SurfaceRays& rays, const do
   passage.narrow(start.z, direction.z, inverse.z, own_slack, mesh.least[2], mesh.most[2]);
   const Mask16 come = bits((passage.in <= passage.out) & (most >= D(0.0)));
   if (come == 0) return come;
-  passage.in.store(ready.entry);
+  passage.in.store(ready.entry + first);
   const V moved = direction * passage.in;
   const V from = start + moved;
   const D farthest = largest_of(abs_of(start) + abs_of(moved));
@@ -248,46 +244,21 @@ inline Mask16 make_ready(const MeshSpan& mesh, const SurfaceRays& rays, const do
   const typename D::Mask is_slack = slack > D(0x1p-10) * extent;
   const D longest = select(is_slack, extent + D(2.0) * slack, extent);
   const D pace = select(is_slack, one / longest, D(mesh.pace));
-  pace.store(ready.pace);
+  pace.store(ready.pace + first);
   const D* const at[] = {&from.x, &from.y, &from.z};
   const D* const way[] = {&direction.x, &direction.y, &direction.z};
   const D* const time[] = {&inverse.x, &inverse.y, &inverse.z};
   for (int axis = 0; axis < 3; ++axis) {
     const D units(mesh.units[axis]);
-    at[axis]->store(ready.origin[axis]);
-    (*way[axis] * longest).store(ready.direction[axis]);
-    set_axis(ready, axis, (*at[axis] - D(mesh.low[axis])) * units,
+    at[axis]->store(ready.origin[axis] + first);
+    (*way[axis] * longest).store(ready.direction[axis] + first);
+    set_axis(ready, first, axis, (*at[axis] - D(mesh.low[axis])) * units,
              D(mesh.step[axis]) * *time[axis] * pace, D(kUnitDoubt) + D(1.001) * slack * units);
   }
-  set_across(ready, direction, inverse);
+  set_across(ready, first, direction, inverse);
   const D wrong = min(D(4.0) * slack, D(kMostWrong)) + D(mesh.rounding);
-  to_single(wrong).store(ready.wrong);
+  to_single(wrong).store_unaligned(ready.wrong + first);
   return come;
-}
-
-/// One of them. Which way it goes is as hard to foresee as a coin: nothing branches on it.
-[[gnu::always_inline]] inline void take_ready(const ReadyRays& ready, unsigned lane, RayJob& job) {
-  job.entry = ready.entry[lane];
-  job.pace = ready.pace[lane];
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    job.origin[axis] = ready.origin[axis][lane];
-    job.direction[axis] = ready.direction[axis][lane];
-    const float inverse = ready.inverse[axis][lane];
-    job.inverse[axis] = inverse;
-    job.near[axis] = ready.near[axis][lane];
-    job.far[axis] = ready.far[axis][lane];
-    const unsigned upper = __builtin_bit_cast(std::uint32_t, inverse) >> 31U;
-    job.near_bound[axis] = (axis + 3U * upper) * kMeshFanout;
-    job.far_bound[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
-  }
-  const unsigned fastest = (ready.fastest_y >> lane & 1U) + 2U * (ready.fastest_z >> lane & 1U);
-  for (unsigned k = 0; k < 2; ++k) {
-    const unsigned axis = (fastest + 1 + k) % 3;
-    for (float& entry : job.across[k]) entry = 0.0F;
-    job.across[k][axis] = 1.0F;
-    job.across[k][fastest] = ready.across[axis][lane];
-  }
-  job.wrong = ready.wrong[lane];
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -13,29 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-double rounding_of(double farthest) noexcept {
-  constexpr double kFarthest = 1e37;
-  return farthest < kFarthest ? 0x1p-21 * farthest + 1e-36
-                              : std::numeric_limits<double>::infinity();
-}
-
-MeshSpan span_of(const MeshView& mesh) noexcept {
-  MeshSpan span{};
-  double farthest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    span.low[axis] = static_cast<double>(mesh.origin[axis]);
-    span.step[axis] = static_cast<double>(mesh.step[axis]);
-    span.units[axis] = 1.0 / span.step[axis];
-    span.least[axis] = span.low[axis] - span.step[axis];
-    span.most[axis] = span.low[axis] + (kMaxNodeBound + 1.0) * span.step[axis];
-    span.extent = std::max(span.extent, span.most[axis] - span.least[axis]);
-    farthest = std::max({farthest, std::abs(span.least[axis]), std::abs(span.most[axis])});
-  }
-  span.pace = 1.0 / span.extent;
-  span.rounding = rounding_of(farthest);
-  return span;
-}
-
 /// The product of two edges of a triangle, at right angles to both. Where no more than three bits
 /// of the products cancel, they need no more care.
 Vector3d normal_of(const Vector3d& a, const Vector3d& b) noexcept {
@@ -86,7 +63,7 @@ bool comes_from_behind(const SurfaceRay& ray, const double (&corner)[3][3]) noex
 void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor) noexcept {
   if (mesh.triangle_count == 0 || count == 0) return;
-  mesh_kernels().rays(mesh, span_of(mesh), rays, limits, count, visitor);
+  mesh_kernels().rays(mesh, rays, limits, count, visitor);
 }
 
 }  // namespace winnow

@@ -9,6 +9,7 @@
 // intersection", JCGT 2013). It starts near the leaf, so that areas lose little.
 
 #include "partitions/tree/traversal.wide.h"
+#include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
@@ -19,12 +20,13 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 /// the sheared frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size`
 /// and by what the ray is. The area of two such corners is wrong by less than `doubt`.
 [[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
-                                             const RayJob& job, float entry) {
+                                             const ReadyRays& rays, std::uint32_t ray,
+                                             float entry) {
   constexpr float kUnit = 0x1p-24F;
   Floats from[3];
   for (int axis = 0; axis < 3; ++axis) {
-    from[axis] = Floats(
-        static_cast<float>(job.origin[axis] + static_cast<double>(entry) * job.direction[axis]));
+    from[axis] = Floats(static_cast<float>(rays.origin[axis][ray] +
+                                           static_cast<double>(entry) * rays.direction[axis][ray]));
   }
   Floats x[3];
   Floats y[3];
@@ -37,14 +39,14 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
       at[axis] = at[axis] - from[axis];
       size = max(size, abs(at[axis]));
     }
-    const auto across = [&](const float(&row)[3]) {
-      return multiply_add(at[2], Floats(row[2]),
-                          multiply_add(at[1], Floats(row[1]), at[0] * Floats(row[0])));
+    const auto across = [&](const float(&row)[3][ReadyRays::kFloats]) {
+      return multiply_add(at[2], Floats(row[2][ray]),
+                          multiply_add(at[1], Floats(row[1][ray]), at[0] * Floats(row[0][ray])));
     };
-    x[k] = across(job.across[0]);
-    y[k] = across(job.across[1]);
+    x[k] = across(rays.across[0]);
+    y[k] = across(rays.across[1]);
   }
-  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(job.wrong));
+  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(rays.wrong[ray]));
   const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
   const Floats doubt =
       multiply_add(size, rounded, multiply_add(wrong * Floats(2.5F), wrong, Floats(1e-36F)));
@@ -59,47 +61,65 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 /// looks at its triangles.
 enum RayStep : std::uint32_t { kEnterInner, kEnterLeaf, kFetchVertices, kLook, kNoStep };
 
-/// A ray on its way: the nodes that wait for it, of which the nearest is the last of those that
-/// came together. What is needed soon is asked for before: by a ray that goes alone all that may be
-/// needed of a leaf, since it has nothing else to do meanwhile.
+/// A ray on its way: the nodes that wait for it, of which it goes to the nearest of those that came
+/// last. What is needed soon is asked for before: by a ray that goes alone all that may be needed
+/// of a leaf, since it has nothing else to do meanwhile.
 template <bool Alone>
 class RayWalk {
  public:
-  /// `ray`: as its visitor knows it.
-  void start(const MeshView& mesh, const ReadyRays& ready, unsigned lane, std::uint32_t ray,
+  /// `ray`: its place among those that are ready, and as its visitor knows it.
+  void start(const MeshView& mesh, const SurfaceRays& own, const ReadyRays& rays, std::uint32_t ray,
              double limit) {
-    take_ready(ready, lane, job_);
+    own_ = &own;
+    rays_ = &rays;
     ray_ = ray;
-    size_ = 0;
-    set_limit(limit);
-    // What is below a top level of few nodes is nearly as soon asked.
-    constexpr std::uint32_t kFewNodes = 2;
-    std::uint32_t level = mesh.levels - 1;
-    if (level != 0 && mesh.count[level] <= kFewNodes) --level;
-    for (std::uint32_t node = 0; node < mesh.count[level]; node += kLanes) {
-      meet(mesh, level, node, 0);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const std::uint32_t upper = __builtin_bit_cast(std::uint32_t, rays.inverse[axis][ray]) >> 31U;
+      near_bound_[axis] = (axis + 3U * upper) * kMeshFanout;
+      far_bound_[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
     }
+    set_limit(limit);
+    size_ = 0;
+    // What is below a top level of few nodes is nearly as soon asked.
+    const std::uint32_t top = mesh.levels - 1;
+    if (top == 0 || mesh.count[top] > kFewNodes) return meet(mesh, top, 0);
+    meet(mesh, top - 1, 0);
+    if (mesh.count[top] == kFewNodes) meet(mesh, top - 1, kLanes);
+    if (size_ == kFewNodes && nearest(0) < nearest(1)) exchange();
   }
 
-  /// The next step, once nodes are dropped that begin behind what was met: into the nearest that
-  /// waits, or none.
+  /// The next step, once nodes are dropped that begin behind what was met: into the nearest of
+  /// those that wait, or none.
   [[gnu::always_inline]] RayStep next() {
-    while (size_ != 0 && !(entry_of(waiting_[size_ - 1]) <= last_)) --size_;
-    if (size_ == 0) return kNoStep;
-    return level_of(waiting_[size_ - 1]) != 0 ? kEnterInner : kEnterLeaf;
+    for (; size_ != 0; --size_) {
+      const std::uint32_t at = size_ - 1;
+      const Mask16 rest = rest_[at];
+      const float key = (rest & (rest - 1)) == 0 ? key_[at][first(rest)] : nearest(at);
+      const auto key_bits = __builtin_bit_cast(std::uint32_t, key);
+      const std::uint32_t lane = key_bits % kLanes;
+      entry_ = __builtin_bit_cast(float, key_bits - lane);
+      if (!(entry_ <= last_)) continue;
+      node_ = first_node_[at] + lane;
+      gone_to_[at] = key;
+      rest_[at] = rest & ~(1U << lane);
+      if (rest_[at] == 0) --size_;
+      return node_ >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
+    }
+    return kNoStep;
   }
   /// Goes into that inner node.
   [[gnu::always_inline]] void enter_inner(const MeshView& mesh) {
-    const std::uint64_t waiting = waiting_[--size_];
-    meet(mesh, level_of(waiting) - 1, node_of(waiting) * kLanes, size_);
+    meet(mesh, (node_ >> kLevelShift) - 1, (node_ & kNodeMask) * kLanes);
   }
   /// Goes to that leaf: false if none of its triangles need be looked at. Before they are, their
   /// vertices are to be fetched.
   [[gnu::always_inline]] bool enter_leaf(const MeshView& mesh) {
-    const std::uint64_t waiting = waiting_[--size_];
-    ask(mesh, node_of(waiting), entry_of(waiting));
+    ask(mesh, node_, entry_);
     return asked_.triangles != 0;
   }
+  /// Asks for what of that leaf is looked at first, before it is waited for. Of nodes there are few
+  /// enough to be at hand.
+  [[gnu::always_inline]] void fetch_leaf(const MeshView& mesh) const { fetch(mesh, node_); }
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
     fetch_vertices(mesh, asked_);
   }
@@ -122,18 +142,15 @@ class RayWalk {
   }
 
  private:
-  /// A node that waits: when it is entered, as the bits of a float that is not negative, its level
-  /// and its number.
+  static constexpr std::uint32_t kFewNodes = 2;
+  /// Above the number of a node is its level.
   static constexpr std::uint32_t kLevelShift = 28;
-  static float entry_of(std::uint64_t waiting) {
-    return __builtin_bit_cast(float, static_cast<std::uint32_t>(waiting >> 32));
-  }
-  static std::uint32_t level_of(std::uint64_t waiting) {
-    return static_cast<std::uint32_t>(waiting) >> kLevelShift;
-  }
-  static std::uint32_t node_of(std::uint64_t waiting) {
-    return static_cast<std::uint32_t>(waiting) & ((1U << kLevelShift) - 1U);
-  }
+  static constexpr std::uint32_t kNodeMask = (1U << kLevelShift) - 1U;
+  static constexpr float kLeastTau = 0x1p-100F;
+  static constexpr float kMostTau = 1e38F;
+  /// The key of a node that does not wait: more than kMostTau.
+  static constexpr float kNobody = __FLT_MAX__;
+
   /// A leaf that was gone to: when it is entered, and which of its triangles may be met.
   struct Asked {
     std::uint32_t leaf;
@@ -143,44 +160,65 @@ class RayWalk {
 
   void set_limit(double limit) {
     limit_ = limit;
-    const double rest = (limit - job_.entry) * job_.pace * (1.0 + 0x1p-20);
-    last_ = rest < 1e38 ? static_cast<float>(rest) : 1e38F;
+    const double rest = (limit - rays_->entry[ray_]) * rays_->pace[ray_] * (1.0 + 0x1p-20);
+    const float most = rest < 1e38 ? static_cast<float>(rest) : kMostTau;
+    last_ = most > kLeastTau ? most : kLeastTau;
   }
 
   /// Which of sixteen boxes, in columns from `bounds` on, the ray meets, and when it enters them.
-  [[gnu::always_inline]] Mask16 enter(const std::uint16_t* bounds, Floats& in) const {
-    in = Floats(0.0F);
+  [[gnu::always_inline]] LaneMask<float> enter(const std::uint16_t* bounds, Floats& in) const {
+    in = Floats(kLeastTau);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
-      const Floats inverse(job_.inverse[axis]);
-      const Floats near = load_short(bounds + job_.near_bound[axis]);
-      const Floats far = load_short(bounds + job_.far_bound[axis]);
-      in = max(in, multiply_add(near, inverse, Floats(job_.near[axis])));
-      out = min(out, multiply_add(far, inverse, Floats(job_.far[axis])));
+      const Floats inverse(rays_->inverse[axis][ray_]);
+      const Floats near = load_short(bounds + near_bound_[axis]);
+      const Floats far = load_short(bounds + far_bound_[axis]);
+      in = max(in, multiply_add(near, inverse, Floats(rays_->near[axis][ray_])));
+      out = min(out, multiply_add(far, inverse, Floats(rays_->far[axis][ray_])));
     }
-    return bits(in <= out);
+    return in <= out;
   }
 
-  /// Lets those of sixteen nodes wait that the ray meets, together with those from `together` on.
+  /// Lets those of sixteen nodes wait that the ray meets.
   [[gnu::always_inline]] void meet(const MeshView& mesh, std::uint32_t level,
-                                   std::uint32_t first_node, std::uint32_t together) {
+                                   std::uint32_t first_node) {
+    alignas(64) static constexpr std::uint32_t kNumbers[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                                   8, 9, 10, 11, 12, 13, 14, 15};
     Floats in;
-    Mask16 hits = enter(mesh.node[level] + std::size_t{6} * first_node, in) &
-                  present(mesh.count[level], first_node);
-    // Zero may have a sign, which is no order of its bits.
-    alignas(64) float entry[kLanes];
-    abs(in).store(entry);
-    for (; hits != 0; hits &= hits - 1) {
-      const unsigned lane = first(hits);
-      const std::uint32_t node = first_node + lane;
-      if (level == 0) fetch(mesh, node);
-      const std::uint64_t fresh = std::uint64_t{__builtin_bit_cast(std::uint32_t, entry[lane])}
-                                      << 32 |
-                                  (level << kLevelShift | node);
-      std::uint32_t at = size_++;
-      for (; at != together && waiting_[at - 1] < fresh; --at) waiting_[at] = waiting_[at - 1];
-      waiting_[at] = fresh;
+    const LaneMask<float> met = enter(mesh.node[level] + std::size_t{6} * first_node, in);
+    const Mask16 hits = bits(met) & present(mesh.count[level], first_node);
+    if (Alone && level == 0) {
+      for (Mask16 rest = hits; rest != 0; rest &= rest - 1) fetch(mesh, first_node + first(rest));
     }
+    if (hits == 0) return;
+    const Floats number = Floats::load(reinterpret_cast<const float*>(kNumbers));
+    const Floats without_number(__builtin_bit_cast(float, ~(kLanes - 1U)));
+    select(met, (in & without_number) | number, Floats(kNobody)).store(key_[size_]);
+    for (std::uint32_t lane = mesh.count[level] - first_node; lane < kLanes; ++lane) {
+      key_[size_][lane] = kNobody;
+    }
+    gone_to_[size_] = 0.0F;
+    rest_[size_] = hits;
+    first_node_[size_] = level << kLevelShift | first_node;
+    ++size_;
+  }
+
+  /// The least key of those that still wait: they are gone to by their order.
+  [[nodiscard]] float nearest(std::uint32_t at) const {
+    const Floats key = Floats::load(key_[at]);
+    return reduce_min(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
+  }
+  /// The first two blocks that wait, of which nothing was gone to.
+  void exchange() {
+    const Floats key = Floats::load(key_[0]);
+    Floats::load(key_[1]).store(key_[0]);
+    key.store(key_[1]);
+    const Mask16 rest = rest_[0];
+    rest_[0] = rest_[1];
+    rest_[1] = rest;
+    const std::uint32_t first_node = first_node_[0];
+    first_node_[0] = first_node_[1];
+    first_node_[1] = first_node;
   }
 
   static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
@@ -189,8 +227,6 @@ class RayWalk {
     }
   }
 
-  /// Asks for what of a leaf is looked at first, before it is waited for. Of nodes there are few
-  /// enough to be at hand.
   static void fetch(const MeshView& mesh, std::uint32_t leaf) {
     if (Alone || mesh.box == nullptr) fetch_corners(mesh, leaf);
     if (mesh.box == nullptr) return;
@@ -205,7 +241,7 @@ class RayWalk {
     asked_ = {leaf, entry, present(mesh.triangle_count, first_slot)};
     if (mesh.box == nullptr) return;
     Floats in;
-    asked_.triangles &= enter(mesh.box + std::size_t{6} * first_slot, in);
+    asked_.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
     if (!Alone && asked_.triangles != 0) fetch_corners(mesh, leaf);
   }
 
@@ -226,66 +262,76 @@ class RayWalk {
   bool look(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
     if (!(asked.entry <= last_)) return true;
     Mask16 triangles = asked.triangles;
-    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, job_, asked.entry);
-    if (triangles == 0) return true;
+    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, *rays_, ray_, asked.entry);
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     std::uint32_t slots[kLanes];
     std::uint32_t count = 0;
     for (; triangles != 0; triangles &= triangles - 1) {
-      slots[count++] = first_slot + first(triangles);
+      slots[count] = first_slot + first(triangles);
+      // Of triangles whose boxes are met few are.
+      count += mesh.box != nullptr && passes_by(*own_, ray_, mesh, slots[count]) ? 0U : 1U;
     }
+    if (count == 0) return true;
     const double limit = visitor.visit(visitor.context, ray_, slots, count, limit_);
     if (limit != limit_) set_limit(limit);
     return limit >= 0.0;
   }
 
-  RayJob job_;
+  const SurfaceRays* own_;
+  const ReadyRays* rays_;
   std::uint32_t ray_;
+  /// Where the bounds of sixteen nodes lie that it passes as it enters and leaves them.
+  std::uint32_t near_bound_[3];
+  std::uint32_t far_bound_[3];
   double limit_;
   float last_;
-  std::uint32_t size_;
+  /// What it goes to next, and when it enters that.
+  std::uint32_t node_;
+  float entry_;
   Asked asked_;
-  /// One more than waits, as the nearest is among them for a moment.
-  std::uint64_t waiting_[kMaxMeshLevels * kMeshFanout + 1];
+  /// Nodes that wait, in blocks of sixteen or fewer that follow each other: no more than one for
+  /// each level but the top one, of which there may be two.
+  static constexpr std::uint32_t kMostWaiting = kMaxMeshLevels + 1;
+  std::uint32_t size_;
+  Mask16 rest_[kMostWaiting];
+  std::uint32_t first_node_[kMostWaiting];
+  float gone_to_[kMostWaiting];
+  /// When each is entered, as bits of a positive float that are ordered as it is, but for the last
+  /// four, which tell which it is; kNobody where none ever waited.
+  alignas(64) float key_[kMostWaiting][kLanes];
 };
 
 /// Rays that have not begun their way, in their order.
 class WaitingRays {
  public:
-  WaitingRays(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
-              const double* limits, std::uint32_t count)
-      : mesh_(mesh), span_(span), rays_(rays), limits_(limits), count_(count) {
-    make_some_ready();
+  WaitingRays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
+              std::uint32_t count)
+      : mesh_(mesh), rays_(rays), limits_(limits) {
+    if (count == 1) {
+      come_ = make_ready<true>(mesh.span, rays, limits, 0, ready_) & 1U;
+      return;
+    }
+    for (std::uint32_t first = 0; first < count; first += kRayLanes) {
+      come_ |= std::uint64_t{make_ready<false>(mesh.span, rays, limits, first, ready_)} << first;
+    }
+    if (count < kRaysAtOnce) come_ &= (std::uint64_t{1} << count) - 1U;
   }
 
   /// Lets the next one start that does not pass the mesh by; false if there is none.
   template <bool Alone>
   [[gnu::always_inline]] bool start(RayWalk<Alone>& walk) {
-    while (come_ == 0) {
-      first_ += kRayLanes;
-      if (first_ >= count_) return false;
-      make_some_ready();
-    }
-    const unsigned lane = first(come_);
+    if (come_ == 0) return false;
+    const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
     come_ &= come_ - 1;
-    walk.start(mesh_, ready_, lane, first_ + lane, limits_[first_ + lane]);
+    walk.start(mesh_, rays_, ready_, ray, limits_[ray]);
     return true;
   }
 
  private:
-  void make_some_ready() {
-    come_ = count_ == 1 ? make_ready<true>(span_, rays_, limits_, first_, ready_)
-                        : make_ready<false>(span_, rays_, limits_, first_, ready_);
-    if (count_ - first_ < kRayLanes) come_ &= lanes_below(count_ - first_);
-  }
-
   const MeshView& mesh_;
-  const MeshSpan& span_;
   const SurfaceRays& rays_;
   const double* limits_;
-  std::uint32_t count_;
-  std::uint32_t first_ = 0;
-  Mask16 come_;
+  std::uint64_t come_ = 0;
   ReadyRays ready_;
 };
 
@@ -298,36 +344,37 @@ class RaysSideBySide {
 
   void run() {
     std::uint32_t begun = 0;
-    while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(begun++);
+    while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(walk_[begun++]);
     const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : kLook;
     while (waits()) {
-      each(kLook, [&](std::uint32_t i) {
-        if (walk_[i].look(mesh_, visitor_) || waiting_.start(walk_[i])) sort_in(i);
+      each(kLook, [&](Walk& walk) {
+        if (walk.look(mesh_, visitor_) || waiting_.start(walk)) sort_in(walk);
       });
-      each(kFetchVertices, [&](std::uint32_t i) {
-        walk_[i].fetch_vertices(mesh_);
-        waits_[kLook].put(i);
+      each(kFetchVertices, [&](Walk& walk) {
+        walk.fetch_vertices(mesh_);
+        waits_[kLook].put(walk);
       });
-      each(kEnterLeaf, [&](std::uint32_t i) {
-        if (!walk_[i].enter_leaf(mesh_)) return sort_in(i);
-        if (first_step == kLook) walk_[i].fetch_vertices(mesh_);
-        waits_[first_step].put(i);
+      each(kEnterLeaf, [&](Walk& walk) {
+        if (!walk.enter_leaf(mesh_)) return sort_in(walk);
+        if (first_step == kLook) walk.fetch_vertices(mesh_);
+        waits_[first_step].put(walk);
       });
-      each(kEnterInner, [&](std::uint32_t i) {
-        walk_[i].enter_inner(mesh_);
-        sort_in(i);
+      each(kEnterInner, [&](Walk& walk) {
+        walk.enter_inner(mesh_);
+        sort_in(walk);
       });
     }
   }
 
  private:
   static constexpr std::uint32_t kWalks = 32;
+  using Walk = RayWalk<false>;
   /// Rays that wait for the same kind of step.
   struct Waits {
     std::uint32_t count = 0;
-    std::uint32_t ray[kWalks] = {};
+    Walk* walk[kWalks] = {};
 
-    [[gnu::always_inline]] void put(std::uint32_t i) { ray[count++] = i; }
+    [[gnu::always_inline]] void put(Walk& one) { walk[count++] = &one; }
   };
 
   [[nodiscard]] bool waits() const {
@@ -337,33 +384,34 @@ class RaysSideBySide {
   }
   /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
   /// its end.
-  [[gnu::always_inline]] void sort_in(std::uint32_t i) {
-    RayStep next = walk_[i].next();
+  [[gnu::always_inline]] void sort_in(Walk& walk) {
+    RayStep next = walk.next();
     while (next == kNoStep) {
-      if (!waiting_.start(walk_[i])) return;
-      next = walk_[i].next();
+      if (!waiting_.start(walk)) return;
+      next = walk.next();
     }
-    waits_[next].put(i);
+    if (next == kEnterLeaf) walk.fetch_leaf(mesh_);
+    waits_[next].put(walk);
   }
   /// Takes all that wait for this kind of step now.
   template <typename Step>
   [[gnu::always_inline]] void each(RayStep kind, Step&& step) {
     const Waits now = waits_[kind];
     waits_[kind].count = 0;
-    for (std::uint32_t k = 0; k < now.count; ++k) step(now.ray[k]);
+    for (std::uint32_t k = 0; k < now.count; ++k) step(*now.walk[k]);
   }
 
   const MeshView& mesh_;
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
   Waits waits_[kNoStep];
-  RayWalk<false> walk_[kWalks];
+  Walk walk_[kWalks];
 };
 
 /// Shows the triangles that each ray may meet, its nearest leaf first.
-inline void show_on_rays(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
-                         const double* limits, std::uint32_t count, const RaySlotVisitor& visitor) {
-  WaitingRays waiting(mesh, span, rays, limits, count);
+inline void show_on_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
+                         std::uint32_t count, const RaySlotVisitor& visitor) {
+  WaitingRays waiting(mesh, rays, limits, count);
   if (count == 1) {
     RayWalk<true> walk;
     if (waiting.start(walk)) walk.go(mesh, visitor);

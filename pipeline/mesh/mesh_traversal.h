@@ -151,8 +151,8 @@ struct MeshKernels {
   /// Takes rays into the frame of a surface; gives back a bit for each that is left to the caller.
   std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns& world,
                               std::uint32_t count, SurfaceRays& own);
-  void (*rays)(const MeshView& mesh, const MeshSpan& span, const SurfaceRays& rays,
-               const double* limits, std::uint32_t count, const RaySlotVisitor& visitor);
+  void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
+               std::uint32_t count, const RaySlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

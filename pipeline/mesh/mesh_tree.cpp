@@ -75,6 +75,29 @@ void choose_scale(MeshView& view, const float low[3], const float high[3]) {
   }
 }
 
+double rounding_of(double farthest) noexcept {
+  constexpr double kFarthest = 1e37;
+  return farthest < kFarthest ? 0x1p-21 * farthest + 1e-36
+                              : std::numeric_limits<double>::infinity();
+}
+
+MeshSpan span_of(const MeshView& mesh) noexcept {
+  MeshSpan span{};
+  double farthest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    span.low[axis] = static_cast<double>(mesh.origin[axis]);
+    span.step[axis] = static_cast<double>(mesh.step[axis]);
+    span.units[axis] = 1.0 / span.step[axis];
+    span.least[axis] = span.low[axis] - span.step[axis];
+    span.most[axis] = span.low[axis] + (kMaxNodeBound + 1.0) * span.step[axis];
+    span.extent = std::max(span.extent, span.most[axis] - span.least[axis]);
+    farthest = std::max({farthest, std::abs(span.least[axis]), std::abs(span.most[axis])});
+  }
+  span.pace = 1.0 / span.extent;
+  span.rounding = rounding_of(farthest);
+  return span;
+}
+
 double decoded(const MeshView& view, std::size_t axis, std::uint32_t q) {
   return static_cast<double>(view.origin[axis]) +
          static_cast<double>(q) * static_cast<double>(view.step[axis]);
@@ -216,6 +239,7 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
     }
   }
   choose_scale(view, low, high);
+  view.span = span_of(view);
   const std::size_t leaves = view.count[0];
   for_stretches(execution, leaves, kLeavesPerStretch,
                 [&](std::size_t first, std::size_t end) { fit_leaves(view, words, first, end); });

@@ -21,6 +21,22 @@ inline constexpr std::uint32_t kTriangleNumberMask = kMaxTriangles - 1U;
 /// The largest bound of a node.
 inline constexpr std::uint32_t kMaxNodeBound = 65535;
 
+/// What every ray needs of a mesh.
+struct MeshSpan {
+  double low[3];
+  double step[3];
+  double units[3];
+  /// Of the box of all nodes, with a step to spare on each side.
+  double least[3];
+  double most[3];
+  /// The longest side of that box, and tau for each t.
+  double extent;
+  double pace;
+  /// What rounding the coordinates of rays to float makes of corners. Everything is in doubt where
+  /// differences of coordinates may leave the range of float.
+  double rounding;
+};
+
 /// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
 /// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
 /// last one, levels by empty boxes.
@@ -38,6 +54,7 @@ struct MeshView {
   /// rounded down and upper ones up, so that the box contains what is below it.
   float origin[3] = {};
   float step[3] = {};
+  MeshSpan span = {};
   /// Node i of level 0 bounds leaf i, node i of level l + 1 nodes [16 i, 16 i + 16) of level l. The
   /// top level has at most 16 nodes. Six columns of sixteen nodes, lower bounds before upper ones,
   /// lie behind each other, then those of the next sixteen.

@@ -56,20 +56,4 @@ struct SurfaceFrame {
   double size;
 };
 
-/// What every ray needs of a mesh.
-struct MeshSpan {
-  double low[3];
-  double step[3];
-  double units[3];
-  /// Of the box of all nodes, with a step to spare on each side.
-  double least[3];
-  double most[3];
-  /// The longest side of that box, and tau for each t.
-  double extent;
-  double pace;
-  /// What rounding the coordinates of rays to float makes of corners. Everything is in doubt where
-  /// differences of coordinates may leave the range of float.
-  double rounding;
-};
-
 }  // namespace winnow

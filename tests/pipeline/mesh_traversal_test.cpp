@@ -462,6 +462,50 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
   }
 }
 
+/// What each of several rays is shown, in any order.
+struct SeenByRays {
+  std::set<std::uint32_t> slots[kRaysAtOnce];
+
+  static double visit(void* context, std::uint32_t ray, const std::uint32_t* slots,
+                      std::uint32_t count, double limit) {
+    auto& seen = static_cast<SeenByRays*>(context)->slots[ray];
+    for (std::uint32_t i = 0; i < count; ++i) EXPECT_TRUE(seen.insert(slots[i]).second);
+    return limit;
+  }
+};
+
+TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
+  Random random(13);
+  for (const TriangleMesh& mesh : meshes_) {
+    const auto triangles = twin(view_of(mesh));
+    for (const std::uint32_t count : {2U, 9U, kRaysAtOnce}) {
+      SurfaceRays rays{};
+      alignas(64) double limits[kRaysAtOnce] = {};
+      std::fill_n(limits, kRaysAtOnce, -1.0);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Eigen::Vector3d at = point_of(triangles[random.below(triangles.size())], random);
+        for (int axis = 0; axis < 3; ++axis) {
+          const double way = random.chance(0.1) ? 0.0 : random.uniform(-1, 1);
+          rays.ray.direction[axis][i] = axis == 0 ? 0.75 : way;
+          rays.ray.origin[axis][i] = at[axis] - mesh.radius() * rays.ray.direction[axis][i];
+        }
+        rays.slack[i] = 0x1p-46 * mesh.radius();
+        limits[i] = random.chance(0.2) ? -1.0 : mesh.radius() * random.uniform(0, 3);
+      }
+      for (const Isa isa : available_isas()) {
+        const IsaScope scope(isa);
+        SeenByRays together;
+        mesh_rays(view_of(mesh), rays, limits, count, {SeenByRays::visit, &together});
+        for (std::uint32_t i = 0; i < count; ++i) {
+          SeenByRays alone;
+          mesh_rays(view_of(mesh), columns_of(rays[i]), &limits[i], 1, {SeenByRays::visit, &alone});
+          EXPECT_EQ(together.slots[i], alone.slots[0]) << "ray " << i << " of " << count;
+        }
+      }
+    }
+  }
+}
+
 /// Notes pairs, and leaves the limit as it is.
 struct SeenPairs {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;

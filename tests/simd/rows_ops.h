@@ -1,6 +1,6 @@
 #pragma once
 
-// Every operation of simd/lanes/rows.h behind plain pointers.
+// Every operation of simd/lanes/rows.h and corners.h behind plain pointers.
 
 #include "simd/kernels/kernels.h"
 
@@ -19,6 +19,9 @@ struct RowsOps {
   void (*to_double)(const float* in, double* out);
   void (*store_bytes)(std::uint64_t bytes, std::uint32_t base, std::uint32_t* out);
   void (*negate)(const double* in, double* out);
+  /// `corners`: three addresses of four floats. Outputs: axis k at out + 4 k; with `next`, each
+  /// lane's number at the corner before.
+  void (*load_corners)(const float* const* corners, bool next, double* out);
 };
 
 WINNOW_KERNELS(RowsOps, rows_ops);

@@ -1,5 +1,6 @@
 #include "tests/simd/rows_ops.h"
 
+#include "simd/lanes/corners.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME {
@@ -43,6 +44,15 @@ void bytes_to_words(std::uint64_t bytes, std::uint32_t base, std::uint32_t* out)
 void negative(const double* in, double* out) {
   (-Doubles::load_unaligned(in)).store_unaligned(out);
 }
+void corners(const float* const* from, bool next, double* out) {
+  CornerDoubles axis[3];
+  load_points(from[0], from[1], from[2], axis);
+  for (int k = 0; k < 3; ++k) {
+    alignas(64) double lane[CornerDoubles::kCount];
+    (next ? of_next(axis[k]) : axis[k]).store(lane);
+    for (int i = 0; i < 4; ++i) out[4 * k + i] = lane[i];
+  }
+}
 
 }  // namespace
 }  // namespace winnow::WINNOW_ISA_NAME
@@ -61,6 +71,7 @@ const RowsOps WINNOW_KERNEL_TABLE(rows_ops){
     .to_double = isa::both_halves,
     .store_bytes = isa::bytes_to_words,
     .negate = isa::negative,
+    .load_corners = isa::corners,
 };
 
 }  // namespace winnow::test

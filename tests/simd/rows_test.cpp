@@ -1,4 +1,5 @@
-// Rows into lanes and lanes into other precisions against scalar loops, on every instruction set.
+// Rows and corners into lanes, and lanes into other precisions, against scalar loops, on every
+// instruction set.
 
 #include <gtest/gtest.h>
 
@@ -95,6 +96,27 @@ TEST_P(RowsToLanes, negation_turns_the_sign_of_zero) {
   for (std::size_t lane = 0; lane < 8; ++lane) {
     EXPECT_EQ(out[lane], -in[lane]);
     EXPECT_EQ(std::signbit(out[lane]), !std::signbit(in[lane])) << lane;
+  }
+}
+
+TEST_P(RowsToLanes, corners_come_in_their_order_and_the_next_takes_the_place_of_each) {
+  for (int round = 0; round < 500; ++round) {
+    std::array<std::array<float, 4>, 3> corner{};
+    for (auto& point : corner) {
+      for (float& x : point) x = static_cast<float>(random_.uniform(-1.0, 1.0));
+    }
+    const std::array<const float*, 3> from{corner[0].data(), corner[1].data(), corner[2].data()};
+    for (const bool next : {false, true}) {
+      std::array<double, 12> out{};
+      rows_ops().load_corners(from.data(), next, out.data());
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t lane = 0; lane < 4; ++lane) {
+          ASSERT_EQ(out[4 * axis + lane],
+                    static_cast<double>(corner[(lane + (next ? 1 : 0)) % 3][axis]))
+              << axis << " " << lane;
+        }
+      }
+    }
   }
 }
 
