@@ -16,6 +16,9 @@ inline constexpr double kMeasureError = 0x1p-48;
 /// When the moving box first meets boxes; above `limit` where it does not by then.
 class SweepMeasure {
  public:
+  /// Whether no triangle has less than its order.
+  static constexpr bool kOrderIsLeast = false;
+
   SweepMeasure(const MeshSweepJob& job, double limit) : job_(job), limit_(limit) {}
 
   void set_limit(double limit) { limit_ = limit; }
@@ -79,6 +82,8 @@ class SweepMeasure {
 /// for near: squares below 1e-300 are within every limit.
 class NearMeasure {
  public:
+  static constexpr bool kOrderIsLeast = true;
+
   NearMeasure(const MeshNearJob& job, double limit) : job_(job) { set_limit(limit); }
 
   void set_limit(double limit) {
@@ -101,13 +106,74 @@ class NearMeasure {
     }
     return square * Doubles(1.0 - kMeasureError);
   }
+  /// The same of triangles whose boxes are so far, no more than it is for certain. In doubt where
+  /// the nearest point lies inside, it is taken for one of an edge: the square is then too large by
+  /// less than some roundings of the product of two of the lengths. The rest is the rounding of the
+  /// coordinates, which counts twice with the distance: as a share of that and of itself.
   template <int Half>
-  [[gnu::always_inline]] Doubles order(const Corners16& /*corners*/, const Doubles& square) const {
-    return square;
+  [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& square) const {
+    Vec3<double> corner[3];
+    for (int k = 0; k < 3; ++k) {
+      corner[k] = {to_double<Half>(corners.at[k][0]) * Doubles(job_.scale[0]),
+                   to_double<Half>(corners.at[k][1]) * Doubles(job_.scale[1]),
+                   to_double<Half>(corners.at[k][2]) * Doubles(job_.scale[2])};
+    }
+    const Vec3<double> middle{0.5 * job_.min[0] + 0.5 * job_.max[0],
+                              0.5 * job_.min[1] + 0.5 * job_.max[1],
+                              0.5 * job_.min[2] + 0.5 * job_.max[2]};
+    const Vec3<double> half{0.5 * job_.max[0] - 0.5 * job_.min[0],
+                            0.5 * job_.max[1] - 0.5 * job_.min[1],
+                            0.5 * job_.max[2] - 0.5 * job_.min[2]};
+    Doubles lengths(0.0);
+    const Doubles whole = square_to(corner, middle, lengths);
+    const Doubles far = taxicab(middle) + taxicab(half) + taxicab(corner[0]) + taxicab(corner[1]) +
+                        taxicab(corner[2]);
+    const Doubles least = whole * Doubles(1.0 - 0x1p-20) - Doubles(0x1p-44) * lengths * lengths -
+                          Doubles(0x1p-75) * far * far;
+    const Doubles gap =
+        sqrt(max(Doubles(0.0), least)) - sqrt(dot(half, half)) * Doubles(1.0 + kMeasureError);
+    const Doubles bound = gap * gap * Doubles(1.0 - kMeasureError);
+    return select((least > Doubles(0.0)) & (gap > Doubles(0.0)) & (bound > square), bound, square);
   }
   [[nodiscard]] bool within(double measure) const { return measure <= square_; }
 
  private:
+  /// From a point to a line between two corners; no more than to its ends.
+  [[gnu::always_inline]] static Doubles square_to_edge(const Vec3<double>& from,
+                                                       const Vec3<double>& edge) {
+    const Doubles zero(0.0);
+    const Doubles one(1.0);
+    const Doubles share = dot(from, edge) / dot(edge, edge);
+    const Doubles after = select(share > zero, share, zero);
+    const Vec3<double> rest = from - edge * select(after < one, after, one);
+    return dot(rest, rest);
+  }
+  /// From a point to triangles, and the lengths that it is made of.
+  [[gnu::always_inline]] static Doubles square_to(const Vec3<double> (&corner)[3],
+                                                  const Vec3<double>& point, Doubles& lengths) {
+    const Vec3<double> ab = corner[1] - corner[0];
+    const Vec3<double> bc = corner[2] - corner[1];
+    const Vec3<double> ca = corner[0] - corner[2];
+    const Vec3<double> a = point - corner[0];
+    const Vec3<double> b = point - corner[1];
+    const Vec3<double> c = point - corner[2];
+    lengths = taxicab(ab) + taxicab(bc) + taxicab(ca) + taxicab(a);
+    const Doubles edges =
+        min(min(square_to_edge(a, ab), square_to_edge(b, bc)), square_to_edge(c, ca));
+    const Vec3<double> normal = cross(bc, ca);
+    const Doubles size = dot(normal, normal);
+    const Doubles zero(0.0);
+    const auto is_over = (dot(cross(ab, a), normal) >= zero) & (dot(cross(bc, b), normal) >= zero) &
+                         (dot(cross(ca, c), normal) >= zero);
+    const Doubles height = dot(normal, a);
+    // The plane of a triangle with hardly an area is not known, and one without may stand for its
+    // box: nothing is said of these.
+    constexpr double kLeastSize = 1e-250;
+    const auto has_plane = size > Doubles(kLeastSize);
+    const Doubles plane = height * height / size;
+    return select(has_plane, select(is_over & (plane < edges), plane, edges), zero);
+  }
+
   const MeshNearJob& job_;
   double limit_ = 0.0;
   double square_ = 0.0;
@@ -205,10 +271,18 @@ inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure
   measure.template order<0>(corners, low).store(order);
   measure.template order<1>(corners, high).store(order + 8);
   OrderedLanes found;
-  order_lanes(measure, value, order, present(mesh.triangle_count, first_slot), found);
+  order_lanes(measure, Measure::kOrderIsLeast ? order : value, order,
+              present(mesh.triangle_count, first_slot), found);
   if (found.count == 0) return;
   for (std::uint32_t i = 0; i < found.count; ++i) found.lane[i] += first_slot;
-  measure.set_limit(visitor.visit(visitor.context, found.lane, found.count, measure.limit()));
+  if (!Measure::kOrderIsLeast) {
+    measure.set_limit(visitor.visit(visitor.context, found.lane, found.count, measure.limit()));
+    return;
+  }
+  for (std::uint32_t i = 0; i < found.count && measure.limit() >= 0.0; ++i) {
+    if (!measure.within(found.measure[i])) return;
+    measure.set_limit(visitor.visit(visitor.context, found.lane + i, 1, measure.limit()));
+  }
 }
 
 /// Shows the triangles within the measure's limit, the nearest leaf first.

@@ -51,16 +51,17 @@ void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacemen
 void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
                      const double doubt[3], double limit, const SlotPairVisitor& visitor) noexcept;
 
-// A visitor is shown the slots of one leaf at a time, nearest first, and the limit it gives back
-// holds from the next leaf on; one below zero ends the traversal.
+// A visitor is shown the slots of one leaf at a time, or some of them, nearest first, and the limit
+// it gives back holds from then on; one below zero ends the traversal.
 
 /// Slots of triangles whose boxes the moving box [min, max] + t * direction may meet at some t in
 /// [0, limit], roughly in the order in which it does.
 void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
                 const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
 
-/// Slots of triangles whose boxes, all multiplied by `scale` along the axes, may be no farther than
-/// `limit` from [min, max] (in scaled coordinates), roughly the nearest first.
+/// Slots of triangles that, multiplied by `scale` along the axes, may be no farther than `limit`
+/// from [min, max] (in scaled coordinates), roughly the nearest first, one at a time. Of those
+/// without area, which stand for other things, it is the boxes that may be.
 void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],
                const double max[3], double limit, const SlotVisitor& visitor) noexcept;
 

@@ -552,6 +552,32 @@ TEST_F(Meshes, pairs_with_corners_within_the_limit_are_shown_whatever_the_direct
   }
 }
 
+/// The nearest points of a triangle's edges to a point, and of its inside where the point is above
+/// that.
+std::vector<Point> nearest_points(const TwinTriangle& triangle, const Point& to) {
+  const auto& corner = triangle.corner;
+  const auto along = [](const Point& from, const Point& way, Real share) {
+    return Point{from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
+  };
+  std::vector<Point> points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point edge = minus(corner[(k + 1) % 3], corner[k]);
+    const Real square = dot(edge, edge);
+    const Real share = square > 0 ? dot(minus(to, corner[k]), edge) / square : Real(0);
+    points.push_back(along(corner[k], edge, std::clamp(share, Real(0), Real(1))));
+  }
+  const Point normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
+  bool is_over = dot(normal, normal) > 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point edge = minus(corner[(k + 1) % 3], corner[k]);
+    is_over = is_over && dot(cross(edge, minus(to, corner[k])), normal) >= 0;
+  }
+  if (is_over) {
+    points.push_back(along(to, normal, dot(normal, minus(corner[0], to)) / dot(normal, normal)));
+  }
+  return points;
+}
+
 TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
   Random random(4);
   for (const TriangleMesh& mesh : meshes_) {
@@ -567,7 +593,7 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
       double max[3];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         min[axis] = mesh.radius() * random.uniform(-2, 2);
-        max[axis] = min[axis] + mesh.radius() * random.uniform(0, 0.2);
+        max[axis] = min[axis] + (k % 2 == 0 ? 0.0 : mesh.radius() * random.uniform(0, 0.2));
       }
       const double limit = mesh.radius() * random.uniform(0, 1);
       const Slots shown = on_all_isas([&] {
@@ -577,19 +603,37 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
       });
       const std::set<std::uint32_t> set(shown.begin(), shown.end());
       EXPECT_EQ(set.size(), shown.size());
-      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+      Point middle;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        middle[axis] = (static_cast<Real>(min[axis]) + static_cast<Real>(max[axis])) / 2;
+      }
+      const auto from_box = [&](const auto& low, const auto& high) {
         Real square = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          const Real below = static_cast<Real>(min[axis]) - triangles[slot].high(axis);
-          const Real above = triangles[slot].low(axis) - static_cast<Real>(max[axis]);
+          const Real below = static_cast<Real>(min[axis]) - high(axis);
+          const Real above = low(axis) - static_cast<Real>(max[axis]);
           const Real away = std::max({Real(0), below, above});
           square += away * away;
         }
-        const bool is_near = std::sqrt(square) <= static_cast<Real>(limit);
-        EXPECT_TRUE(!is_near || set.count(slot) != 0) << slot;
-        if (set.count(slot) != 0) {
-          EXPECT_LE(std::sqrt(square), static_cast<Real>(limit * (1 + 1e-9)));
+        return std::sqrt(square);
+      };
+      for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
+        const TwinTriangle& triangle = triangles[slot];
+        Real least = std::numeric_limits<Real>::infinity();
+        for (const Point& point : nearest_points(triangle, middle)) {
+          const auto at = [&](std::size_t axis) { return point[axis]; };
+          least = std::min(least, from_box(at, at));
         }
+        EXPECT_TRUE(least > static_cast<Real>(limit) || set.count(slot) != 0) << slot;
+        if (set.count(slot) == 0) continue;
+        const Real of_box = from_box([&](std::size_t axis) { return triangle.low(axis); },
+                                     [&](std::size_t axis) { return triangle.high(axis); });
+        EXPECT_LE(of_box, static_cast<Real>(limit * (1 + 1e-9)));
+        const Point normal = cross(minus(triangle.corner[1], triangle.corner[0]),
+                                   minus(triangle.corner[2], triangle.corner[0]));
+        if (k % 2 != 0 || !(dot(normal, normal) > 0)) continue;
+        EXPECT_LE(least, static_cast<Real>(limit * (1 + 1e-4) + 1e-6 * mesh.radius()))
+            << "of a point, triangles are measured, not their boxes";
       }
     }
   }
