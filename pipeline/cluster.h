@@ -192,8 +192,8 @@ class WINNOW_API Cluster {
   /// where one is named twice; `invalid_bounds`; `size_mismatch`. Takes effect with the next
   /// `self_pairs`.
   Status move(std::uint32_t rank, std::span<const BodyName> names, const BoxView& boxes);
-  /// The same by keys, which saves looking for names. Of one that is there twice the last box
-  /// counts.
+  /// The same by keys, which saves looking for names, and is fastest where ids ascend. Of one that
+  /// is there twice the last box counts.
   Status move(std::uint32_t rank, std::span<const Key> keys, const BoxView& boxes);
   /// Removes bodies that belong to `rank`, all or none; `invalid_key` as above.
   Status remove(std::uint32_t rank, std::span<const BodyName> names);

@@ -216,7 +216,8 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
   // Rows of the tail were sorted, and blocks at the end came or went.
   std::size_t changed_from = std::min(blocks, blocks_before) - (blocks < blocks_before ? 1 : 0);
   if (tail_changed) {
-    changed_from = std::min(changed_from, rows_.regions().ordered / kBlockRows - first);
+    const std::size_t tail_block = std::max(rows_.regions().ordered / kBlockRows, first);
+    changed_from = std::min(changed_from, tail_block - first);
   }
   const std::size_t behind = blocks - changed_from;
   constexpr std::size_t kMost = 4;  // of so many blocks one: all together take less
