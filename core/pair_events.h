@@ -25,33 +25,62 @@ struct KeyPair {
   friend constexpr bool operator==(const KeyPair&, const KeyPair&) noexcept = default;
 };
 
+/// The client data of two objects.
+struct ClientDataPair {
+  ClientData first = 0;   ///< that the one with the smaller id was inserted with
+  ClientData second = 0;  ///< that the one with the larger id was inserted with
+
+  /// The same data.
+  friend constexpr bool operator==(const ClientDataPair&, const ClientDataPair&) noexcept = default;
+};
+
+/// How PairEvents are kept.
+struct PairEventsOptions {
+  /// Every allocation comes from here. It must outlive them.
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  /// Give client data with the pairs. Takes 8 bytes an object and 16 a pair that begins or ends; a
+  /// frame then costs O(pairs that begin or end + objects that moved) more.
+  bool client_data = false;
+};
+
 /// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
 /// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
 /// it starts anew: every pair begins and none ends. A caller who wants changes alone hands over no
 /// buffer: the events then keep the pairs themselves.
 class WINNOW_API PairEvents {
  public:
-  /// Nothing has happened yet. Every allocation comes from `memory`, which must outlive it.
+  /// Nothing has happened yet.
+  explicit PairEvents(const PairEventsOptions& options) noexcept
+      : begun_(options.memory),
+        ended_(options.memory),
+        begun_data_(options.memory),
+        ended_data_(options.memory),
+        dropped_(options.memory),
+        before_(options.memory),
+        after_(options.memory),
+        spare_(options.memory),
+        stamps_(options.memory),
+        data_(options.memory),
+        pairs_(options.memory),
+        with_client_data_(options.client_data) {}
+  /// The same without client data. Every allocation comes from `memory`, which must outlive it.
   explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
-      : begun_(memory),
-        ended_(memory),
-        dropped_(memory),
-        before_(memory),
-        after_(memory),
-        spare_(memory),
-        stamps_(memory),
-        pairs_(memory) {}
-  /// `other` is left empty and starts anew.
+      : PairEvents(PairEventsOptions{memory, false}) {}
+  /// `other` is left empty and starts anew, with client data if it had them.
   PairEvents(PairEvents&& other) noexcept
       : begun_(std::move(other.begun_)),
         ended_(std::move(other.ended_)),
+        begun_data_(std::move(other.begun_data_)),
+        ended_data_(std::move(other.ended_data_)),
         dropped_(std::move(other.dropped_)),
         before_(std::move(other.before_)),
         after_(std::move(other.after_)),
         spare_(std::move(other.spare_)),
         stamps_(std::move(other.stamps_)),
+        data_(std::move(other.data_)),
         pairs_(std::move(other.pairs_)),
         persisting_(std::exchange(other.persisting_, 0)),
+        with_client_data_(other.with_client_data_),
         after_is_all_(std::exchange(other.after_is_all_, false)),
         provenance_(std::exchange(other.provenance_, {})) {}
 
@@ -64,6 +93,16 @@ class WINNOW_API PairEvents {
   [[nodiscard]] std::span<const KeyPair> ended() const noexcept {
     return {ended_.data(), ended_.size()};
   }
+  /// Client data of the pairs in `begun()`, in its order; none unless they were asked for, see
+  /// PairEventsOptions.
+  [[nodiscard]] std::span<const ClientDataPair> begun_data() const noexcept {
+    return {begun_data_.data(), begun_data_.size()};
+  }
+  /// Client data of the pairs in `ended()`, in its order, of removed objects as of others, whoever
+  /// has their ids now; none unless they were asked for.
+  [[nodiscard]] std::span<const ClientDataPair> ended_data() const noexcept {
+    return {ended_data_.data(), ended_data_.size()};
+  }
   /// How many pairs are in both: the first ones of the PairBuffer; those that began follow, in the
   /// order in which they are told.
   [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
@@ -72,12 +111,15 @@ class WINNOW_API PairEvents {
   void clear() noexcept {
     begun_.clear();
     ended_.clear();
+    begun_data_.clear();
+    ended_data_.clear();
     persisting_ = 0;
     pairs_.clear();
     provenance_ = {};
   }
 
-  /// Bytes of begun and ended pairs under `results`, the rest under `scratch`.
+  /// Bytes of begun and ended pairs and of their client data under `results`, the rest under
+  /// `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -85,13 +127,17 @@ class WINNOW_API PairEvents {
 
   Column<KeyPair> begun_;
   Column<KeyPair> ended_;
+  Column<ClientDataPair> begun_data_;
+  Column<ClientDataPair> ended_data_;
   Column<Pair> dropped_;
   Column<std::uint64_t> before_;  // pairs that may have ended, as (first << 32 | second)
   Column<std::uint64_t> after_;   // pairs that may have begun
   Column<std::uint64_t> spare_;   // what pairs are sorted through
   Column<std::uint32_t> stamps_;  // by id, as of the last frame
+  Column<ClientData> data_;       // by id, as of the last frame, if client data are asked for
   PairBuffer pairs_;              // of a caller who has no buffer
   std::size_t persisting_ = 0;
+  bool with_client_data_;
   bool after_is_all_ = false;  // after_ holds every pair of the last frame
   PairBuffer::Provenance provenance_;
 };

@@ -95,7 +95,7 @@ bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool
   e.persisting_ = static_cast<std::size_t>(to - PairTracker::data(out));
   for (const KeyPair& pair : e.begun_) *to++ = {pair.first.id, pair.second.id};
   e.after_is_all_ = kept_ == 0;
-  return take_stamps(moved, all);
+  return give_client_data() && take_frame(moved, all);
 }
 
 bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
@@ -115,7 +115,7 @@ bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
     if (!begin(packed(pair))) return false;
   }
   e.persisting_ = out.size() - begun.size() - ended.size();
-  return take_stamps(moved, false);
+  return give_client_data() && take_frame(moved, false);
 }
 
 // Both lists ascend. Writes the pairs that persist to `to` on.
@@ -158,16 +158,40 @@ bool EventWriter::begin(std::uint64_t pair) noexcept {
   return events_.begun_.push_back({keys_.key_of(first_of(pair)), keys_.key_of(second_of(pair))});
 }
 
-bool EventWriter::take_stamps(std::span<const ObjectId> moved, bool all) noexcept {
+// Beside the begun and ended pairs, which are sorted by now. That of objects that ended a pair is
+// what it was in the last frame.
+bool EventWriter::give_client_data() noexcept {
+  PairEvents& e = events_;
+  if (!e.with_client_data_) return true;
+  if (!e.begun_data_.resize(e.begun_.size()) || !e.ended_data_.resize(e.ended_.size())) {
+    return false;
+  }
+  std::ranges::transform(e.begun_, e.begun_data_.begin(), [&](const KeyPair& pair) {
+    return ClientDataPair{keys_.client_data(pair.first.id), keys_.client_data(pair.second.id)};
+  });
+  std::ranges::transform(e.ended_, e.ended_data_.begin(), [&](const KeyPair& pair) {
+    return ClientDataPair{e.data_[pair.first.id], e.data_[pair.second.id]};
+  });
+  return true;
+}
+
+// Remembers whose the ids are in this frame.
+bool EventWriter::take_frame(std::span<const ObjectId> moved, bool all) noexcept {
   Column<std::uint32_t>& stamps = events_.stamps_;
+  Column<ClientData>& data = events_.data_;
+  const bool with_data = events_.with_client_data_;
   const std::size_t slots = keys_.slot_count();
-  if (!stamps.resize(slots)) return false;
+  if (!stamps.resize(slots) || (with_data && !data.resize(slots))) return false;
   if (all || !follows_) {
     for (std::size_t id = 0; id < slots; ++id) {
       stamps[id] = keys_.key_of(static_cast<ObjectId>(id)).stamp;
     }
-  } else {
-    for (const ObjectId id : moved) stamps[id] = keys_.key_of(id).stamp;
+    if (with_data) std::ranges::copy(keys_.all_client_data(), data.begin());
+    return true;
+  }
+  for (const ObjectId id : moved) stamps[id] = keys_.key_of(id).stamp;
+  if (with_data) {
+    for (const ObjectId id : moved) data[id] = keys_.client_data(id);
   }
   return true;
 }

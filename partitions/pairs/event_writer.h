@@ -68,7 +68,8 @@ class EventWriter {
  private:
   [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
   [[nodiscard]] bool merge(Pair*& to) noexcept;
-  [[nodiscard]] bool take_stamps(std::span<const ObjectId> moved, bool all) noexcept;
+  [[nodiscard]] bool give_client_data() noexcept;
+  [[nodiscard]] bool take_frame(std::span<const ObjectId> moved, bool all) noexcept;
   [[nodiscard]] bool any_other_key(std::span<const ObjectId> moved, bool all) const noexcept;
   [[nodiscard]] bool is_other(ObjectId id) const noexcept {
     return events_.stamps_[id] != keys_.key_of(id).stamp;

@@ -19,7 +19,7 @@ struct PartitionWorld {
         other(linear_bvh(), {.memory = memory, .execution = execution}),
         pairs(memory),
         cross(memory),
-        events(memory),
+        events({memory, true}),
         alone(memory),
         hits(memory),
         batch(memory),
@@ -107,6 +107,13 @@ Status insert(PartitionWorld& w, Partition& partition, std::span<const Aabb> box
 Status self_pairs(PartitionWorld& w, Order order) {
   const Status status = w.partition.self_pairs(w.pairs, w.events, {.order = order});
   if (status == Status::ok) w.answer(w.pairs);
+  const auto data_of = [&](ObjectId id) { return w.partition.client_data_of(id); };
+  EXPECT_TRUE(std::ranges::equal(
+      w.events.begun(), w.events.begun_data(),
+      [&](const KeyPair& pair, const ClientDataPair& data) {
+        return data == ClientDataPair{data_of(pair.first.id), data_of(pair.second.id)};
+      }));
+  EXPECT_EQ(w.events.ended().size(), w.events.ended_data().size());
   return status;
 }
 

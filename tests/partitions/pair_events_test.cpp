@@ -6,6 +6,7 @@
 #endif
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -26,12 +27,20 @@ std::pair<Ids, Stamps> entry_of(const KeyPair& pair) {
   return {{pair.first.id, pair.second.id}, {pair.first.stamp, pair.second.stamp}};
 }
 
-// A frame's buffer and events beside the pairs of the frame before.
+std::vector<ClientData> random_data(std::size_t count, std::uint64_t stream) {
+  Random random(stream);
+  std::vector<ClientData> data(count);
+  std::ranges::generate(data, [&] { return random.bits(); });
+  return data;
+}
+
+// A frame's buffer and events beside the pairs of the frame before, and what each object that was
+// there in any frame was inserted with.
 class Frames {
  public:
   explicit Frames(World& world,
                   std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : buffer(memory), events(memory), world_(world) {}
+      : buffer(memory), events({memory, true}), world_(world) {}
 
   // Queries the next frame and holds its events against the difference of the key pairs.
   testing::AssertionResult next(const PairOptions& options = {}) {
@@ -42,6 +51,7 @@ class Frames {
     }
     if (const auto right = world_.has_pairs(buffer); !right) return right;
     const KeyPairs now = keys_of(buffer.pairs());
+    for (const auto& [id, entry] : world_.entries()) data_[{id, entry.key.stamp}] = entry.data;
     const auto verdict = agree(now, options.order);
     before_ = now;
     return verdict;
@@ -78,6 +88,10 @@ class Frames {
     if (events.persisting() + begun.size() != buffer.size()) {
       return testing::AssertionFailure() << events.persisting() << " pairs persist";
     }
+    if (!has_data(events.begun(), events.begun_data()) ||
+        !has_data(events.ended(), events.ended_data())) {
+      return testing::AssertionFailure() << "not the client data of these pairs";
+    }
     const KeyPairs last = keys_of(buffer.pairs().subspan(events.persisting()));
     if (!std::ranges::equal(last, begun)) {
       return testing::AssertionFailure() << "the last pairs are not those that began";
@@ -90,8 +104,17 @@ class Frames {
     return testing::AssertionSuccess();
   }
 
+  [[nodiscard]] bool has_data(std::span<const KeyPair> pairs,
+                              std::span<const ClientDataPair> data) const {
+    const auto data_of = [&](const Key& key) { return data_.at({key.id, key.stamp}); };
+    return std::ranges::equal(pairs, data, [&](const KeyPair& pair, const ClientDataPair& got) {
+      return got == ClientDataPair{data_of(pair.first), data_of(pair.second)};
+    });
+  }
+
   World& world_;
   KeyPairs before_;
+  std::map<std::pair<ObjectId, std::uint32_t>, ClientData> data_;
 };
 
 PairOptions options_of(std::uint64_t choice) {
@@ -112,7 +135,7 @@ TEST_P(Events, are_the_difference_of_frames_however_objects_move) {
     World world(config());
     Frames frames(world);
     std::vector<Aabb> boxes = uniform_boxes(scene_size(400));
-    const std::vector<Key> keys = world.insert(boxes);
+    const std::vector<Key> keys = world.insert(boxes, random_data(boxes.size(), 8));
     Random random(3);
     for (std::uint64_t frame = 0; frame < 6; ++frame) {
       ASSERT_TRUE(frames.next(options_of(frame + 1)));
@@ -134,7 +157,7 @@ TEST_P(Events, follow_any_sequence_of_calls) {
     for (int step = 0; step < 20; ++step) {
       if (keys.empty() || random.chance(0.3)) {
         for (const Aabb& box : uniform_boxes(1 + random.below(12), random.bits())) {
-          keys.push_back(world.insert(box));
+          keys.push_back(world.insert(box, random.bits()));
         }
       }
       const std::size_t moved = random.chance(0.2) ? keys.size() : random.below(4);
@@ -147,7 +170,7 @@ TEST_P(Events, follow_any_sequence_of_calls) {
         const std::size_t at = some();
         const Aabb box = world.entries().at(keys[at].id).box;
         world.remove(keys[at]);
-        keys[at] = world.insert(box);
+        keys[at] = world.insert(box, random.bits());
       }
       if (random.chance(0.3)) {
         const std::size_t at = some();
@@ -183,7 +206,7 @@ TEST_P(Events, follow_few_objects_among_many) {
     std::vector<Aabb> boxes = stream == 1   ? uniform_boxes(scene_size(500))
                               : stream == 2 ? mixed_boxes(scene_size(200))
                                             : pile_boxes(scene_size(400));
-    std::vector<Key> keys = world.insert(boxes);
+    std::vector<Key> keys = world.insert(boxes, random_data(boxes.size(), stream));
     const auto some = [&] { return random.below(keys.size()); };
     std::uint64_t full = 0;
     for (int frame = 0; frame < 40; ++frame) {
@@ -198,14 +221,14 @@ TEST_P(Events, follow_few_objects_among_many) {
             break;
           case 1:  // its id goes to another object
             world.remove(keys[at]);
-            keys[at] = world.insert(random.chance(0.5) ? box : moved);
+            keys[at] = world.insert(random.chance(0.5) ? box : moved, random.bits());
             break;
           case 2:
             world.remove(keys[at]);
             keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(at));
             break;
           case 3:
-            keys.push_back(world.insert(moved));
+            keys.push_back(world.insert(moved, random.bits()));
             break;
           case 4:  // onto another object
             world.update(keys[at], world.entries().at(keys[some()].id).box);
@@ -312,6 +335,62 @@ TEST_P(Events, of_an_id_that_went_to_another_object_end_and_begin) {
   EXPECT_EQ(frames.events.persisting(), 0U);
 }
 
+TEST_P(Events, give_the_client_data_of_objects_that_are_gone) {
+  World world(config());
+  const Aabb box{{0, 0, 0}, {1, 1, 1}};
+  PairBuffer buffer;
+  PairEvents events({.memory = std::pmr::get_default_resource(), .client_data = true});
+  const auto next = [&] { ASSERT_EQ(world.partition().self_pairs(buffer, events), Status::ok); };
+  world.insert(box, 11);
+  Key other = world.insert(box, 12);
+  next();
+  ASSERT_EQ(events.begun_data().size(), 1U);
+  EXPECT_EQ(events.begun_data()[0], (ClientDataPair{11, 12}));
+  EXPECT_TRUE(events.ended_data().empty());
+  // The id goes to another object, which meets none.
+  world.remove(other);
+  other = world.insert(box, 13);
+  world.set_filter(other, {1, 1, 1});
+  next();
+  EXPECT_TRUE(events.begun_data().empty());
+  ASSERT_EQ(events.ended_data().size(), 1U);
+  EXPECT_EQ(events.ended_data()[0], (ClientDataPair{11, 12}));
+  world.set_filter(other, {});
+  next();
+  ASSERT_EQ(events.begun_data().size(), 1U);
+  EXPECT_EQ(events.begun_data()[0], (ClientDataPair{11, 13}));
+  world.clear();
+  next();
+  ASSERT_EQ(events.ended_data().size(), 1U);
+  EXPECT_EQ(events.ended_data()[0], (ClientDataPair{11, 13}));
+  events.clear();
+  EXPECT_TRUE(events.ended_data().empty());
+}
+
+TEST_P(Events, take_memory_for_client_data_only_where_they_are_asked_for) {
+  World world(config());
+  World twin(config());
+  std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
+  const std::vector<ClientData> data = random_data(boxes.size(), 5);
+  const std::vector<Key> keys = world.insert(boxes, data);
+  const std::vector<Key> twin_keys = twin.insert(boxes, data);
+  PairEvents without;
+  PairEvents with({.memory = std::pmr::get_default_resource(), .client_data = true});
+  Random random(2);
+  for (const Motion motion : {Motion::much, Motion::few, Motion::few}) {
+    ASSERT_EQ(world.partition().self_pairs(without), Status::ok);
+    ASSERT_EQ(twin.partition().self_pairs(with), Status::ok);
+    EXPECT_TRUE(without.begun_data().empty() && without.ended_data().empty());
+    static_assert(sizeof(ClientDataPair) == sizeof(KeyPair));
+    EXPECT_EQ(with.footprint().results.used, 2 * without.footprint().results.used);
+    EXPECT_EQ(with.footprint().scratch.used,
+              without.footprint().scratch.used + boxes.size() * sizeof(ClientData));
+    move(motion, boxes, random);
+    world.update(keys, boxes);
+    twin.update(twin_keys, boxes);
+  }
+}
+
 TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
   World world(config());
   World other(config());
@@ -332,6 +411,7 @@ TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
   EXPECT_TRUE(taken.begun().empty());
   ASSERT_EQ(other.partition().self_pairs(second, frames.events), Status::ok);
   EXPECT_EQ(frames.events.begun().size(), second.size());
+  EXPECT_EQ(frames.events.begun_data().size(), second.size());
 }
 
 TEST_P(Events, start_anew_after_a_query_that_memory_was_refused_for) {
@@ -358,6 +438,7 @@ TEST_P(Events, start_anew_after_a_query_that_memory_was_refused_for) {
     ASSERT_EQ(status, Status::out_of_memory);
     EXPECT_TRUE(frames.buffer.empty());
     EXPECT_TRUE(frames.events.begun().empty() && frames.events.ended().empty());
+    EXPECT_TRUE(frames.events.begun_data().empty() && frames.events.ended_data().empty());
     frames.forget();
     ASSERT_TRUE(frames.next());
     ASSERT_TRUE(frames.next());
@@ -406,11 +487,13 @@ TEST_P(Events, honour_the_predicate) {
 }
 
 TEST_P(Events, allocate_nothing_in_steady_frames) {
-  for (const Motion motion : {Motion::few, Motion::much}) {
+  for (const auto& [motion, client_data] :
+       {std::pair(Motion::few, false), std::pair(Motion::much, false), std::pair(Motion::few, true),
+        std::pair(Motion::much, true)}) {
     World world(config());
     CountingMemory results;
     PairBuffer buffer(&results);
-    PairEvents events(&results);
+    PairEvents events({&results, client_data});
     std::vector<std::vector<Aabb>> frames{uniform_boxes(scene_size(500))};
     Random random(1);
     while (frames.size() < 4) {
