@@ -92,8 +92,8 @@ Status SpatialIndex::absorb_changes(bool all) {
   return Status::ok;
 }
 
-// A second refresh, of a few more changes that nobody asked for in between, is none: what a build is
-// expected by grows from frame to frame.
+// A second refresh, of a few more changes that nobody asked for in between, is none: what a build
+// is expected by grows from frame to frame.
 bool SpatialIndex::is_next_frame() const noexcept {
   const ChangeList& stale = rows_.stale();
   const bool asked = questioned_.exchange(false, std::memory_order_relaxed);

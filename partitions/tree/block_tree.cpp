@@ -35,10 +35,11 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
   return total;
 }
 
-// A tree has room for a tail of new blocks, unless that takes another level.
+// A tree has room for a tail of new blocks, up to what takes another level. Over fewer blocks there
+// is never more room.
 std::size_t blocks_with_room(std::size_t blocks) noexcept {
-  const std::size_t more = blocks + blocks / 16;
-  return levels_over(more).levels == levels_over(blocks).levels ? more : blocks;
+  const std::size_t most = std::size_t{1} << (4 * levels_over(blocks).levels);
+  return std::min(blocks + blocks / 16, most);
 }
 
 // Empties nodes [begin, end) of a level.

@@ -142,6 +142,22 @@ TEST_P(Memory, that_was_reserved_lasts_for_a_first_frame) {
   EXPECT_TRUE(footprint_is_exact(world));
 }
 
+// A tree has room for more blocks, but for those of another level.
+TEST(TreeMemory, that_was_reserved_is_enough_for_fewer_beside_another_level) {
+  constexpr std::size_t kObjects = 3900 * 16;
+  const std::vector<Aabb> boxes = uniform_boxes(kObjects);
+  for (const std::size_t blocks : {3700U, 3854U, 3855U, 3899U}) {
+    CountingMemory memory;
+    Partition partition(linear_bvh(), {.memory = &memory, .execution = Execution::serial()});
+    ASSERT_EQ(partition.reserve(kObjects), Status::ok);
+    const std::size_t requests = memory.requests();
+    std::vector<Key> keys(blocks * 16);
+    ASSERT_EQ(partition.insert(std::span(boxes).first(keys.size()), {}, keys), Status::ok);
+    ASSERT_EQ(partition.refresh(), Status::ok);
+    EXPECT_EQ(memory.requests(), requests) << blocks;
+  }
+}
+
 // As many cells as there may be, lines and nodes of one object each, crowds, all in the tree.
 std::vector<std::vector<Aabb>> scenes_to_reserve_for(std::size_t count) {
   std::vector<std::vector<Aabb>> scenes{
