@@ -16,7 +16,7 @@ namespace {
   return true;
 }
 
-/// Of four keys.
+/// Of four keys; behind the greatest id comes 0.
 [[nodiscard]] bool follow_each_other(std::span<const Key> keys) noexcept {
   const ObjectId first = keys[0].id;
   return ((keys[1].id - first - 1) | (keys[2].id - first - 2) | (keys[3].id - first - 3)) == 0;
@@ -120,7 +120,7 @@ bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
     if (some.size() == kTogether && follow_each_other(some)) {
       // Most have no other flag.
       std::array<std::uint8_t, kTogether> flags{};
-      if (some.back().id >= flags_.size()) return false;
+      if (std::max(some.front().id, some.back().id) >= flags_.size()) return false;
       std::copy_n(flags_.begin() + some.front().id, kTogether, flags.begin());
       if (flags == std::array<std::uint8_t, kTogether>{kOwned, kOwned, kOwned, kOwned}) continue;
     }

@@ -183,6 +183,20 @@ TEST(ClusterInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
   world.check();
 }
 
+TEST(ClusterInput, of_keys_that_follow_each_other_round_the_greatest_id_is_refused) {
+  LoopbackTransport transport(2);
+  Cluster cluster(transport);
+  const BodyName names[] = {1, 2, 3};
+  const std::vector<Aabb> boxes(4, Aabb{Vec3f(0, 0, 0), Vec3f(1, 1, 1)});
+  ASSERT_EQ(add_on(cluster, 0, names, std::span(boxes).first(3)), Status::ok);
+  std::vector<Key> keys(4);  // a null key, then those of numbers 0, 1 and 2
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(cluster.key_of(0, names[i], keys[1 + i]), Status::ok);
+    ASSERT_EQ(keys[1 + i].id, i);
+  }
+  EXPECT_EQ(cluster.move(0, std::span<const Key>(keys), BoxView(boxes)), Status::invalid_key);
+}
+
 TEST(ClusterInput, that_two_ranks_name_alike_is_refused_on_both) {
   LoopbackTransport transport(3);
   Cluster cluster(transport);
