@@ -43,14 +43,30 @@ typedef struct winnow_key_pair {
   winnow_key second;
 } winnow_key_pair;
 
+/// The client data of two objects, as they were inserted with.
+typedef struct winnow_client_data_pair {
+  uint64_t first;
+  uint64_t second;
+} winnow_client_data_pair;
+
 typedef struct winnow_pair_events winnow_pair_events;
 WINNOW_C_API winnow_status winnow_pair_events_create(const winnow_memory* memory,
                                                      winnow_pair_events** events);
+/// Those that give client data with the pairs, as PairEventsOptions::client_data says.
+WINNOW_C_API winnow_status winnow_pair_events_create_with_client_data(const winnow_memory* memory,
+                                                                      winnow_pair_events** events);
 WINNOW_C_API void winnow_pair_events_destroy(winnow_pair_events* events);
 WINNOW_C_API winnow_status winnow_pair_events_begun(const winnow_pair_events* events,
                                                     const winnow_key_pair** pairs, size_t* count);
 WINNOW_C_API winnow_status winnow_pair_events_ended(const winnow_pair_events* events,
                                                     const winnow_key_pair** pairs, size_t* count);
+/// Of the pairs that begun and ended give, in their order; none of events without client data.
+WINNOW_C_API winnow_status winnow_pair_events_begun_data(const winnow_pair_events* events,
+                                                         const winnow_client_data_pair** data,
+                                                         size_t* count);
+WINNOW_C_API winnow_status winnow_pair_events_ended_data(const winnow_pair_events* events,
+                                                         const winnow_client_data_pair** data,
+                                                         size_t* count);
 WINNOW_C_API winnow_status winnow_pair_events_persisting(const winnow_pair_events* events,
                                                          size_t* count);
 WINNOW_C_API winnow_status winnow_pair_events_clear(winnow_pair_events* events);

@@ -42,6 +42,15 @@ static void note_key_pairs(const trace* t, const char* what, const winnow_key_pa
   }
 }
 
+static void note_data_pairs(const trace* t, const char* what, const winnow_client_data_pair* pairs,
+                            size_t count) {
+  note(t, what, count);
+  for (size_t i = 0; i < count; ++i) {
+    note(t, what, pairs[i].first);
+    note(t, what, pairs[i].second);
+  }
+}
+
 static void note_hit(const trace* t, const char* what, const winnow_hit* hit) {
   note(t, what, hit->key.id);
   note(t, what, hit->data);
@@ -116,12 +125,15 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   winnow_pair_buffer* pairs = NULL;
   winnow_pair_buffer* copy = NULL;
   winnow_pair_events* events = NULL;
+  winnow_pair_events* plain = NULL;
   winnow_pair_options options = WINNOW_PAIR_OPTIONS;
   const winnow_key_pair* changed = NULL;
+  const winnow_client_data_pair* changed_data = NULL;
   size_t count = 0;
   OK(winnow_pair_buffer_create(memory, &pairs));
   OK(winnow_pair_buffer_create(memory, &copy));
-  OK(winnow_pair_events_create(memory, &events));
+  OK(winnow_pair_events_create_with_client_data(memory, &events));
+  OK(winnow_pair_events_create(memory, &plain));
   OK(winnow_partition_reserve_pairs(partition, pairs, 1000, WINNOW_PAGES_TOUCHED));
   OK(winnow_pair_buffer_reserve(copy, 1000, WINNOW_PAGES_UNTOUCHED));
   options.order = WINNOW_ORDER_CANONICAL;
@@ -147,12 +159,19 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   note_key_pairs(t, "begun", changed, count);
   OK(winnow_pair_events_ended(events, &changed, &count));
   note_key_pairs(t, "ended", changed, count);
+  OK(winnow_pair_events_begun_data(events, &changed_data, &count));
+  note_data_pairs(t, "data of begun", changed_data, count);
+  OK(winnow_pair_events_ended_data(events, &changed_data, &count));
+  note_data_pairs(t, "data of ended", changed_data, count);
   OK(winnow_pair_events_persisting(events, &count));
   note(t, "persisting", count);
   OK(winnow_pair_events_clear(events));
   OK(winnow_partition_self_pairs(partition, NULL, events, NULL));
   OK(winnow_pair_events_begun(events, &changed, &count));
   note_key_pairs(t, "all begun", changed, count);
+  OK(winnow_partition_self_pairs(partition, NULL, plain, NULL));
+  OK(winnow_pair_events_begun_data(plain, &changed_data, &count));
+  note_data_pairs(t, "data unless asked for", changed_data, count);
 
   view = winnow_boxes(boxes, kObjects);
   OK(winnow_partition_update(partition, keys, kObjects, &view, NULL));
@@ -166,6 +185,7 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   OK(winnow_pair_events_footprint(events, &bytes));
   note(t, "events take memory", bytes.results.used > 0);
   OK(winnow_pair_buffer_release(copy));
+  winnow_pair_events_destroy(plain);
   winnow_pair_events_destroy(events);
   winnow_pair_buffer_destroy(copy);
   winnow_pair_buffer_destroy(pairs);

@@ -47,6 +47,14 @@ void note_key_pairs(const trace* t, const char* what, std::span<const KeyPair> p
   }
 }
 
+void note_data_pairs(const trace* t, const char* what, std::span<const ClientDataPair> pairs) {
+  note(t, what, pairs.size());
+  for (const ClientDataPair& pair : pairs) {
+    note(t, what, pair.first);
+    note(t, what, pair.second);
+  }
+}
+
 void note_hit(const trace* t, const char* what, const Hit& hit) {
   note(t, what, hit.key.id);
   note(t, what, hit.data);
@@ -86,7 +94,7 @@ void ask_objects(const trace* t, Partition& partition, const World& world) {
 void ask_pairs(const trace* t, Partition& partition, World& world) {
   PairBuffer pairs;
   PairBuffer copy;
-  PairEvents events;
+  PairEvents events({std::pmr::get_default_resource(), true});
   (void)partition.self_pairs(pairs, kCanonical);
   note_pairs(t, "self_pairs", pairs);
   const PairPredicate sum_is_even{
@@ -104,10 +112,13 @@ void ask_pairs(const trace* t, Partition& partition, World& world) {
   (void)partition.self_pairs(pairs, events);
   note_key_pairs(t, "begun", events.begun());
   note_key_pairs(t, "ended", events.ended());
+  note_data_pairs(t, "data of begun", events.begun_data());
+  note_data_pairs(t, "data of ended", events.ended_data());
   note(t, "persisting", events.persisting());
   events.clear();
   (void)partition.self_pairs(events);
   note_key_pairs(t, "all begun", events.begun());
+  note_data_pairs(t, "data unless asked for", {});
 
   (void)partition.update(world.keys, world.boxes);
   (void)partition.self_pairs(pairs, {Order::canonical, false, {}});

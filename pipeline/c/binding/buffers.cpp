@@ -60,6 +60,11 @@ winnow_status winnow_pair_events_create(const winnow_memory* memory, winnow_pair
   return create(memory, events);
 }
 
+winnow_status winnow_pair_events_create_with_client_data(const winnow_memory* memory,
+                                                         winnow_pair_events** events) {
+  return create(memory, events, true);
+}
+
 void winnow_pair_events_destroy(winnow_pair_events* events) {
   destroy(events);
 }
@@ -75,6 +80,20 @@ winnow_status winnow_pair_events_ended(const winnow_pair_events* events,
                                        const winnow_key_pair** pairs, size_t* count) {
   if (!are_given(events, pairs, count)) return WINNOW_INVALID_ARGUMENT;
   show(events->value.ended(), pairs, count);
+  return WINNOW_OK;
+}
+
+winnow_status winnow_pair_events_begun_data(const winnow_pair_events* events,
+                                            const winnow_client_data_pair** data, size_t* count) {
+  if (!are_given(events, data, count)) return WINNOW_INVALID_ARGUMENT;
+  show(events->value.begun_data(), data, count);
+  return WINNOW_OK;
+}
+
+winnow_status winnow_pair_events_ended_data(const winnow_pair_events* events,
+                                            const winnow_client_data_pair** data, size_t* count) {
+  if (!are_given(events, data, count)) return WINNOW_INVALID_ARGUMENT;
+  show(events->value.ended_data(), data, count);
   return WINNOW_OK;
 }
 

@@ -37,8 +37,11 @@ struct winnow_pair_buffer : winnow::c::Handle {
 };
 
 struct winnow_pair_events : winnow::c::Handle {
-  using Handle::Handle;
-  winnow::PairEvents value{&memory};
+  explicit winnow_pair_events(const winnow::c::CallersMemory& given,
+                              bool client_data = false) noexcept
+      : Handle(given), value({&memory, client_data}) {}
+
+  winnow::PairEvents value;
 };
 
 struct winnow_hit_buffer : winnow::c::Handle {

@@ -68,6 +68,8 @@ WINNOW_TWINS(winnow_frustum, Frustum)
 WINNOW_TWINS(winnow_pose, Pose)
 WINNOW_ARE_TWINS(winnow_pair, Pair)
 WINNOW_TWINS(winnow_key_pair, KeyPair)
+WINNOW_ARE_TWINS(winnow_client_data_pair, ClientDataPair)
+WINNOW_TWIN_MEMBERS(winnow_client_data_pair, ClientDataPair, second);
 WINNOW_TWINS(winnow_body_pair, BodyPair)
 WINNOW_ARE_TWINS(winnow_hull_face, HullFace)
 WINNOW_TWIN_MEMBERS(winnow_hull_face, HullFace, first);
