@@ -113,10 +113,13 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
   return shown_pairs(out);
 }
 
-[[nodiscard]] py::array shown_keys(const std::shared_ptr<PairEvents>& events,
-                                   std::span<const KeyPair> pairs) {
-  const auto* const keys = reinterpret_cast<const std::uint64_t*>(pairs.data());
-  return shown_rows(std::shared_ptr<const void>(events), keys, pairs.size(), 2, sizeof(KeyPair));
+/// Pairs of keys or of client data.
+template <typename OfTwo>
+[[nodiscard]] py::array shown_twos(const std::shared_ptr<PairEvents>& events,
+                                   std::span<const OfTwo> pairs) {
+  static_assert(sizeof(OfTwo) == 2 * sizeof(std::uint64_t));
+  const auto* const words = reinterpret_cast<const std::uint64_t*>(pairs.data());
+  return shown_rows(std::shared_ptr<const void>(events), words, pairs.size(), 2, sizeof(OfTwo));
 }
 
 }  // namespace
@@ -127,12 +130,15 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
       module, "PairEvents",
       "What changed between two frames. Its arrays show what winnow wrote; while "
       "one of them is alive, filling the events again is a BufferError.")
-      .def(py::init([] { return std::make_shared<Events>(); }), "Events that remember nothing.")
+      .def(py::init([](bool client_data) { return std::make_shared<Events>(client_data); }),
+           py::kw_only(), arg("client_data") = false,
+           "Events that remember nothing. With `client_data` they give that with the pairs, for 8 "
+           "bytes an object and 16 a pair that begins or ends.")
       .def_property_readonly(
           "begun",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_keys(e.value(), e.value()->begun());
+            return shown_twos(e.value(), e.value()->begun());
           },
           "Pairs of this frame that the last one had not: (m, 2) uint64 of "
           "keys, sorted by id.")
@@ -140,10 +146,25 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
           "ended",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_keys(e.value(), e.value()->ended());
+            return shown_twos(e.value(), e.value()->ended());
           },
           "Pairs of the last frame that this one has not: (m, 2) uint64 of "
           "keys, sorted by id; those of removed objects are stale.")
+      .def_property_readonly(
+          "begun_data",
+          [](const Events& e) {
+            const auto held = e.hold();
+            return shown_twos(e.value(), e.value()->begun_data());
+          },
+          "Client data of the pairs in `begun`: (m, 2) uint64; (0, 2) unless they were asked for.")
+      .def_property_readonly(
+          "ended_data",
+          [](const Events& e) {
+            const auto held = e.hold();
+            return shown_twos(e.value(), e.value()->ended_data());
+          },
+          "Client data of the pairs in `ended`, of removed objects as of others: (m, 2) uint64; "
+          "(0, 2) unless they were asked for.")
       .def_property_readonly(
           "persisting",
           [](const Events& e) {

@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <memory_resource>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
@@ -40,8 +41,9 @@ template <typename Result>
 class Exported : public NeedsInit {
  public:
   Exported() = default;
-  /// Of a result that something else fills.
-  explicit Exported(std::shared_ptr<Result> lent) : value_(std::move(lent)), is_lent_(true) {}
+  /// Of a result that something else fills, if it is `lent`.
+  explicit Exported(std::shared_ptr<Result> value, bool lent = true)
+      : value_(std::move(value)), is_lent_(lent) {}
 
   [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
   /// A BufferError while an array shows it.
@@ -72,6 +74,11 @@ class Exported : public NeedsInit {
   bool is_lent_ = false;
 };
 struct Events : Exported<PairEvents> {
+  explicit Events(bool client_data)
+      : Exported(std::make_shared<PairEvents>(
+                     PairEventsOptions{std::pmr::get_default_resource(), client_data}),
+                 false) {}
+
   /// By a predicate, the last time.
   std::atomic<bool> is_filtered{false};
 };

@@ -192,6 +192,27 @@ def test_events_say_what_began_and_ended():
         partition.update(keys[some], lower[some], upper[some])
 
 
+def test_events_give_client_data_of_objects_that_are_gone():
+    lower, upper = random_boxes(12, 200)
+    partition = winnow.Partition()
+    keys = partition.insert(lower, upper, np.arange(200) + 2**40)
+    data_of = dict(zip(keys.tolist(), range(2**40, 2**40 + 200)))
+    events = winnow.PairEvents(client_data=True)
+    partition.self_pairs(events)
+    partition.remove(keys[:50])
+    # Their ids are others' now.
+    fresh = partition.insert(lower[:50] + 0.4, upper[:50] + 0.4, np.arange(50))
+    data_of.update(zip(fresh.tolist(), range(50)))
+    partition.self_pairs(events)
+    for pairs, data in ((events.begun, events.begun_data), (events.ended, events.ended_data)):
+        assert len(pairs) > 0 and data.dtype == np.uint64
+        assert data.tolist() == [[data_of[a], data_of[b]] for a, b in pairs.tolist()]
+    without = winnow.PairEvents()
+    partition.self_pairs(without)
+    assert len(without.begun) > 0
+    assert without.begun_data.shape == without.ended_data.shape == (0, 2)
+
+
 def test_events_are_not_filled_while_an_array_shows_them():
     partition, _ = filled(*random_boxes(9, 50))
     events = winnow.PairEvents()
