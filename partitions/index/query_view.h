@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/object_filter.h>
+#include "partitions/rows/filter_span.h"
 #include "partitions/tree/block_tree.kernel.h"
 
 #include <cstddef>
@@ -15,6 +16,7 @@ struct QueryView {
   const float* column[6] = {};
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
+  FilterSpan span;                       ///< of all objects' filters
   const TreeShape* tree[2] = {};
   std::uint32_t trees = 0;
   std::uint32_t flat_blocks = 0;

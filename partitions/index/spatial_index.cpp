@@ -259,6 +259,7 @@ void SpatialIndex::view(QueryView& view) const noexcept {
   std::copy_n(rows.column, 6, view.column);
   view.id = rows.id;
   view.filter = rows.filter;
+  view.span = rows.span;
   if (structure_->is_flat()) {
     view.flat_blocks = static_cast<std::uint32_t>(rows_.pool().blocks());
     return;

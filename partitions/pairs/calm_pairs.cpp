@@ -58,6 +58,7 @@ struct NearBatch {
     batch.end = size;
     batch.mode = HitMode::query_first;
     batch.filter = view.filter;
+    batch.meets_all = view.all_meet;
     return batch;
   }
 };

@@ -33,6 +33,7 @@ QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) no
   batch.is_box = rows.pool().volume() == Volume::aabb;
   batch.id = view.id;
   batch.filter = view.filter;
+  batch.meets_all = view.all_meet;
   batch.begin = static_cast<std::uint32_t>(begin);
   batch.end = static_cast<std::uint32_t>(end);
   return batch;
@@ -360,12 +361,15 @@ Status PartitionState::ask(const PartitionState& other, HitMode mode,
   const Execution execution = rows.execution_for(rows.pool().rows());
   PairWriter writer(out, execution, predicate);
   const std::size_t tasks = ceil_divide(rows.pool().rows(), kQueriesPerTask);
+  const RowView view = rows.view();
+  const bool meets_all = surely_meet(view.span, other.rows.view().span);
   return writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kQueriesPerTask;
     QueryBatch batch;
-    std::copy_n(rows.view().column, 6, batch.column);
-    batch.filter = rows.filters().data();
-    batch.id = rows.pool().ids();
+    std::copy_n(view.column, 6, batch.column);
+    batch.filter = view.filter;
+    batch.meets_all = meets_all;
+    batch.id = view.id;
     batch.begin = static_cast<std::uint32_t>(begin);
     batch.end = static_cast<std::uint32_t>(std::min(rows.pool().rows(), begin + kQueriesPerTask));
     batch.mode = mode;

@@ -158,10 +158,9 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     QueryBatch& batch = columns.batch();
     if (index.structure().is_flat())
       return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
-    if (wanted.wanted().by_object) {
-      batch.filter = &asking;
-      batch.one_filter = true;
-    }
+    batch.filter = &asking;
+    batch.one_filter = true;
+    batch.meets_all = !wanted.wanted().by_object;
     return index.query(batch, sink);
   });
   const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);

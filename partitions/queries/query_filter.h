@@ -12,9 +12,12 @@ class KernelFilter {
   KernelFilter(const Filter& filter, const QueryView& view, const KeyTable& keys) noexcept
       : predicate_(filter.predicate), keys_(keys) {
     wanted_.object = filter.object();
+    FilterSpan asking;
+    asking.add(wanted_.object);
     // Without filters in the partition every object has the default one: one answer for all.
-    wanted_.by_object = view.filter != nullptr;
-    meets_nothing_ = !wanted_.by_object && !may_meet(ObjectFilter{}, wanted_.object);
+    const bool meets_all = surely_meet(asking, view.span);
+    wanted_.by_object = view.filter != nullptr && !meets_all;
+    meets_nothing_ = view.filter == nullptr && !meets_all;
     if (predicate_.accept == nullptr) return;
     wanted_.context = this;
     wanted_.accept = [](const void* context, std::uint32_t id) noexcept {

@@ -179,7 +179,7 @@ class SweepRounds {
       if (rows_.full() && !touch_rows()) return false;
       __builtin_prefetch(view_.id + first_row);
       const Mask16 mask = touching(ways, blocks.question[k], first_row);
-      rows_.add(blocks.question[k], first_row, wanted_.rows(first_row, mask));
+      rows_.add(blocks.question[k], first_row, wanted_.rows(*tree_, blocks.at[k], mask));
     }
     return true;
   }

@@ -1,6 +1,7 @@
 #include "partitions/rows/filter_table.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -27,6 +28,8 @@ bool FilterTable::begin_use() noexcept {
   if (!filters_.grow(slots_)) return false;
   filters_.set_size(slots_);
   std::fill(filters_.begin(), filters_.end(), ObjectFilter{});
+  span_ = {};
+  span_.add({});
   return true;
 }
 
@@ -37,12 +40,34 @@ void FilterTable::set(ObjectId id, const ObjectFilter& filter) noexcept {
   apart_ += is_apart(filter) ? 1U : 0U;
   apart_ -= is_apart(own) ? 1U : 0U;
   own = filter;
+  span_.add(filter);
+  span_grown_ = true;
 }
 
 void FilterTable::reset(ObjectId id) noexcept {
   if (!in_use()) return;
   apart_ -= is_apart(filters_[id]) ? 1U : 0U;
   filters_[id] = {};
+  span_grown_ = true;
+}
+
+FilterSpan FilterTable::span() const noexcept {
+  FilterSpan span = span_;
+  if (!in_use()) {
+    span = {};
+    span.add({});
+  }
+  span.apart = has_environments();
+  return span;
+}
+
+void FilterTable::note_build(std::span<const ObjectId> ids) noexcept {
+  changed_ = 0;
+  if (!in_use() || !std::exchange(span_grown_, false)) return;
+  span_ = {};
+  for (const ObjectId id : ids) {
+    if (id != kNoObject) span_.add(filters_[id]);
+  }
 }
 
 void FilterTable::clear() noexcept {

@@ -3,9 +3,11 @@
 #include <winnow/core/column.h>
 #include <winnow/core/key.h>
 #include <winnow/core/object_filter.h>
+#include "partitions/rows/filter_span.h"
 
 #include <cstddef>
 #include <memory_resource>
+#include <span>
 
 namespace winnow {
 
@@ -42,13 +44,20 @@ class FilterTable {
   /// Gives a free id the default.
   void reset(ObjectId id) noexcept;
 
+  /// Free ids have got objects, with the default.
+  void note_new() noexcept { span_.add({}); }
+
+  /// Of all objects' filters, and perhaps of some that objects had since `note_build`.
+  [[nodiscard]] FilterSpan span() const noexcept;
+
   /// False if all objects are of environment 0 or of every environment; true otherwise, even if
   /// they share one.
   [[nodiscard]] bool has_environments() const noexcept { return apart_ != 0; }
 
   /// How often an object changed its environment since `note_build`.
   [[nodiscard]] std::size_t changed_environments() const noexcept { return changed_; }
-  void note_build() noexcept { changed_ = 0; }
+  /// These are all objects, and holes between them. O(ids) if a filter was set since the last time.
+  void note_build(std::span<const ObjectId> ids) noexcept;
 
   /// Every filter is the default again; memory is kept.
   void clear() noexcept;
@@ -60,6 +69,8 @@ class FilterTable {
   std::size_t slots_ = 0;    // entries to have once in use
   std::size_t apart_ = 0;    // objects of an environment of their own
   std::size_t changed_ = 0;  // environments changed since the last build
+  FilterSpan span_;          // of every object, while in use
+  bool span_grown_ = false;  // filters that it is of may be nobody's now
 };
 
 }  // namespace winnow

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/object_filter.h>
+#include "partitions/rows/filter_span.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,8 @@ struct RowView {
   const std::uint32_t* id = nullptr;
   const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
   bool environments = false;             ///< or false if all share one
+  FilterSpan span;                       ///< of all objects' filters
+  bool all_meet = false;                 ///< all objects are known to meet each other
   /// Another number than before once a row has got another object, or an object another filter.
   std::uint64_t arrangement = 0;
 };
@@ -57,6 +60,7 @@ struct QueryBatch {
   /// Filters of those who ask, by `id`, or one for all; null if all have the default one.
   const ObjectFilter* filter = nullptr;
   bool one_filter = false;
+  bool meets_all = false;  ///< whoever asks is known to meet every object that is asked about
 };
 
 }  // namespace winnow

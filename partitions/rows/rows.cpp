@@ -138,6 +138,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   if (count == 0) return Status::ok;
   const std::size_t first = pool_.rows();
   ++arrangement_;
+  filters_.note_new();
   pool_.append(count);
   keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
   note_stale(std::span<const Key>(keys));
@@ -660,6 +661,8 @@ RowView Rows::view() const noexcept {
   view.id = pool_.ids();
   view.filter = filters_.data();
   view.environments = filters_.has_environments();
+  view.span = filters_.span();
+  view.all_meet = surely_meet(view.span, view.span);
   view.arrangement = arrangement_;
   return view;
 }

@@ -133,7 +133,7 @@ class Rows {
   /// The rows stand in an order that is good for as long as most objects are within `far` of where
   /// they were; 0: for ever.
   void note_build(float far) noexcept {
-    filters_.note_build();
+    filters_.note_build({pool_.ids(), pool_.rows()});
     far_ = far;
   }
 

@@ -17,8 +17,8 @@ class BlockPairs {
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
   /// Begins with rows [begin, end), which may meet each other unless `apart`. False if they are all
-  /// holes.
-  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false) {
+  /// holes. `meets_all`: filters are known to let them meet everything.
+  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false, bool meets_all = false) {
     at_ = begin;
     behind_ = end;
     next_ = end / kLanes;
@@ -27,7 +27,8 @@ class BlockPairs {
       const float empty = s < 3 ? __builtin_inff() : -__builtin_inff();
       for (std::uint32_t i = end - begin; i < kLanes; ++i) own_[s][i] = empty;
     }
-    if constexpr (Filtered) note_filters(end - begin);
+    filtered_ = Filtered && !meets_all;
+    if (filtered_) note_filters(end - begin);
     for (int a = 0; a < 3; ++a) {
       low_[a] = reduce_min(Floats::load(own_[a]));
       high_[a] = reduce_max(Floats::load(own_[3 + a]));
@@ -150,6 +151,7 @@ class BlockPairs {
 
   bool report_hits() {
     if (has_more_to_test(rows_)) drop_boxes();
+    const bool filtered = Filtered && filtered_;
     const Uints ids = Uints::load_unaligned(rows_.id + at_);
     const std::uint32_t* const row_id = rows_.id;
     // Not the sink's own, which each pair that is written might be.
@@ -162,7 +164,7 @@ class BlockPairs {
       }
       const std::uint32_t id = row_id[hit_row_[k]];
       Mask16 mask = hit_mask_[k];
-      if constexpr (Filtered) mask = passing_own_rows(mask, id);
+      if (filtered) mask = passing_own_rows(mask, id);
       cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
     }
     sink_.cursor = cursor;
@@ -191,6 +193,7 @@ class BlockPairs {
   alignas(64) float own_[6][kLanes];
   alignas(64) std::uint32_t own_layers_[kLanes];
   alignas(64) std::uint32_t own_masks_[kLanes];
+  bool filtered_ = false;
   std::uint32_t at_ = 0;
   std::uint32_t behind_ = 0;
   std::uint32_t next_ = 0;  // block of rows that is not listed yet

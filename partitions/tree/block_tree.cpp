@@ -148,18 +148,20 @@ void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noex
   if (has_filters()) shape_[0].environments = rows.environments;
   const TreeView tree = view(rows);
   const BlockTreeKernels& kernels = block_tree_kernels();
+  const bool filters = has_filters() && filters_of_ != rows.arrangement;
   for (const std::uint32_t leaf : leaves) {
     if (!nodes_.empty()) kernels.refit_leaves(tree, leaf, leaf + 1);
-    if (has_filters()) refit_leaf_filters(tree, leaf, leaf + 1);
+    if (filters) refit_leaf_filters(tree, leaf, leaf + 1);
   }
   for (std::uint32_t level = 1; level < tree.levels; ++level) {
     for (std::uint32_t& node : leaves) node /= 16;
     leaves = {leaves.begin(), std::unique(leaves.begin(), leaves.end())};
     for (const std::uint32_t node : leaves) {
       if (!nodes_.empty()) kernels.refit_nodes(tree, level, node, node + 1);
-      if (has_filters()) refit_node_filters(tree, level, node, node + 1);
+      if (filters) refit_node_filters(tree, level, node, node + 1);
     }
   }
+  filters_of_ = rows.arrangement;
 }
 
 float BlockTree::typical_edge() const noexcept {

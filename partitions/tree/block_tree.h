@@ -46,7 +46,8 @@ class BlockTree {
   /// that was done last. O(blocks).
   void refit_all(const RowView& rows, const Execution& execution) noexcept;
 
-  /// Recomputes the nodes above the given leaves (ascending, without repeats; overwritten).
+  /// Recomputes the nodes above the given leaves (ascending, without repeats; overwritten), which
+  /// are all whose rows changed since the last time; of filters again what was rearranged.
   void refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept;
 
   [[nodiscard]] TreeView view(const RowView& rows) const noexcept;

@@ -201,12 +201,14 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
     const FilterRange own = range_of(tree.filters[0], leaf);
-    if (!pairs.start(row, row + kLanes, Filtered && !may_meet(own, own))) continue;
+    const bool meets_all = !Filtered || surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
+    const bool apart = !meets_all && !may_meet(own, own);
+    if (!pairs.start(row, row + kLanes, apart, meets_all)) continue;
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
       const Mask16 met =
           overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
-      return Filtered ? passing_nodes(tree, level, first_node, met, own) : met;
+      return meets_all ? met : passing_nodes(tree, level, first_node, met, own);
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
@@ -221,7 +223,7 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
 }
 
 bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  if (tree.rows.filter == nullptr) return find_pairs_of_leaves<false>(tree, begin, end, sink);
+  if (!are_filtered(tree.rows)) return find_pairs_of_leaves<false>(tree, begin, end, sink);
   return tree.rows.environments ? find_pairs_of_environments(tree, begin, end, sink)
                                 : find_pairs_of_leaves<true>(tree, begin, end, sink);
 }
@@ -265,7 +267,8 @@ class BoxQuestions {
       const std::uint32_t at = (tree_.first_block + blocks.at[k]) * kLanes;
       const QueryBox q(batch_.column, row);
       if (!hits_.make_room()) return false;
-      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high));
+      const bool sure = Filtered && surely_meets(tree_, blocks.at[k], filters_.of(batch_.id[row]));
+      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high), sure);
       ++sink_.tests;
     }
     return true;

@@ -19,6 +19,9 @@ struct NodeFilters {
   std::uint32_t* first_environment = nullptr;
   std::uint32_t* last_environment = nullptr;
   std::uint32_t* alike = nullptr;  ///< 1 if all objects have the same filter
+  // What all have, none of which is in no layer or wants to meet none; else 0.
+  std::uint32_t* every_layers = nullptr;
+  std::uint32_t* every_mask = nullptr;
 };
 
 /// An implicit 16-ary tree: node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level l, and

@@ -40,15 +40,48 @@ static inline bool may_meet(const FilterRange& a, const FilterRange& b) {
                            static_cast<unsigned>(b.first_environment <= a.last_environment));
 }
 
-/// Those of the candidate rows from `first_row` on that `q` may meet. Empty rows never pass.
+/// What has the same filter throughout, as a span.
+static inline FilterSpan span_of(const FilterRange& q) {
+  FilterSpan span;
+  span.any_layers = span.every_layers = q.layers;
+  span.any_mask = span.every_mask = q.mask;
+  span.mute = q.layers == 0 || q.mask == 0;
+  span.everywhere = q.first_environment == 0 && q.last_environment == kEveryEnvironment;
+  span.apart = q.last_environment != 0 && !span.everywhere;
+  return span;
+}
+
+/// What is below node i of a level of a tree without environments, as a span.
+static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
+  FilterSpan span;
+  span.any_layers = nodes.layers[i];
+  span.every_layers = nodes.every_layers[i];
+  span.any_mask = nodes.mask[i];
+  span.every_mask = nodes.every_mask[i];
+  span.mute = (span.every_layers | span.every_mask) == 0;
+  span.everywhere = false;
+  return span;
+}
+
+/// Those of the candidate rows from `first_row` on, none of them empty, that `q` may meet.
 static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
                                   const FilterRange& q) {
+  const std::uint32_t* const id = rows.id + first_row;
   Mask16 passed = 0;
+  if (rows.filter == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+  // Without environments of their own objects are of the first one, or of all.
+  if (!rows.environments && q.first_environment == 0) {
+    for (Mask16 left = candidates; left != 0; left &= left - 1) {
+      const ObjectFilter& own = rows.filter[id[first(left)]];
+      const auto wanted = static_cast<Mask16>((own.layers & q.mask) != 0);
+      const auto wants = static_cast<Mask16>((own.mask & q.layers) != 0);
+      passed |= (wanted & wants) << first(left);
+    }
+    return passed;
+  }
   for (Mask16 left = candidates; left != 0; left &= left - 1) {
-    const std::uint32_t id = rows.id[first_row + first(left)];
-    if (id == ~0U) continue;
-    const ObjectFilter own = rows.filter != nullptr ? rows.filter[id] : ObjectFilter{};
-    passed |= static_cast<Mask16>(may_meet(range_of(own), q)) << first(left);
+    const bool both = may_meet(range_of(rows.filter[id[first(left)]]), q);
+    passed |= static_cast<Mask16>(both) << first(left);
   }
   return passed;
 }
@@ -69,13 +102,32 @@ static inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
   const Mask16 met = candidates &
                      sharing(Uints::load_unaligned(nodes.layers + first_node), q.mask) &
                      sharing(Uints::load_unaligned(nodes.mask + first_node), q.layers);
-  if (!tree.environments) return met;
+  // Without environments of their own objects are of the first one, or of all.
+  if (!tree.environments && q.first_environment == 0) return met;
   Mask16 passed = 0;
   for (Mask16 left = met; left != 0; left &= left - 1) {
     const bool both = may_meet(range_of(nodes, first_node + first(left)), q);
     passed |= static_cast<Mask16>(both) << first(left);
   }
   return passed;
+}
+
+/// True if every object below node i of level 0 surely meets `q`, the filter of one that asks.
+static inline bool surely_meets(const TreeShape& tree, std::uint32_t i, const FilterRange& q) {
+  const NodeFilters& nodes = tree.filters[0];
+  if (nodes.layers == nullptr) return false;
+  const bool everywhere =
+      q.first_environment == 0 && (!tree.environments || q.last_environment == kEveryEnvironment);
+  if (!everywhere && (q.first_environment != q.last_environment ||
+                      nodes.first_environment[i] != q.first_environment ||
+                      nodes.last_environment[i] != q.first_environment)) {
+    return false;
+  }
+  const std::uint32_t every_mask = nodes.every_mask[i];
+  // Of nodes with one that never meets anything, what every object has is nothing.
+  return ((nodes.layers[i] & ~q.mask) == 0 || (nodes.every_layers[i] & q.mask) != 0) &&
+         ((every_mask & q.layers) != 0 ||
+          ((nodes.mask[i] & ~q.layers) == 0 && (nodes.every_layers[i] | every_mask) != 0));
 }
 
 // Columns of a sphere's centre and radius.
@@ -125,6 +177,11 @@ inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float
   }
   const Floats radius = Floats::load_unaligned(rows.column[kBallRadius] + at);
   return mask & balls_meet(center, radius, other, query[kBallRadius][r]);
+}
+
+/// True if rows that ask about each other have to be told apart by their filters.
+inline bool are_filtered(const RowView& rows) {
+  return rows.filter != nullptr && !rows.all_meet;
 }
 
 /// False if the sink is full and cannot grow.
@@ -199,11 +256,50 @@ inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink)
   }
   return true;
 }
+
+/// Those of a batch's rows that ask, apart by whether they surely meet everything.
+class SplitBatch {
+ public:
+  SplitBatch(const RowView& asked, const QueryBatch& batch, std::uint32_t begin) {
+    const AskingFilters filters(batch);
+    const std::uint32_t left = batch.end - begin;
+    for (std::uint32_t k = begin; k < begin + (left < kRoom ? left : kRoom); ++k) {
+      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
+      const std::uint32_t id = batch.id[row];
+      if (id == ~0U) continue;
+      const bool all = surely_meet(asked.span, span_of(filters.of(id)));
+      row_[all ? 1 : 0][count_[all ? 1 : 0]++] = row;
+    }
+  }
+
+  /// The rows that meet all, or those that do not.
+  [[nodiscard]] QueryBatch part(const QueryBatch& batch, bool meets_all) const {
+    QueryBatch part = batch;
+    part.rows = row_[meets_all ? 1 : 0];
+    part.begin = 0;
+    part.end = count_[meets_all ? 1 : 0];
+    return part;
+  }
+
+  static constexpr std::uint32_t kRoom = 256;
+
+ private:
+  std::uint32_t row_[2][kRoom];
+  std::uint32_t count_[2] = {0, 0};
+};
+
 template <typename Kernel, typename View>
 inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
-  return view.rows.filter != nullptr || batch.filter != nullptr
-             ? with_mode<Kernel, true>(view, batch, sink)
-             : with_mode<Kernel, false>(view, batch, sink);
+  const bool filtered = view.rows.filter != nullptr || batch.filter != nullptr;
+  if (!filtered || batch.meets_all) return with_mode<Kernel, false>(view, batch, sink);
+  for (std::uint32_t k = batch.begin; k < batch.end; k += SplitBatch::kRoom) {
+    const SplitBatch split(view.rows, batch, k);
+    if (!with_mode<Kernel, false>(view, split.part(batch, true), sink) ||
+        !with_mode<Kernel, true>(view, split.part(batch, false), sink)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// True if hits of boxes are not yet hits of the rows' volumes.
@@ -253,12 +349,12 @@ class HitList {
         sink_(sink) {}
 
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
-  /// There must be room.
-  void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
+  /// There must be room. `sure`: filters are known to let it meet them all.
+  void add(std::uint32_t r, std::uint32_t at, Mask16 mask, bool sure = false) {
     if constexpr (Mode == HitMode::moved) mask &= reported_lanes(moved_, r, at);
     row_[size_] = r;
     at_[size_] = at;
-    mask_[size_] = mask;
+    mask_[size_] = mask | (sure ? kSure : 0U);
     size_ += mask != 0 ? 1U : 0U;
   }
 
@@ -269,10 +365,10 @@ class HitList {
   [[gnu::noinline]] bool flush() {
     if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
     for (unsigned i = 0; i < size_; ++i) {
-      Mask16 mask = mask_[i];
+      Mask16 mask = mask_[i] & kAllRows;
       const std::uint32_t q = query_id_[row_[i]];
       if constexpr (Filtered) {
-        mask = passing_rows(rows_, at_[i], mask, filters_.of(q));
+        if ((mask_[i] & kSure) == 0) mask = passing_rows(rows_, at_[i], mask, filters_.of(q));
         if (mask == 0) continue;
       }
       if (!has_room(sink_)) return false;
@@ -284,6 +380,7 @@ class HitList {
 
  private:
   static constexpr unsigned kRoom = 512;
+  static constexpr Mask16 kSure = 1U << kLanes;
 
   const RowView& rows_;
   const float* const* query_;

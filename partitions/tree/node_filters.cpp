@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint32_t kChildren = 16;
 constexpr std::uint32_t kLast = 0xFFFFFFFFU;
+constexpr std::size_t kColumns = 7;  // of NodeFilters
 
 /// What some filters have between them; at first of none, which nothing meets.
 struct Joined {
@@ -17,6 +18,8 @@ struct Joined {
   std::uint32_t first = kLast;
   std::uint32_t last = 0;
   std::uint32_t alike = 1;
+  std::uint32_t every_layers = kLast;
+  std::uint32_t every_mask = kLast;
 
   void add(const ObjectFilter& f) noexcept {
     // Joined ones that are alike have what the first one has.
@@ -24,6 +27,9 @@ struct Joined {
     if (some && (layers != f.layers || mask != f.mask || last != f.environment)) alike = 0;
     layers |= f.layers;
     mask |= f.mask;
+    const bool mute = f.layers == 0 || f.mask == 0;
+    every_layers &= mute ? 0 : f.layers;
+    every_mask &= mute ? 0 : f.mask;
     first = std::min(first, f.environment == kEveryEnvironment ? 0 : f.environment);
     last = std::max(last, f.environment);
   }
@@ -36,6 +42,8 @@ struct Joined {
     }
     layers |= nodes.layers[i];
     mask |= nodes.mask[i];
+    every_layers &= nodes.every_layers[i];
+    every_mask &= nodes.every_mask[i];
     first = std::min(first, nodes.first_environment[i]);
     last = std::max(last, nodes.last_environment[i]);
   }
@@ -45,6 +53,8 @@ struct Joined {
     nodes.first_environment[i] = first;
     nodes.last_environment[i] = last;
     nodes.alike[i] = alike;
+    nodes.every_layers[i] = every_layers;
+    nodes.every_mask[i] = every_mask;
   }
 };
 
@@ -53,7 +63,7 @@ struct Joined {
 bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
   std::size_t total = 0;
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
-    total += 5 * padded_nodes(shape.count[level]);
+    total += kColumns * padded_nodes(shape.count[level]);
   }
   if (!memory.grow(total)) return false;
   memory.set_size(total);
@@ -65,9 +75,11 @@ bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
              .mask = at + stride,
              .first_environment = at + 2 * stride,
              .last_environment = at + 3 * stride,
-             .alike = at + 4 * stride};
+             .alike = at + 4 * stride,
+             .every_layers = at + 5 * stride,
+             .every_mask = at + 6 * stride};
     empty_filters(nodes, shape.count[level], static_cast<std::uint32_t>(stride));
-    at += 5 * stride;
+    at += kColumns * stride;
   }
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include "partitions/rows/filter_table.h"
 #include <gtest/gtest.h>
+#include <winnow/core/filter.h>
 
 #include <algorithm>
 #include <memory_resource>
@@ -60,6 +61,91 @@ TEST(FilterTable, has_environments_as_long_as_an_object_is_in_one) {
   }
   EXPECT_GT(together, 100);
   EXPECT_LT(together, 3900);
+}
+
+ObjectFilter any_of_few(Random& random) {
+  const auto bits = [&] { return static_cast<std::uint32_t>(random.below(8)); };
+  constexpr std::uint32_t kEnvironments[] = {0, 0, 0, 0, 0, kEveryEnvironment, kEveryEnvironment,
+                                             1};
+  const std::uint32_t mask = random.chance(0.5) ? ~bits() : bits();
+  return {bits(), mask, kEnvironments[random.below(8)]};
+}
+
+TEST(FilterSpans, that_surely_meet_are_of_filters_that_all_meet) {
+  Random random(5);
+  int sure = 0;
+  for (int round = 0; round < 20000; ++round) {
+    std::vector<ObjectFilter> sides[2];
+    FilterSpan spans[2];
+    for (int side = 0; side < 2; ++side) {
+      for (std::size_t i = 0; i <= random.below(3); ++i) {
+        sides[side].push_back(any_of_few(random));
+        spans[side].add(sides[side].back());
+      }
+    }
+    bool all = true;
+    for (const ObjectFilter& a : sides[0]) {
+      for (const ObjectFilter& b : sides[1]) all = all && may_meet(a, b);
+    }
+    const bool said = surely_meet(spans[0], spans[1]);
+    ASSERT_TRUE(all || !said) << round;
+    ASSERT_EQ(said, surely_meet(spans[1], spans[0])) << round;
+    // Of one filter each, but for objects of one environment of their own, nothing is left open.
+    const bool single = sides[0].size() == 1 && sides[1].size() == 1;
+    if (single && !(spans[0].apart && spans[1].apart)) {
+      ASSERT_EQ(said, all) << round;
+    }
+    sure += said ? 1 : 0;
+  }
+  EXPECT_GT(sure, 1000);
+}
+
+TEST(FilterTable, has_a_span_of_every_object_and_after_a_build_of_nothing_else) {
+  FilterTable table(std::pmr::get_default_resource());
+  ASSERT_TRUE(table.reserve(kObjects));
+  ASSERT_TRUE(table.begin_use());
+  Random random(2);
+  std::vector<bool> live(kObjects);
+  const auto span = [&] {
+    FilterSpan of_all;
+    for (ObjectId id = 0; id < kObjects; ++id) {
+      if (live[id]) of_all.add(table.of(id));
+    }
+    return of_all;
+  };
+  for (int step = 0; step < 4000; ++step) {
+    const auto id = static_cast<ObjectId>(random.below(kObjects));
+    if (!live[id]) {
+      table.note_new();
+      live[id] = true;
+    } else if (random.chance(0.3)) {
+      table.reset(id);
+      live[id] = false;
+    } else {
+      table.set(id, any_of_few(random));
+    }
+    const FilterSpan least = span();
+    FilterSpan kept = table.span();
+    ASSERT_EQ(kept.any_layers & least.any_layers, least.any_layers) << step;
+    ASSERT_EQ(kept.any_mask & least.any_mask, least.any_mask) << step;
+    ASSERT_EQ(kept.every_layers & least.every_layers, kept.every_layers) << step;
+    ASSERT_EQ(kept.every_mask & least.every_mask, kept.every_mask) << step;
+    ASSERT_TRUE((kept.mute || !least.mute) && (least.everywhere || !kept.everywhere)) << step;
+    ASSERT_EQ(kept.apart, least.apart) << step;
+    if (step % 7 != 0) continue;
+    std::vector<ObjectId> ids;
+    for (ObjectId object = 0; object < kObjects; ++object) {
+      ids.push_back(live[object] ? object : kNoObject);
+    }
+    table.note_build(ids);
+    kept = table.span();
+    ASSERT_EQ(kept.any_layers, least.any_layers) << step;
+    ASSERT_EQ(kept.every_layers, least.every_layers) << step;
+    ASSERT_EQ(kept.any_mask, least.any_mask) << step;
+    ASSERT_EQ(kept.every_mask, least.every_mask) << step;
+    ASSERT_EQ(kept.mute, least.mute) << step;
+    ASSERT_EQ(kept.everywhere, least.everywhere) << step;
+  }
 }
 
 TEST(FilterTable, that_is_cleared_knows_no_environment) {

@@ -150,8 +150,8 @@ bool find_self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t en
 
 template <typename Test>
 bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-  return view.rows.filter != nullptr ? find_self_pairs<Test, true>(view, begin, end, sink)
-                                     : find_self_pairs<Test, false>(view, begin, end, sink);
+  return are_filtered(view.rows) ? find_self_pairs<Test, true>(view, begin, end, sink)
+                                 : find_self_pairs<Test, false>(view, begin, end, sink);
 }
 
 template <typename Test>

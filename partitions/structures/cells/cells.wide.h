@@ -13,8 +13,8 @@ namespace winnow::WINNOW_ISA_NAME {
 template <typename Cells, typename View>
 struct CellFunctions {
   static bool self_pairs(const View& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-    return view.rows.filter != nullptr ? Cells::template find_pairs<true>(view, begin, end, sink)
-                                       : Cells::template find_pairs<false>(view, begin, end, sink);
+    return are_filtered(view.rows) ? Cells::template find_pairs<true>(view, begin, end, sink)
+                                   : Cells::template find_pairs<false>(view, begin, end, sink);
   }
 
   template <HitMode Mode, bool Filtered>
