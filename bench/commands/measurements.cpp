@@ -7,6 +7,7 @@
 #include "bench/measure/resident_set.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/cold_rows.h"
+#include "bench/rows/filter_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/host_rows.h"
 #include "bench/rows/kernel_rows.h"
@@ -29,17 +30,22 @@ namespace {
 class ScenesCommand : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
+    add_scene_options(app);
+    add_threads_option(app, threads_, "Numbers of threads");
+  }
+
+ protected:
+  /// All but the threads.
+  void add_scene_options(CLI::App& app) {
     option(app, "--scene", scenes_,
            "Scenes, or recordings (.aabbs, .winnow, .xz of either), which have their own number of "
            "objects");
     add_objects_option(app, objects_, "Numbers of objects");
-    add_threads_option(app, threads_, "Numbers of threads");
     add_partitions_option(app, partitions_);
     add_seed_option(app, seed_);
     add_rows_options(app);
   }
 
- protected:
   ScenesCommand(std::vector<std::string> scenes, std::vector<int> threads)
       : scenes_(std::move(scenes)), threads_(std::move(threads)) {}
 
@@ -211,6 +217,30 @@ struct SceneOrRecording {
   [[nodiscard]] NamedScene named() const {
     return named_scenes({recording.empty() ? scene : recording}).front();
   }
+};
+
+class Filters final : public ScenesCommand {
+ public:
+  Filters() : ScenesCommand(kFilterScenes, {1}) {}
+
+  void add_options(CLI::App& app) {
+    add_scene_options(app);
+    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
+  }
+
+ private:
+  void measure() override {
+    declare_filters(results);
+    measure_all();
+    print("filters");
+  }
+  void measure_scene(const std::string& what, const NamedScene& scene,
+                     std::size_t objects) override {
+    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
+    step(what, [&] { add_filters(results, scene, objects, seed_, partitions, rounds_); });
+  }
+
+  std::size_t rounds_ = 15;
 };
 
 class Queries final : public RowsCommand {
@@ -598,6 +628,12 @@ std::vector<Command> add_measurements(CLI::App& app) {
           app, "hosts",
           "Frames of partitions whose tasks run on a plain pool of threads, which "
           "a program hands in, and on those of oneTBB, in turns"),
+      command<Filters>(
+          app, "filters",
+          "What layers and masks of objects cost in pairs, rays and boxes: each question beside "
+          "the "
+          "same one to a partition without filters, in turns, and what was found held against all "
+          "pairs"),
       command<FootprintCommand>(
           app, "footprint",
           "Bytes an object by purpose, checked against what was really allocated and against the "

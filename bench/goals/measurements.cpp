@@ -9,6 +9,7 @@
 #include "bench/rows/advice_rows.h"
 #include "bench/rows/barrier_rows.h"
 #include "bench/rows/cold_rows.h"
+#include "bench/rows/filter_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
@@ -90,6 +91,15 @@ void goal_hosts(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_hosts(measured.results);
   for (const NamedScene& scene : asked_scenes(options, measured)) {
     add_hosts(measured.results, scene, options.at("objects"), 1, options.at("partitions"), 2);
+  }
+}
+
+/// Questions to every partition that suits the size, with filters over without.
+void goal_filters(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_filters(measured.results);
+  const std::size_t objects = options.at("objects");
+  for (const NamedScene& scene : asked_scenes(options, measured)) {
+    add_filters(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken);
   }
 }
 
@@ -405,6 +415,7 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"beside_peers", goal_beside_peers},
                                                    {"cold", goal_cold},
                                                    {"hosts", goal_hosts},
+                                                   {"filters", goal_filters},
                                                    {"same_pairs", goal_same_pairs},
                                                    {"keys", goal_keys},
                                                    {"limits", goal_limits},

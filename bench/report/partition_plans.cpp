@@ -5,6 +5,7 @@
 #include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
+#include "bench/rows/filter_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/memory_rows.h"
 #include "bench/rows/query_rows.h"
@@ -200,6 +201,20 @@ void plan_cold(const ReportOptions& options, ReportSteps& steps) {
   });
 }
 
+void plan_filters(const ReportOptions& options, ReportSteps& steps) {
+  for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
+    const std::size_t objects = scene.objects(objects_up_to(options, 10'000));
+    const std::size_t rounds = options.quick ? 1 : 7;
+    for (const std::string& partition : unlimited_partitions()) {
+      if (options.quick && partition != "LinearBvh") continue;
+      steps.push_back({named(scene, objects) + ", filters in " + partition,
+                       6e-6 * static_cast<double>((rounds + 4) * objects), [=](Results& results) {
+                         add_filters(results, scene, objects, options.seed, {partition}, rounds);
+                       }});
+    }
+  }
+}
+
 }  // namespace
 
 ReportSteps plan_throughput(const ReportOptions& options) {
@@ -215,6 +230,7 @@ ReportSteps plan_throughput(const ReportOptions& options) {
   });
   plan_every_scene(options, steps);
   plan_cold(options, steps);
+  plan_filters(options, steps);
   const std::size_t keyed = objects_up_to(options, 10'000);
   steps.push_back({"keys", options.quick ? 0.1 : 1.5, [=, quick = options.quick](Results& results) {
                      measure_keys(results, keyed, quick);

@@ -5,6 +5,7 @@
 #include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
+#include "bench/rows/filter_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
@@ -23,6 +24,7 @@ void declare_throughput(Results& results) {
   declare_frames(results);
   declare_every_scene(results);
   declare_cold(results);
+  declare_filters(results);
   declare_keys(results);
   declare_limits(results);
 }

@@ -1,0 +1,304 @@
+#include "bench/measure/filter_race.h"
+
+#include "bench/common/need.h"
+#include "bench/common/random.h"
+#include "bench/contenders/partitions.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::size_t kWarmingRounds = 4;
+constexpr std::size_t kRays = 1000;
+constexpr std::size_t kBoxes = 1000;
+constexpr std::size_t kFew = 20;  // of so many objects one moves
+constexpr float kBoxEdges = 4.0F;
+
+constexpr std::array<std::string_view, 5> kSettings{"1 % apart", "mixed", "static", "never, mixed",
+                                                    "never, apart"};
+constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "another", "rays",
+                                                     "boxes"};
+enum Setting : std::size_t { one_percent, mixed, still, never_mixed, never_apart };
+enum Question : std::size_t { all_move, few_move, another, rays, boxes };
+
+/// In a set of objects whose boxes begin below `middle` on x, or not.
+ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box, float middle) {
+  const std::uint64_t chance = mix(object);
+  const bool second = setting == never_apart ? box.min[0] >= middle : chance % 2 == 0;
+  switch (setting) {
+    case one_percent:
+      return chance % 100 == 0 ? ObjectFilter{2, ~2U, 0} : ObjectFilter{};
+    case mixed:
+      return {second ? 2U : 1U, ~0U, 0};
+    case still:
+      return chance % 10 != 0 ? ObjectFilter{1, 2, 0} : ObjectFilter{2, ~0U, 0};
+    default:
+      return second ? ObjectFilter{2, 2, 0} : ObjectFilter{1, 1, 0};
+  }
+}
+
+/// Who asks with rays and boxes: one that does not want the few, and otherwise one of the objects.
+Filter asking(std::size_t setting) {
+  const auto as = [](std::uint32_t layers, std::uint32_t mask) {
+    Filter filter;
+    filter.layers = layers;
+    filter.mask = mask;
+    filter.environment = 0;
+    return filter;
+  };
+  switch (setting) {
+    case one_percent:
+      return as(1, ~2U);
+    case mixed:
+      return as(1, ~0U);
+    case still:
+      return as(2, ~0U);
+    default:
+      return as(1, 1);
+  }
+}
+
+/// What a question found, in one order: pairs, or for each ray what it hits.
+using Found = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// A partition that follows a scene and is asked one question in every frame.
+class Asked {
+ public:
+  Asked(std::string_view partition, std::size_t question, std::span<const Aabb> first)
+      : question_(question),
+        boxes_(first.begin(), first.end()),
+        other_boxes_(first.rbegin(), first.rend()),
+        partition_(make_named(partition, {.execution = Execution::serial()})),
+        other_(make_named(partition, {.execution = Execution::serial()})),
+        keys_(first.size()),
+        other_keys_(first.size()) {
+    middle_ = median_by(first, [](const Aabb& box) { return box.min[0]; });
+    edge_ = median_by(first, [](const Aabb& box) { return box.max[0] - box.min[0]; });
+    need(partition_.insert(boxes_, {}, keys_), "objects");
+    if (question_ != another) return;
+    // Somewhere else than what they are asked about, so that both differ.
+    for (Aabb& box : other_boxes_) {
+      for (Vec3f* const end : {&box.min, &box.max}) (*end)[0] += 0.37F * edge_;
+    }
+    need(other_.insert(other_boxes_, {}, other_keys_), "objects");
+  }
+
+  void set_filters(std::size_t setting) {
+    filter_ = asking(setting);
+    filters_ = filters_for(setting, boxes_);
+    other_filters_ = filters_for(setting, other_boxes_);
+    need(partition_.set_filter(keys_, filters_), "filters");
+    if (question_ == another) need(other_.set_filter(other_keys_, other_filters_), "filters");
+  }
+
+  /// Brings a frame in, and gives back the milliseconds of the answer.
+  double run(std::span<const Aabb> frame, std::size_t round) {
+    move(frame, round);
+    if (question_ != all_move && question_ != few_move) need(partition_.refresh(), "refresh");
+    if (question_ == another) need(other_.refresh(), "refresh");
+    const ThreadStopwatch clock;
+    ask();
+    return clock.ms();
+  }
+
+  /// What the last one found.
+  [[nodiscard]] Found found() const {
+    if (question_ == rays) return hits_;
+    Found all;
+    for (const Pair& pair : pairs_) all.emplace_back(pair.first, pair.second);
+    std::ranges::sort(all);
+    return all;
+  }
+
+  /// The same by comparing everything with everything.
+  [[nodiscard]] Found truth() const;
+
+ private:
+  template <typename Value>
+  static float median_by(std::span<const Aabb> of, Value&& value) {
+    std::vector<float> values;
+    for (const Aabb& box : of) values.push_back(value(box));
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+  [[nodiscard]] std::vector<ObjectFilter> filters_for(std::size_t setting,
+                                                      std::span<const Aabb> of) const {
+    std::vector<ObjectFilter> filters;
+    for (const Aabb& box : of) filters.push_back(filter_of(setting, filters.size(), box, middle_));
+    return filters;
+  }
+
+  void move(std::span<const Aabb> frame, std::size_t round) {
+    if (question_ != few_move) {
+      std::ranges::copy(frame.first(boxes_.size()), boxes_.begin());
+      return need(partition_.update(keys_, boxes_), "objects");
+    }
+    std::vector<Key> keys;
+    std::vector<Aabb> moved;
+    for (std::size_t i = round % kFew; i < boxes_.size(); i += kFew) {
+      boxes_[i] = frame[i];
+      keys.push_back(keys_[i]);
+      moved.push_back(frame[i]);
+    }
+    need(partition_.update(keys, moved), "objects");
+  }
+
+  void ask() {
+    switch (question_) {
+      case another:
+        return need(partition_.pairs_with(other_, pairs_), "pairs");
+      case rays:
+        hits_.clear();
+        for (std::uint32_t i = 0; i < asked(kRays); ++i) {
+          Hit hit;
+          need(partition_.closest(Cast(ray(i)), hit, filter_), "rays");
+          hits_.emplace_back(i, hit.key.id);
+        }
+        return;
+      case boxes:
+        return need(partition_.overlap(regions(), pairs_, filter_), "boxes");
+      default:
+        return need(partition_.self_pairs(pairs_), "pairs");
+    }
+  }
+
+  [[nodiscard]] std::uint32_t asked(std::size_t most) const {
+    return static_cast<std::uint32_t>(std::min(most, boxes_.size()));
+  }
+  /// From one object's corner on towards another's.
+  [[nodiscard]] Ray ray(std::uint32_t i) const {
+    const Vec3f from = other_boxes_[i].min;
+    const Vec3f to = other_boxes_[(i + boxes_.size() / 3) % boxes_.size()].max;
+    Ray ray;
+    ray.origin = from;
+    if (!(from == to)) ray.direction = to - from;
+    return ray;
+  }
+  [[nodiscard]] std::vector<Aabb> regions() const {
+    std::vector<Aabb> all(other_boxes_.begin(), other_boxes_.begin() + asked(kBoxes));
+    for (Aabb& box : all) {
+      for (std::size_t a = 0; a < 3; ++a) box.max[a] = box.min[a] + kBoxEdges * edge_;
+    }
+    return all;
+  }
+
+  [[nodiscard]] bool lets_meet(const ObjectFilter& a, std::span<const ObjectFilter> of,
+                               std::uint32_t id) const {
+    return filters_.empty() || may_meet(a, of[id]);
+  }
+
+  std::size_t question_;
+  std::vector<Aabb> boxes_;
+  std::vector<Aabb> other_boxes_;
+  Partition partition_;
+  Partition other_;
+  std::vector<Key> keys_;
+  std::vector<Key> other_keys_;
+  float middle_ = 0.0F;
+  float edge_ = 0.0F;
+  Filter filter_;
+  std::vector<ObjectFilter> filters_;
+  std::vector<ObjectFilter> other_filters_;
+  PairBuffer pairs_;
+  Found hits_;
+};
+
+Found Asked::truth() const {
+  // Keys are handed out in order: ids are the objects' numbers.
+  Partition all = make_named("BoundsNSquared", {.execution = Execution::serial()});
+  std::vector<Key> keys(boxes_.size());
+  need(all.insert(boxes_, {}, keys), "objects");
+  PairBuffer pairs;
+  Found found;
+  if (question_ == rays) {
+    for (std::uint32_t i = 0; i < asked(kRays); ++i) {
+      HitBuffer hits;
+      need(all.all(Cast(ray(i)), hits), "rays");
+      std::uint32_t first = kNoObject;
+      for (const Hit& hit : hits.hits()) {
+        if (first == kNoObject && lets_meet(filter_.object(), filters_, hit.key.id)) {
+          first = hit.key.id;
+        }
+      }
+      found.emplace_back(i, first);
+    }
+    return found;
+  }
+  if (question_ == boxes) {
+    need(all.overlap(regions(), pairs), "boxes");
+  } else if (question_ == another) {
+    Partition others = make_named("BoundsNSquared", {.execution = Execution::serial()});
+    need(others.insert(other_boxes_, {}, keys), "objects");
+    need(all.pairs_with(others, pairs), "pairs");
+  } else {
+    need(all.self_pairs(pairs), "pairs");
+  }
+  for (const Pair& pair : pairs) {
+    const ObjectFilter first = filters_.empty()     ? ObjectFilter{}
+                               : question_ == boxes ? filter_.object()
+                                                    : filters_[pair.first];
+    const auto& of = question_ == another ? other_filters_ : filters_;
+    if (lets_meet(first, of, pair.second)) found.emplace_back(pair.first, pair.second);
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+/// Answers that only one of two has.
+std::size_t differences(const Found& a, const Found& b) {
+  Found apart;
+  std::ranges::set_symmetric_difference(a, b, std::back_inserter(apart));
+  return apart.size();
+}
+
+/// Milliseconds by contestant and round. Who comes first finds caches and branch predictors as
+/// others left them, and is another one in each round.
+std::vector<std::vector<double>> time_in_turns(const std::vector<std::unique_ptr<Asked>>& all,
+                                               FrameSource& source, std::size_t rounds) {
+  std::vector<std::vector<double>> ms(all.size());
+  for (std::size_t round = 0; round < kWarmingRounds + rounds; ++round) {
+    (void)source.advance();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::size_t turn = (round + i) % all.size();
+      const double one = all[turn]->run(source.boxes(), round);
+      if (round >= kWarmingRounds) ms[turn].push_back(one);
+    }
+  }
+  return ms;
+}
+
+}  // namespace
+
+std::span<const std::string_view> filter_setting_names() noexcept {
+  return kSettings;
+}
+
+std::span<const std::string_view> filter_question_names() noexcept {
+  return kQuestions;
+}
+
+std::vector<FilterRow> race_filters(const MakeFrames& frames, std::string_view partition,
+                                    std::size_t rounds) {
+  std::vector<FilterRow> rows;
+  for (std::size_t question = 0; question < kQuestions.size(); ++question) {
+    const auto source = frames();
+    std::vector<std::unique_ptr<Asked>> all;
+    for (std::size_t i = 0; i <= kSettings.size(); ++i) {
+      all.push_back(std::make_unique<Asked>(partition, question, source->boxes()));
+      if (i != 0) all.back()->set_filters(i - 1);
+    }
+    const auto ms = time_in_turns(all, *source, rounds);
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      rows.push_back({std::string(kSettings[i - 1]), std::string(kQuestions[question]), ms[0],
+                      ms[i], differences(all[i]->found(), all[i]->truth())});
+    }
+  }
+  return rows;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,46 @@
+#include "bench/rows/filter_rows.h"
+
+#include <winnow/simd/isa.h>
+#include "bench/measure/filter_race.h"
+
+#include <stdexcept>
+
+namespace winnow::bench {
+
+void declare_filters(Results& results) {
+  results.declare({"filters",
+                   "throughput",
+                   "what filters cost in a question",
+                   {"scene", "objects", "partition", "filters", "question"},
+                   {{"plain_ms", "without filters", "ms", Better::less},
+                    {"filtered_ms", "with filters", "ms", Better::less},
+                    {"over_plain", "with filters over without", "times", Better::less},
+                    {"wrong", "wrong answers", "", Better::less, Format::count}}});
+}
+
+void add_filters(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
+                 const std::vector<std::string>& partitions, std::size_t rounds) {
+  const std::size_t count = scene.source(objects, seed)->objects();
+  bool wrong = false;
+  for (const std::string& partition : partitions) {
+    const auto frames = [&] { return scene.source(objects, seed); };
+    for (const FilterRow& one : race_filters(frames, partition, rounds)) {
+      wrong = wrong || one.wrong != 0;
+      results.add("filters", {{"scene", scene.name},
+                              {"objects", count},
+                              {"partition", partition},
+                              {"filters", one.filters},
+                              {"question", one.question},
+                              {"plain_ms", to_value(one.plain_ms)},
+                              {"filtered_ms", to_value(one.filtered_ms)},
+                              {"over_plain", one.over_plain()},
+                              {"wrong", one.wrong},
+                              {"command", "bench/run filters" + scene.words(count, seed) +
+                                              " --rounds " + std::to_string(rounds) + " --isa " +
+                                              isa_name() + " --partition " + partition}});
+    }
+  }
+  if (wrong) throw std::runtime_error("filters made an answer wrong");
+}
+
+}  // namespace winnow::bench
