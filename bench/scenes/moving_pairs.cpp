@@ -8,8 +8,8 @@ namespace winnow::bench {
 namespace {
 
 double most_turn(PairTurn turn) {
-  constexpr double kMost[] = {0.0, 1.0, 4.0 * std::numbers::pi};
-  return kMost[static_cast<std::size_t>(turn)];
+  constexpr double kTurns[] = {0.0, 1.0, 4.0 * std::numbers::pi};
+  return kTurns[static_cast<std::size_t>(turn)];
 }
 
 /// The motion that has come half of its way at a pose.
