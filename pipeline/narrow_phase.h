@@ -55,6 +55,16 @@ struct NarrowStatistics {
   std::uint64_t exact = 0;
   /// Iterations of the solver that met their bound and fell back to enumeration.
   std::uint64_t bounded = 0;
+
+  /// Adds those of another call.
+  NarrowStatistics& operator+=(const NarrowStatistics& other) noexcept {
+    pairs += other.pairs;
+    recomputed += other.recomputed;
+    without_lanes += other.without_lanes;
+    exact += other.exact;
+    bounded += other.bounded;
+    return *this;
+  }
 };
 
 /// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and

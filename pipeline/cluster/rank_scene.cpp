@@ -461,7 +461,9 @@ RankCounts RankScene::counts() const noexcept {
 
 void RankScene::measure_work() {
   std::vector<std::uint64_t> counts(flags_.size(), 1);
-  for (const BodyPair& pair : state().pairs.pairs()) {
+  const BodyPairs& pairs = state().pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const BodyPair pair = pairs[i];
     const bool a_is_elsewhere = (flags_[pair.a] & kOwned) == 0;
     const bool a_is_larger = is_larger(box_of(pair.a), box_of(pair.b));
     ++counts[a_is_elsewhere || a_is_larger ? pair.b : pair.a];

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kPairsPerStretch = 8192;
 
-/// Code, body a and body b of a pair as one number, which sorts as pairs are sorted.
+/// A pair as one number, which sorts as pairs are sorted.
 struct Packing {
   unsigned bits;
 
@@ -27,11 +27,6 @@ struct Packing {
     const std::uint64_t code =
         mirrored ? KindPairs::index(other, one) : KindPairs::index(one, other);
     return (code << bits | a) << bits | b;
-  }
-  [[nodiscard]] BodyPair pair(std::uint64_t item) const noexcept {
-    const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
-    return {static_cast<std::uint32_t>(item >> bits & mask),
-            static_cast<std::uint32_t>(item & mask)};
   }
   /// The least number of a code.
   [[nodiscard]] std::uint64_t first(std::uint32_t code) const noexcept {
@@ -53,10 +48,10 @@ std::uint64_t* pack_selected(const BodyPairs::Source& source, const ShapeId* sha
 
 }  // namespace
 
-std::size_t BodyPairs::pack(std::span<const Source> sources, const ShapeId* shapes, unsigned bits,
+std::size_t BodyPairs::pack(std::span<const Source> sources, const ShapeId* shapes,
                             const Execution& execution, const PairSelection* selection) {
-  const Packing packing{bits};
-  std::uint64_t* item = items_.data();
+  const Packing packing{bits_};
+  std::uint64_t* item = items_[0].data();
   for (const Source& source : sources) {
     if (selection != nullptr) {
       item = pack_selected(source, shapes, packing, *selection, item);
@@ -72,51 +67,54 @@ std::size_t BodyPairs::pack(std::span<const Source> sources, const ShapeId* shap
         });
     item += source.pairs.size();
   }
-  return static_cast<std::size_t>(item - items_.data());
+  return static_cast<std::size_t>(item - items_[0].data());
 }
 
 Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
                          const Execution& execution, const PairSelection* selection) {
   std::size_t count = 0;
   for (const Source& source : sources) count += source.pairs.size();
-  if (!resize_steadily(items_, count) || !resize_steadily(spare_, count) ||
-      !resize_steadily(pairs_, count)) {
+  if (!resize_steadily(items_[0], count) || !resize_steadily(items_[1], count)) {
     clear();
     return Status::out_of_memory;
   }
-  const Packing packing{static_cast<unsigned>(std::bit_width(bodies))};
-  count = pack(sources, shapes, packing.bits, execution, selection);
-  pairs_.set_size(count);
+  bits_ = static_cast<unsigned>(std::bit_width(bodies));
+  size_ = pack(sources, shapes, execution, selection);
   const unsigned code_bits = std::bit_width(KindPairs::kCount);
   const std::uint64_t* const sorted =
-      radix_sort(items_.data(), spare_.data(), count, 2 * packing.bits + code_bits, execution, 0);
-  for_stretches(execution, count, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const BodyPair places = packing.pair(sorted[i]);
-      pairs_[i] = selection == nullptr
-                      ? places
-                      : BodyPair{selection->body[places.a], selection->body[places.b]};
-    }
-  });
+      radix_sort(items_[0].data(), items_[1].data(), size_, 2 * bits_ + code_bits, execution, 0);
+  sorted_ = sorted == items_[0].data() ? 0 : 1;
   for (std::uint32_t code = 0; code <= KindPairs::kCount; ++code) {
     first_[code] = static_cast<std::uint32_t>(
-        std::lower_bound(sorted, sorted + count, packing.first(code)) - sorted);
+        std::lower_bound(sorted, sorted + size_, Packing{bits_}.first(code)) - sorted);
   }
+  if (selection != nullptr) name_bodies(*selection, execution);
   ++serial_;
   return Status::ok;
 }
 
+void BodyPairs::name_bodies(const PairSelection& selection, const Execution& execution) noexcept {
+  std::uint64_t* const items = items_[sorted_].data();
+  const std::uint64_t bodies = (std::uint64_t{1} << 2 * bits_) - 1;
+  for_stretches(execution, size_, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const BodyPair places = (*this)[i];
+      items[i] = (items[i] & ~bodies) | std::uint64_t{selection.body[places.a]} << bits_ |
+                 selection.body[places.b];
+    }
+  });
+}
+
 void BodyPairs::clear() noexcept {
-  pairs_.clear();
+  size_ = 0;
   std::fill_n(first_, KindPairs::kCount + 1, 0U);
   for (std::uint64_t& change : changes) change = ~0ULL;
   ++serial_;
 }
 
 Bytes BodyPairs::bytes() const noexcept {
-  Bytes bytes = pairs_.bytes();
-  bytes += items_.bytes();
-  bytes += spare_.bytes();
+  Bytes bytes = items_[0].bytes();
+  bytes += items_[1].bytes();
   return bytes;
 }
 

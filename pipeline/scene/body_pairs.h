@@ -32,7 +32,7 @@ struct PairSelection {
 class BodyPairs {
  public:
   explicit BodyPairs(std::pmr::memory_resource* memory) noexcept
-      : pairs_(memory), items_(memory), spare_(memory) {}
+      : items_{Column<std::uint64_t>(memory), Column<std::uint64_t>(memory)} {}
 
   /// Pairs of objects of two partitions, and which bodies these are.
   struct Source {
@@ -48,12 +48,16 @@ class BodyPairs {
 
   /// Room for so many pairs. False if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
-    return pairs_.reserve(count, pages) && items_.reserve(count, pages) &&
-           spare_.reserve(count, pages);
+    return items_[0].reserve(count, pages) && items_[1].reserve(count, pages);
   }
 
-  [[nodiscard]] std::span<const BodyPair> pairs() const noexcept {
-    return {pairs_.data(), pairs_.size()};
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  /// Pair i, below `size()`.
+  [[nodiscard]] BodyPair operator[](std::size_t i) const noexcept {
+    const std::uint64_t item = items_[sorted_][i];
+    const std::uint64_t mask = (std::uint64_t{1} << bits_) - 1;
+    return {static_cast<std::uint32_t>(item >> bits_ & mask),
+            static_cast<std::uint32_t>(item & mask)};
   }
   /// Pairs of a code are [first(code), first(code + 1)).
   [[nodiscard]] std::uint32_t first(std::uint32_t code) const noexcept { return first_[code]; }
@@ -66,13 +70,19 @@ class BodyPairs {
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
-  /// Packs the pairs of the sources into `items_`, and tells how many they are.
-  std::size_t pack(std::span<const Source> sources, const ShapeId* shapes, unsigned bits,
+  /// Packs the pairs of the sources into items, and tells how many they are.
+  std::size_t pack(std::span<const Source> sources, const ShapeId* shapes,
                    const Execution& execution, const PairSelection* selection);
+  /// Places of a selection become bodies.
+  void name_bodies(const PairSelection& selection, const Execution& execution) noexcept;
 
-  Column<BodyPair> pairs_;
-  Column<std::uint64_t> items_;
-  Column<std::uint64_t> spare_;
+  /// Code, body a and body b as one number; and room to sort them.
+  Column<std::uint64_t> items_[2];
+  /// Which of the two is sorted.
+  unsigned sorted_ = 0;
+  /// That a body's number takes in an item.
+  unsigned bits_ = 0;
+  std::size_t size_ = 0;
   std::uint32_t first_[KindPairs::kCount + 1] = {};
   std::uint64_t serial_ = 0;
 };

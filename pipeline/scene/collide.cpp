@@ -12,6 +12,12 @@
 #include <utility>
 
 namespace winnow {
+namespace {
+
+/// Batches that find a little more than those before them need no more room.
+constexpr double kProjectionSlack = 1.03;
+
+}  // namespace
 
 Status Scene::collide(ContactLevel level, Contacts& contacts) {
   if (state_ == nullptr || contacts.state_ == nullptr) {
@@ -24,7 +30,7 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
   state_->statistics = {};
   Status status = state_->find_pairs();
   if (status == Status::ok) {
-    state_->statistics.body_pairs = state_->pairs.pairs().size();
+    state_->statistics.body_pairs = state_->pairs.size();
     status = Collision(*state_, *contacts.state_, level).run();
   }
   if (status == Status::ok) {
@@ -53,28 +59,10 @@ Status Collision::run() {
   contacts_.level = level_;
   contacts_.carried_count = 0;
   shown_last_ = static_cast<std::uint32_t>(contacts_.frame.pairs());
-  if (!wake_dormant() || !match()) return Status::out_of_memory;
+  batch_end_ = pair_count();
+  if (!wake_dormant() || !match_carried()) return Status::out_of_memory;
   if (decide()) {
-    if (!list_pairs()) return Status::out_of_memory;
-    find_limit();
-    for (const Status status : {answer_convex(), answer_composite()}) {
-      if (status != Status::ok) return status;
-    }
-    if (!drop_seams()) return Status::out_of_memory;
-    if (reads_last_manifolds()) {
-      contacts_.frame.swap(contacts_.before);
-    } else {
-      // Another level may have left more.
-      contacts_.before.clear();
-      contacts_.frame.swap_pairs(contacts_.before);
-    }
-    // The same pairs keep their records in place.
-    if (!same_pairs_) {
-      contacts_.records.swap(contacts_.records_before);
-      contacts_.carried.swap(contacts_.carried_before);
-    }
-    const StageScope stage(WorkStage::contacts);
-    if (!show() || !close_frame()) return Status::out_of_memory;
+    if (const Status status = show(); status != Status::ok) return status;
     match_points();
   } else if (!keep_places()) {
     return Status::out_of_memory;
@@ -85,20 +73,88 @@ Status Collision::run() {
   return Status::ok;
 }
 
-// Sorts what has to be answered into convex pairs and others. `source` becomes the place in the
-// list.
+// Seams are told from floors by all contacts of a body.
+std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
+  const auto all = static_cast<std::uint32_t>(pairs);
+  return options.seamless_floors ? all : std::min(all, kPairsPerBatch);
+}
+
+Status Collision::show() {
+  if (!open_frame()) return Status::out_of_memory;
+  Place end;
+  const std::uint32_t step = batch_size(scene_.options, pair_count());
+  for (std::uint32_t first = 0; first < pair_count(); first = batch_end_) {
+    batch_first_ = first;
+    batch_end_ = first + std::min(step, pair_count() - first);
+    if (const Status status = answer(); status != Status::ok) return status;
+    const StageScope stage(WorkStage::contacts);
+    if (!show_batch(end)) return Status::out_of_memory;
+  }
+  const StageScope stage(WorkStage::contacts);
+  contacts_.frame.close(level_, end);
+  return reserve_next() && write_runs() && close_frame() ? Status::ok : Status::out_of_memory;
+}
+
+// What was shown becomes what was before.
+bool Collision::open_frame() {
+  ContactsState& c = contacts_;
+  if (reads_last_manifolds()) {
+    c.frame.swap(c.before);
+  } else {
+    // Another level may have left more.
+    c.before.clear();
+    c.frame.swap_pairs(c.before);
+  }
+  // The same pairs keep their records in place.
+  if (!same_pairs_) {
+    c.records.swap(c.records_before);
+    c.carried.swap(c.carried_before);
+  }
+  const std::size_t records = carries_ ? pair_count() : 0;
+  if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records, records) ||
+      !c.carried.resize(records) || !resize_steadily(c.shown_again, c.before.pairs())) {
+    return false;
+  }
+  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
+  return begin_history();
+}
+
+Status Collision::answer() {
+  if (!carries_) {
+    known_from_ = batch_first_;
+    if (!resize_steadily(contacts_.old_record, batch_end_ - batch_first_)) {
+      return Status::out_of_memory;
+    }
+    match(contacts_.records_before);
+  }
+  if (!list_pairs()) return Status::out_of_memory;
+  find_limit();
+  for (const Status status : {answer_convex(), answer_composite()}) {
+    if (status != Status::ok) return status;
+  }
+  return drop_seams() ? Status::ok : Status::out_of_memory;
+}
+
+// Sorts what has to be answered into convex pairs and others.
 bool Collision::list_pairs() {
   scene_.convex.clear();
   scene_.composite.clear();
   if (level_ == ContactLevel::pairs) return true;
-  const auto pairs = scene_.pairs.pairs();
-  if (!resize_steadily(contacts_.source, pairs.size())) return false;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto origin = static_cast<Origin>(contacts_.origin[i]);
+  const std::size_t count = batch_end_ - batch_first_;
+  if (!resize_steadily(contacts_.source, count) || !scene_.convex.reserve(count) ||
+      (!carries_ && !resize_steadily(contacts_.origin, count))) {
+    return false;
+  }
+  for (std::uint32_t i = batch_first_; i < batch_end_; ++i) {
+    const BodyPair pair = scene_.pairs[i];
+    if (!carries_) {
+      contacts_.origin[i - known_from_] = static_cast<std::uint8_t>(origin_of_fresh(pair));
+    }
+    const Origin origin = origin_of(i);
     if (origin == Origin::carried) continue;
     Column<BodyPair>& list = origin == Origin::convex ? scene_.convex : scene_.composite;
-    contacts_.source[i] = static_cast<std::uint32_t>(list.size());
-    if (!list.push_back(pairs[i])) return false;
+    contacts_.source[i - batch_first_] = static_cast<std::uint32_t>(list.size());
+    if (!list.push_back(pair)) return false;
   }
   return true;
 }
@@ -128,8 +184,7 @@ Status Collision::answer_convex() {
       {scene_.convex.data(), scene_.convex.size()},
       narrow_options(scene_.options, level_, widest_gap(scene_.convex)), scene_.answers);
   if (status != Status::ok) return status;
-  scene_.statistics.convex = scene_.narrow.statistics();
-  if (!invert(scene_.answers, scene_.options.execution, scene_.slot)) return Status::out_of_memory;
+  scene_.statistics.convex += scene_.narrow.statistics();
   trim_convex();
   return Status::ok;
 }
@@ -157,8 +212,8 @@ Status Collision::answer_composite() {
   if (level_ >= ContactLevel::distance) {
     options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts->answers);
   }
-  scene_.statistics.parts = scene_.parts->narrow.statistics();
-  scene_.statistics.primitive_pairs = parts.pairs.size();
+  scene_.statistics.parts += scene_.parts->narrow.statistics();
+  scene_.statistics.primitive_pairs += parts.pairs.size();
   if (!invert(scene_.parts->answers, options.execution, scene_.parts->slot)) {
     return Status::out_of_memory;
   }
@@ -183,7 +238,7 @@ bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexc
 
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
   if (same_pairs_) return contacts_.records[pair].shown;
-  const std::uint32_t record = contacts_.old_record[pair];
+  const std::uint32_t record = contacts_.old_record[pair - known_from_];
   return record == kNoEntry ? kNoEntry : contacts_.records_before[record].shown;
 }
 
@@ -193,7 +248,7 @@ std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) 
   if (level_ == ContactLevel::pairs) return 0;
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
-  for (; at < end && static_cast<Origin>(contacts_.origin[at]) == Origin::carried; ++at) {
+  for (; at < end && origin_of(at) == Origin::carried; ++at) {
     const std::uint32_t shown = shown_before(at);
     if (shown == kNoEntry) continue;
     if (next != kNoEntry && shown != next) break;
@@ -208,18 +263,18 @@ ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
     return level_ == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
   };
-  if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
-    const std::uint32_t at = scene_.slot[contacts_.source[pair]];
+  if (origin_of(pair) == Origin::convex) {
+    const std::uint32_t at = source_of(pair);
     return touches(scene_.answers, at) ? Place{1, 1, points(scene_.answers, at)} : Place{};
   }
   Place sum;
   if (reduces_) {
-    const auto regions = scene_.parts->regions.of(contacts_.source[pair]);
+    const auto regions = scene_.parts->regions.of(source_of(pair));
     for (const ContactRegion& region : regions) sum += {0, 1, region.count};
     sum.pair = regions.empty() ? 0 : 1;
     return sum;
   }
-  const std::uint32_t* const first = scene_.parts->pairs.first.data() + contacts_.source[pair];
+  const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t at = scene_.parts->slot[i];
     if (touches(scene_.parts->answers, at)) sum += {1, 1, points(scene_.parts->answers, at)};
@@ -250,7 +305,7 @@ ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) con
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
       // Without a branch: whether pairs touch is what cannot be foreseen.
-      const std::uint32_t at = scene_.slot[contacts_.source[i++]];
+      const std::uint32_t at = source_of(i++);
       const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
       const std::uint32_t points =
           level_ == ContactLevel::manifold ? scene_.answers.contact_count()[at] : 0;
@@ -300,49 +355,64 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
 }
 
 bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
-  return level_ != ContactLevel::pairs &&
-         static_cast<Origin>(contacts_.origin[pair]) == Origin::convex;
+  return level_ != ContactLevel::pairs && origin_of(pair) == Origin::convex;
 }
 
-bool Collision::show() {
+// Counts what the pairs of a batch take in the frame, makes room, and writes them from `end` on.
+bool Collision::show_batch(Place& end) {
   ContactsState& c = contacts_;
   const std::size_t tasks = task_count();
-  if (!c.sums.resize(tasks + 1) || !resize_steadily(c.shown_again, c.before.pairs())) return false;
-  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
-  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t end) {
-    c.sums[task] = count(first, end);
+  if (!c.sums.resize(tasks)) return false;
+  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
+    c.sums[task] = count(first, last);
   });
-  Place end;
-  for (std::size_t task = 0; task <= tasks; ++task) {
-    const Place taken = task < tasks ? c.sums[task] : Place{};
-    c.sums[task] = end;
+  for (std::size_t task = 0; task < tasks; ++task) {
+    const Place taken = std::exchange(c.sums[task], end);
     end += taken;
   }
-  const std::size_t records = carries_ ? pair_count() : end.pair;
-  if (!c.frame.resize(level_, end.pair, end.manifold, end.point) ||
-      !resize_steadily(c.records, records) || !c.carried.resize(carries_ ? records : 0) ||
-      !make_history()) {
-    return false;
-  }
-  // The frames change places at the next call, which may find as much as this one.
-  const bool has_room =
-      reads_last_manifolds() ? c.before.reserve_as(c.frame) : c.before.reserve_pairs_as(c.frame);
-  if (!has_room || !c.records_before.reserve(c.records.capacity()) ||
-      !c.carried_before.reserve(c.carried.capacity())) {
-    return false;
-  }
+  if (!grow_frame(end)) return false;
   for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
     write_task(first, last, c.sums[task]);
   });
-  c.frame.close(level_, end);
-  return write_runs();
+  return true;
+}
+
+// Room in the frame up to `end`, and if there was none for what the batches to come take too, if
+// they take as much.
+bool Collision::grow_frame(const Place& end) {
+  ContactsState& c = contacts_;
+  ContactFrame& frame = c.frame;
+  const bool has_room = end.pair <= frame.event.capacity() &&
+                        end.manifold <= frame.part[0].capacity() &&
+                        end.point <= frame.points.depth.capacity();
+  if (!has_room && batch_end_ < pair_count()) {
+    const auto projected = [&](std::uint32_t taken) {
+      const double all = static_cast<double>(taken) * pair_count() / batch_end_;
+      return static_cast<std::size_t>(all * kProjectionSlack);
+    };
+    if (!frame.reserve(level_, projected(end.pair), projected(end.manifold), projected(end.point),
+                       Pages::untouched)) {
+      return false;
+    }
+  }
+  return frame.resize(level_, end.pair, end.manifold, end.point) &&
+         (carries_ || resize_steadily(c.records, end.pair)) && grow_history();
+}
+
+// The frames change places at the next call, which may find as much as this one.
+bool Collision::reserve_next() {
+  ContactsState& c = contacts_;
+  const bool has_room =
+      reads_last_manifolds() ? c.before.reserve_as(c.frame) : c.before.reserve_pairs_as(c.frame);
+  return has_room && c.records_before.reserve(c.records.capacity()) &&
+         c.carried_before.reserve(c.carried.capacity()) && reserve_history();
 }
 
 // Writes a pair that touches and is not carried over, and says whether it did before.
 void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
-  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const BodyPair bodies = scene_.pairs[pair];
   const std::uint32_t shown = shown_before(pair);
   const std::uint32_t ids[2] = {bodies.a, bodies.b};
   bool persists = shown != kNoEntry;
@@ -359,18 +429,19 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   if (level_ == ContactLevel::pairs) return;
   frame.manifold_first[to.pair] = to.manifold;
   Place at = to;
-  if (static_cast<Origin>(c.origin[pair]) == Origin::convex) {
+  if (origin_of(pair) == Origin::convex) {
     frame.part[0][at.manifold] = frame.part[1][at.manifold] = kWholeShape;
-    write_manifold(scene_.answers, scene_.slot[c.source[pair]], nullptr, at);
+    write_manifold(scene_.answers, source_of(pair), nullptr, at);
     return;
   }
   if (reduces_) {
-    for (const ContactRegion& region : scene_.parts->regions.of(c.source[pair]))
+    for (const ContactRegion& region : scene_.parts->regions.of(source_of(pair))) {
       write_region(region, at);
+    }
     return;
   }
   const PrimitivePairs& parts = scene_.parts->pairs;
-  const std::uint32_t* const first = parts.first.data() + c.source[pair];
+  const std::uint32_t* const first = parts.first.data() + source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t answer = scene_.parts->slot[i];
     if (!touches(scene_.parts->answers, answer)) continue;
@@ -469,10 +540,10 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
                     level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
-  if (static_cast<Origin>(contacts_.origin[pair]) == Origin::convex) {
-    least = of(scene_.answers, scene_.slot[contacts_.source[pair]]);
+  if (origin_of(pair) == Origin::convex) {
+    least = of(scene_.answers, source_of(pair));
   } else {
-    const std::uint32_t* const first = scene_.parts->pairs.first.data() + contacts_.source[pair];
+    const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
       least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
     }

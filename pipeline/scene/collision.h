@@ -11,10 +11,17 @@
 namespace winnow {
 
 /// One call of Scene::collide: which pairs keep what they had, the answers about the others, and
-/// both put into a new frame.
+/// both put into a new frame, batch by batch.
 class Collision {
  public:
   static constexpr std::size_t kPairsPerTask = 512;
+  /// Pairs that are answered before what was found of them is put into the frame: few enough that
+  /// answers stay near and take little beside the frame, enough for many threads.
+  static constexpr std::uint32_t kPairsPerBatch = 32768;
+
+  /// So many of a scene's pairs at a time.
+  [[nodiscard]] static std::uint32_t batch_size(const SceneOptions& options,
+                                                std::size_t pairs) noexcept;
 
   Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept;
 
@@ -27,7 +34,8 @@ class Collision {
 
   // What is known of the pairs (pair_memory.cpp).
   [[nodiscard]] bool wake_dormant();
-  [[nodiscard]] bool match();
+  void match(const Column<PairRecord>& records) noexcept;
+  [[nodiscard]] bool match_carried();
   [[nodiscard]] bool decide();
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
   void turn(CarriedPair& carried, const PairRecord& record, const double (&to)[4]) noexcept;
@@ -36,7 +44,9 @@ class Collision {
   [[nodiscard]] bool put_to_sleep(std::uint32_t old_shown) const noexcept;
 
   // Where contacts were (contact_history.cpp).
-  [[nodiscard]] bool make_history() noexcept;
+  [[nodiscard]] bool begin_history() noexcept;
+  [[nodiscard]] bool grow_history() noexcept;
+  [[nodiscard]] bool reserve_history() noexcept;
   void match_points() noexcept;
   void match_points(std::uint32_t shown) noexcept;
   [[nodiscard]] bool keep_places() noexcept;
@@ -80,10 +90,28 @@ class Collision {
 
   // The frame (collide.cpp).
   [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || remembers_places_; }
-  [[nodiscard]] bool show();
+  [[nodiscard]] bool open_frame();
+  [[nodiscard]] Status show();
+  [[nodiscard]] Status answer();
+  [[nodiscard]] bool show_batch(Place& end);
+  [[nodiscard]] bool grow_frame(const Place& end);
+  [[nodiscard]] bool reserve_next();
   /// The place in the last frame of a pair's contacts; kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
+  [[nodiscard]] Origin origin_of_fresh(const BodyPair& pair) const noexcept {
+    const bool is_composite =
+        scene_.shape[pair.a].is_composite() || scene_.shape[pair.b].is_composite();
+    return is_composite ? Origin::composite : Origin::convex;
+  }
+  [[nodiscard]] Origin origin_of(std::uint32_t pair) const noexcept {
+    return static_cast<Origin>(contacts_.origin[pair - known_from_]);
+  }
+  /// Of a pair that is not carried over: its place in the list of those like it, which of convex
+  /// ones is that of their answer, for they come in the order of their kinds.
+  [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
+    return contacts_.source[pair - batch_first_];
+  }
   [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;
   [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
   [[nodiscard]] Place count(std::uint32_t first, std::uint32_t end) const noexcept;
@@ -101,17 +129,18 @@ class Collision {
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
   [[nodiscard]] std::uint32_t pair_count() const noexcept {
-    return static_cast<std::uint32_t>(scene_.pairs.pairs().size());
+    return static_cast<std::uint32_t>(scene_.pairs.size());
   }
+  /// Of the batch.
   [[nodiscard]] std::size_t task_count() const noexcept {
-    return (pair_count() + kPairsPerTask - 1) / kPairsPerTask;
+    return (batch_end_ - batch_first_ + kPairsPerTask - 1) / kPairsPerTask;
   }
-  /// Calls body(first pair, end) for runs of pairs, in parallel.
+  /// Calls body(task, first pair, end) for runs of the batch's pairs, in parallel.
   template <typename Body>
   void for_tasks(Body&& body) const {
     scene_.options.execution.for_each(task_count(), [&](std::size_t task) {
-      const auto first = static_cast<std::uint32_t>(task * kPairsPerTask);
-      body(task, first, std::min(pair_count(), first + static_cast<std::uint32_t>(kPairsPerTask)));
+      const auto first = batch_first_ + static_cast<std::uint32_t>(task * kPairsPerTask);
+      body(task, first, std::min(batch_end_, first + static_cast<std::uint32_t>(kPairsPerTask)));
     });
   }
 
@@ -133,6 +162,12 @@ class Collision {
   bool same_level_;
   /// Record i is of pair i.
   bool same_pairs_ = false;
+  /// The pairs that are worked on: [batch_first_, batch_end_). All, until answers are asked for.
+  std::uint32_t batch_first_ = 0;
+  std::uint32_t batch_end_ = 0;
+  /// The pair that the columns `origin` and `old_record` begin with: the batch's first, but where
+  /// pairs are carried over, which is decided of all at once.
+  std::uint32_t known_from_ = 0;
 };
 
 }  // namespace winnow

@@ -12,6 +12,7 @@
 
 namespace winnow {
 
+struct SceneOptions;
 struct SceneRoom;
 
 /// No entry.
@@ -149,7 +150,7 @@ struct ContactsState {
 
   void clear() noexcept;
   /// See Scene::reserve_contacts (reserve.cpp).
-  [[nodiscard]] bool reserve(const SceneRoom& room, bool carries, bool remembers_places,
+  [[nodiscard]] bool reserve(const SceneRoom& room, const SceneOptions& options,
                              Pages pages) noexcept;
 };
 

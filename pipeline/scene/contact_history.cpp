@@ -174,19 +174,28 @@ bool ContactHistory::reserve(std::size_t pairs, std::size_t points, std::size_t 
          taken.reserve(points, pages) && pose.reserve(bodies, pages);
 }
 
-// Room for what the frame has, and for as much in the next call.
-bool Collision::make_history() noexcept {
+bool Collision::begin_history() noexcept {
   if (!remembers_places_) return true;
   ContactHistory& history = contacts_.history;
-  const std::size_t points = contacts_.frame.points.size();
-  if (!history.pair.resize(contacts_.frame.pairs()) || !history.point.resize(points) ||
-      !history.taken.reserve(points) || !history.taken.resize(contacts_.before.points.size()) ||
+  if (!history.taken.resize(contacts_.before.points.size()) ||
       !history.pose.grow(scene_.pose.size())) {
     return false;
   }
   history.is_same = false;
   std::fill(history.taken.begin(), history.taken.end(), std::uint8_t{0});
   return true;
+}
+
+// Room for what the frame has.
+bool Collision::grow_history() noexcept {
+  ContactHistory& history = contacts_.history;
+  return !remembers_places_ || (history.pair.resize(contacts_.frame.pairs()) &&
+                                history.point.resize(contacts_.frame.points.size()));
+}
+
+// The frame's points are looked for by the next call.
+bool Collision::reserve_history() noexcept {
+  return !remembers_places_ || contacts_.history.taken.reserve(contacts_.frame.points.size());
 }
 
 // Of the pairs that lie in a stretch of the frame.

@@ -170,14 +170,14 @@ void Collision::trim_convex() noexcept {
   const NarrowColumns answers = scene_.answers.columns();
   for_stretches(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerStretch,
                 [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
+                  for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
                     const BodyPair& pair = scene_.convex[i];
                     const Asked asked{scene_.shapes.tables(),
                                       {scene_.shape[pair.a], scene_.shape[pair.b]},
                                       {&scene_.pose[pair.a], &scene_.pose[pair.b]},
                                       scene_.gap_of(pair)};
-                    trim(asked, scene_.slot[i], answers);
-                    rest(pair, scene_.slot[i], answers);
+                    trim(asked, i, answers);
+                    rest(pair, i, answers);
                   }
                 });
 }

@@ -96,47 +96,53 @@ bool Collision::wake_dormant() {
   return true;
 }
 
-// Which record each pair had. Both are sorted alike.
-bool Collision::match() {
-  ContactsState& c = contacts_;
-  const auto pairs = scene_.pairs.pairs();
-  same_pairs_ = carries_ && same_level_ && c.pairs_serial == scene_.pairs.serial() &&
-                c.records.size() == pairs.size() && c.carried.size() == pairs.size();
-  if (level_ != ContactLevel::pairs && !resize_steadily(c.origin, pairs.size())) return false;
-  if (same_pairs_) return true;
-  if (!resize_steadily(c.old_record, pairs.size())) return false;
+// Which record each pair of the batch had. Both are sorted alike. Room was made.
+void Collision::match(const Column<PairRecord>& records) noexcept {
   const auto order_of_pair = [&](std::uint32_t i) {
-    return std::tuple(code_of(scene_, pairs[i]), pairs[i].a, pairs[i].b);
+    const BodyPair pair = scene_.pairs[i];
+    return std::tuple(code_of(scene_, pair), pair.a, pair.b);
   };
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
     const PairRecord* record = std::lower_bound(
-        c.records.begin(), c.records.end(), order_of_pair(first),
+        records.begin(), records.end(), order_of_pair(first),
         [](const PairRecord& r, const auto& order) { return order_of(r) < order; });
     for (std::uint32_t i = first; i < end; ++i) {
       const auto order = order_of_pair(i);
-      while (record != c.records.end() && order_of(*record) < order) ++record;
-      const bool found = record != c.records.end() && order_of(*record) == order;
-      c.old_record[i] = found ? static_cast<std::uint32_t>(record++ - c.records.begin()) : kNoEntry;
+      while (record != records.end() && order_of(*record) < order) ++record;
+      const bool found = record != records.end() && order_of(*record) == order;
+      contacts_.old_record[i - known_from_] =
+          found ? static_cast<std::uint32_t>(record++ - records.begin()) : kNoEntry;
     }
   });
+}
+
+// What may be carried over is matched before anything is answered.
+bool Collision::match_carried() {
+  if (!carries_) return true;
+  ContactsState& c = contacts_;
+  const std::size_t pairs = pair_count();
+  same_pairs_ = same_level_ && c.pairs_serial == scene_.pairs.serial() &&
+                c.records.size() == pairs && c.carried.size() == pairs;
+  if (!resize_steadily(c.origin, pairs)) return false;
+  if (same_pairs_) return true;
+  if (!resize_steadily(c.old_record, pairs)) return false;
+  match(c.records);
   return true;
 }
 
 // Says of every pair where its contacts come from. False if the last frame can stay as it is.
 bool Collision::decide() {
+  if (!carries_) return true;
   ContactsState& c = contacts_;
-  const auto pairs = scene_.pairs.pairs();
-  if (level_ == ContactLevel::pairs) return true;
   std::atomic<std::uint32_t> kept{0};
-  const bool may_keep = carries_ && same_level_ && c.carried.size() == c.records.size();
+  const bool may_keep = same_level_ && c.carried.size() == c.records.size();
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
     std::uint32_t count = 0;
     for (std::uint32_t i = first; i < end; ++i) {
+      const BodyPair pair = scene_.pairs[i];
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      const bool composite =
-          scene_.shape[pairs[i].a].is_composite() || scene_.shape[pairs[i].b].is_composite();
-      Origin origin = composite ? Origin::composite : Origin::convex;
-      if (may_keep && record != kNoEntry && is_carried_over(pairs[i]) && keep(i, record)) {
+      Origin origin = origin_of_fresh(pair);
+      if (may_keep && record != kNoEntry && is_carried_over(pair) && keep(i, record)) {
         origin = Origin::carried;
         ++count;
       }
@@ -145,7 +151,7 @@ bool Collision::decide() {
     kept.fetch_add(count, std::memory_order_relaxed);
   });
   c.carried_count = kept.load();
-  if (!same_pairs_ || c.carried_count != pairs.size()) return true;
+  if (!same_pairs_ || c.carried_count != pair_count()) return true;
   if (!c.is_settled) {
     std::fill(c.frame.event.begin(), c.frame.event.end(), ContactEvent::persisted);
     c.ended.clear();
@@ -157,7 +163,7 @@ bool Collision::decide() {
 // True if a pair has moved so little that its contacts stay, and turns them if it must.
 bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   ContactsState& c = contacts_;
-  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const BodyPair bodies = scene_.pairs[pair];
   const std::uint32_t since = c.clock;
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
   if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
@@ -212,10 +218,10 @@ void Collision::turn(CarriedPair& carried, const PairRecord& record,
 // Notes what a pair was found to be. Room was made.
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
-  const BodyPair bodies = scene_.pairs.pairs()[pair];
+  const BodyPair bodies = scene_.pairs[pair];
   c.records[carries_ ? pair : shown] = {bodies, code_of(scene_, bodies), shown};
   if (!carries_) return;
-  if (static_cast<Origin>(c.origin[pair]) == Origin::carried) {
+  if (origin_of(pair) == Origin::carried) {
     if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
     return;
   }
@@ -231,8 +237,7 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   carried.radius_a = round_up(radius_a);
   const double carry_over = scene_.options.carry_over;
   const double clear = shown == kNoEntry ? clearance(pair) : carry_over;
-  carried.limit =
-      static_cast<Origin>(c.origin[pair]) == Origin::convex ? clear : std::min(clear, carry_over);
+  carried.limit = origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over);
   c.carried[pair] = carried;
 }
 

@@ -57,10 +57,7 @@ Status Scene::reserve(const SceneRoom& room, Pages pages) {
 Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages) const {
   if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
   if (const Status good = check(room); good != Status::ok) return good;
-  const bool carries = state_->options.carry_over > 0.0 && room.level >= ContactLevel::distance;
-  return out.state_->reserve(room, carries, state_->options.warm_start, pages)
-             ? Status::ok
-             : Status::out_of_memory;
+  return out.state_->reserve(room, state_->options, pages) ? Status::ok : Status::out_of_memory;
 }
 
 // The partitions come last: one that was made is seen.
@@ -111,7 +108,8 @@ Status SceneState::reserve_sets(const SceneRoom& room, Pages pages) {
 Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
   if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
   if (room.level == ContactLevel::pairs) return Status::ok;
-  if (options.composites != nullptr && !composite.reserve(room.pairs, pages)) {
+  const std::size_t batch = Collision::batch_size(options, room.pairs);
+  if (options.composites != nullptr && !composite.reserve(batch, pages)) {
     return Status::out_of_memory;
   }
   ShapeId ids[2 * kShapeKinds];
@@ -125,9 +123,7 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
       ++bodies;
     }
   }
-  if (!slot.reserve(room.pairs, pages) || !list_rehearsal(bodies / 2, room.pairs)) {
-    return Status::out_of_memory;
-  }
+  if (!list_rehearsal(bodies / 2, batch)) return Status::out_of_memory;
   const Status status =
       narrow.collide(shapes, {{ids, bodies}, {poses, bodies}}, {convex.data(), convex.size()},
                      {room.level, NarrowTier::robust, options.margin, options.execution}, answers);
@@ -135,7 +131,8 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
   if (status != Status::ok || room.level != ContactLevel::manifold) return status;
   // On one thread a job writes where there is room for all that it may find.
   ContactColumns& points = answers.columns().contacts;
-  if (!points.grow(room.points + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
+  const std::size_t found = std::min(room.points, batch * kManifoldPoints);
+  if (!points.grow(found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
     return Status::out_of_memory;
   }
   if (pages == Pages::touched) points.touch();
@@ -158,8 +155,10 @@ bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   return true;
 }
 
-bool ContactsState::reserve(const SceneRoom& room, bool carries, bool remembers_places,
+bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
                             Pages pages) noexcept {
+  const bool carries = options.carry_over > 0.0 && room.level >= ContactLevel::distance;
+  const bool remembers_places = options.warm_start;
   const std::size_t shown = shown_pairs(room);
   const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
@@ -178,13 +177,17 @@ bool ContactsState::reserve(const SceneRoom& room, bool carries, bool remembers_
   // Pairs that wake are put beside all that are remembered.
   const std::size_t remembered = carries ? room.pairs + shown : shown;
   const std::size_t carried_over = carries ? remembered : 0;
-  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : room.pairs;
+  // What may be carried over is looked at before anything is answered.
+  const std::size_t batch = Collision::batch_size(options, room.pairs);
+  const std::size_t looked_at = carries ? room.pairs : batch;
+  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch;
+  const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
   return reserve_all(shown, pages, ended, shown_again, dormant_records) &&
          reserve_all(remembered, pages, records, records_before) &&
          reserve_all(carried_over, pages, carried, carried_before) &&
-         dormant_carried.reserve(carries ? shown : 0, pages) &&
-         reserve_all(asked, pages, source, origin) && old_record.reserve(room.pairs, pages) &&
-         sums.reserve(room.pairs / Collision::kPairsPerTask + 2, pages);
+         dormant_carried.reserve(carries ? shown : 0, pages) && source.reserve(asked, pages) &&
+         origin.reserve(told, pages) && old_record.reserve(looked_at, pages) &&
+         sums.reserve(batch / Collision::kPairsPerTask + 1, pages);
 }
 
 }  // namespace winnow

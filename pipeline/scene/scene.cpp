@@ -104,7 +104,6 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       pairs(given.memory),
       narrow(given.memory),
       answers(given.memory),
-      slot(given.memory),
       convex(given.memory),
       composite(given.memory),
       gaps(given.memory),
@@ -345,7 +344,6 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.mid_phase += s.gaps.bytes();
   if (s.parts != nullptr) footprint.mid_phase += s.parts->bytes();
   footprint.narrow_phase += s.convex.bytes();
-  footprint.narrow_phase += s.slot.bytes();
   footprint.narrow_phase += s.floor_contacts.bytes();
   footprint.narrow_phase += s.floor_order.bytes();
   footprint.narrow_phase += s.narrow.footprint().total();

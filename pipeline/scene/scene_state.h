@@ -118,8 +118,6 @@ struct SceneState {
   const PairSelection* selection = nullptr;
   NarrowPhase narrow;
   NarrowResult answers;
-  /// By pair asked about: where its answer lies.
-  Column<std::uint32_t> slot;
   /// Which pairs of `pairs` are asked about: convex ones, and those with a composite shape.
   Column<BodyPair> convex;
   Column<BodyPair> composite;

@@ -177,8 +177,7 @@ bool Collision::list_floor_contacts() {
   for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
     if (!is_floor_pair(scene_, scene_.convex[i])) continue;
     FloorWriter writer(scene_, scene_.convex[i]);
-    if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, scene_.slot[i], nullptr,
-                           writer)) {
+    if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, i, nullptr, writer)) {
       return false;
     }
   }
