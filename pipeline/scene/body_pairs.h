@@ -9,6 +9,7 @@
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/shapes/pair_order.h"
 
+#include <compare>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -17,6 +18,28 @@ namespace winnow {
 
 /// Bodies of a scene: two numbers and a code fit into 64 bits.
 inline constexpr std::size_t kMaxBodies = std::size_t{1} << 28U;
+
+/// A pair of bodies as one number, which sorts as pairs are sorted: by the kinds of their shapes,
+/// then by a, then by b.
+struct PairOrder {
+  static constexpr unsigned kBodyBits = 28;
+  static_assert(kMaxBodies <= std::size_t{1} << kBodyBits && KindPairs::kCount <= 256);
+
+  std::uint64_t bits;
+
+  [[nodiscard]] static constexpr PairOrder of(std::uint32_t code, BodyPair bodies) noexcept {
+    return {(std::uint64_t{code} << kBodyBits | bodies.a) << kBodyBits | bodies.b};
+  }
+  [[nodiscard]] constexpr std::uint32_t code() const noexcept {
+    return static_cast<std::uint32_t>(bits >> 2 * kBodyBits);
+  }
+  [[nodiscard]] constexpr BodyPair bodies() const noexcept {
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << kBodyBits) - 1;
+    return {static_cast<std::uint32_t>(bits >> kBodyBits & kMask),
+            static_cast<std::uint32_t>(bits & kMask)};
+  }
+  friend constexpr auto operator<=>(const PairOrder&, const PairOrder&) noexcept = default;
+};
 
 /// What a rank of a cluster makes of its scene's pairs: bodies stand in an order of their own in
 /// place of that of their numbers, and some pairs are another rank's.
@@ -58,6 +81,9 @@ class BodyPairs {
     const std::uint64_t mask = (std::uint64_t{1} << bits_) - 1;
     return {static_cast<std::uint32_t>(item >> bits_ & mask),
             static_cast<std::uint32_t>(item & mask)};
+  }
+  [[nodiscard]] PairOrder order(std::size_t i) const noexcept {
+    return PairOrder::of(static_cast<std::uint32_t>(items_[sorted_][i] >> 2 * bits_), (*this)[i]);
   }
   /// Pairs of a code are [first(code), first(code + 1)).
   [[nodiscard]] std::uint32_t first(std::uint32_t code) const noexcept { return first_[code]; }

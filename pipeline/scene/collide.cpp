@@ -9,6 +9,7 @@
 #include "pipeline/scene/collision.h"
 
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace winnow {
@@ -58,15 +59,15 @@ Status Collision::run() {
   contacts_.scene = scene_.serial;
   contacts_.level = level_;
   contacts_.carried_count = 0;
-  shown_last_ = static_cast<std::uint32_t>(contacts_.frame.pairs());
   batch_end_ = pair_count();
-  if (!wake_dormant() || !match_carried()) return Status::out_of_memory;
+  if (!list_records() || !wake_dormant() || !match_carried()) return Status::out_of_memory;
   if (decide()) {
     if (const Status status = show(); status != Status::ok) return status;
     match_points();
   } else if (!keep_places()) {
     return Status::out_of_memory;
   }
+  if (!note_bodies()) return Status::out_of_memory;
   contacts_.clock = scene_.clock;
   contacts_.pairs_serial = scene_.pairs.serial();
   contacts_.regroupings = scene_.regroupings;
@@ -92,7 +93,13 @@ Status Collision::show() {
   }
   const StageScope stage(WorkStage::contacts);
   contacts_.frame.close(level_, end);
-  return reserve_next() && write_runs() && close_frame() ? Status::ok : Status::out_of_memory;
+  if (!reserve_next() || !write_runs() || !close_frame()) return Status::out_of_memory;
+  if (!carries_) {
+    // The next call lists them anew, in the same memory.
+    contacts_.records.swap(contacts_.records_before);
+    contacts_.records.clear();
+  }
+  return Status::ok;
 }
 
 // What was shown becomes what was before.
@@ -101,9 +108,8 @@ bool Collision::open_frame() {
   if (reads_last_manifolds()) {
     c.frame.swap(c.before);
   } else {
-    // Another level may have left more.
+    // Another level may have left some.
     c.before.clear();
-    c.frame.swap_pairs(c.before);
   }
   // The same pairs keep their records in place.
   if (!same_pairs_) {
@@ -111,8 +117,9 @@ bool Collision::open_frame() {
     c.carried.swap(c.carried_before);
   }
   const std::size_t records = carries_ ? pair_count() : 0;
-  if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records, records) ||
-      !c.carried.resize(records) || !resize_steadily(c.shown_again, c.before.pairs())) {
+  if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records.order, records) ||
+      !resize_steadily(c.records.shown, records) || !c.carried.resize(records) ||
+      !resize_steadily(c.shown_again, known_last_)) {
     return false;
   }
   std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
@@ -237,15 +244,14 @@ bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexc
 }
 
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
-  if (same_pairs_) return contacts_.records[pair].shown;
+  if (same_pairs_) return contacts_.records.shown_of(pair);
   const std::uint32_t record = contacts_.old_record[pair - known_from_];
-  return record == kNoEntry ? kNoEntry : contacts_.records_before[record].shown;
+  return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
 }
 
 // How many pairs from this one on are carried over and lie next to each other in the last frame;
 // those that do not touch are passed over. What touches can be copied in one go.
 std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
-  if (level_ == ContactLevel::pairs) return 0;
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
   for (; at < end && origin_of(at) == Origin::carried; ++at) {
@@ -259,7 +265,6 @@ std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) 
 
 // What a pair that is not carried over takes in the frame: nothing if it does not touch.
 ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
-  if (level_ == ContactLevel::pairs) return {1, 0, 0};
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
     return level_ == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
   };
@@ -301,6 +306,7 @@ struct Touching {
 
 // What pairs [first, end) take.
 ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
+  if (level_ == ContactLevel::pairs) return {end - first, 0, 0};
   Place sum;
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
@@ -326,13 +332,20 @@ ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) con
 
 // Writes pairs [first, end), and what is to be remembered of them.
 void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept {
+  if (level_ == ContactLevel::pairs) return write_all(first, end, at.pair);
   ContactsState& c = contacts_;
   for (std::uint32_t i = first; i < end;) {
-    const std::uint32_t stretch = is_fresh_convex(i) ? 0 : carried_stretch(i, end);
+    if (is_fresh_convex(i)) {
+      const std::uint32_t convex = i;
+      while (i < end && is_fresh_convex(i)) ++i;
+      write_convex(convex, i, at);
+      continue;
+    }
+    const std::uint32_t stretch = carried_stretch(i, end);
     if (stretch == 0) {
       const Place taken = extent(i);
-      if (taken.pair != 0) write(i, at);
-      if (taken.pair != 0 || carries_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
+      if (taken.pair != 0) write_composite(i, at);
+      if (carries_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
       at += taken;
       ++i;
       continue;
@@ -355,7 +368,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
 }
 
 bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
-  return level_ != ContactLevel::pairs && origin_of(pair) == Origin::convex;
+  return origin_of(pair) == Origin::convex;
 }
 
 // Counts what the pairs of a batch take in the frame, makes room, and writes them from `end` on.
@@ -395,45 +408,99 @@ bool Collision::grow_frame(const Place& end) {
       return false;
     }
   }
-  return frame.resize(level_, end.pair, end.manifold, end.point) &&
-         (carries_ || resize_steadily(c.records, end.pair)) && grow_history();
+  return frame.resize(level_, end.pair, end.manifold, end.point) && grow_history();
 }
 
 // The frames change places at the next call, which may find as much as this one.
 bool Collision::reserve_next() {
   ContactsState& c = contacts_;
-  const bool has_room =
-      reads_last_manifolds() ? c.before.reserve_as(c.frame) : c.before.reserve_pairs_as(c.frame);
-  return has_room && c.records_before.reserve(c.records.capacity()) &&
+  const bool has_room = !reads_last_manifolds() || c.before.reserve_as(c.frame);
+  return has_room && c.records_before.reserve(c.records.order.capacity()) &&
          c.carried_before.reserve(c.carried.capacity()) && reserve_history();
 }
 
-// Writes a pair that touches and is not carried over, and says whether it did before.
-void Collision::write(std::uint32_t pair, const Place& to) noexcept {
+// Writes whose bodies pairs that touch and are not carried over are, and says whether they touched
+// before.
+void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
-  const BodyPair bodies = scene_.pairs[pair];
-  const std::uint32_t shown = shown_before(pair);
-  const std::uint32_t ids[2] = {bodies.a, bodies.b};
-  bool persists = shown != kNoEntry;
-  for (int side = 0; side < 2; ++side) {
-    frame.key[side][to.pair] = scene_.keys.key_of(ids[side]);
-    frame.data[side][to.pair] = scene_.keys.client_data(ids[side]);
-    persists = persists && c.before.key[side][shown] == frame.key[side][to.pair];
+  for (const std::uint32_t pair : pairs) scene_.keys.fetch(scene_.pairs[pair].b);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::size_t at = to + i;
+    const BodyPair bodies = scene_.pairs[pairs[i]];
+    const std::uint32_t shown = shown_before(pairs[i]);
+    bool persists = shown != kNoEntry;
+    const std::uint32_t ids[2] = {bodies.a, bodies.b};
+    for (int side = 0; side < 2; ++side) {
+      const Key key = scene_.keys.key_of(ids[side]);
+      frame.key[side][at] = key;
+      frame.data[side][at] = scene_.keys.client_data(ids[side]);
+      persists = persists && c.known.key(ids[side]) == key;
+    }
+    frame.event[at] = persists ? ContactEvent::persisted : ContactEvent::begun;
+    if (persists) c.shown_again[shown] = 1;
+    if (remembers_places_) c.history.pair[at] = persists ? place_before(shown) : kNoContact;
   }
-  frame.event[to.pair] = persists ? ContactEvent::persisted : ContactEvent::begun;
-  if (persists) c.shown_again[shown] = 1;
-  if (remembers_places_) {
-    c.history.pair[to.pair] = persists ? place_before(shown) : kNoContact;
+}
+
+// Pairs [first, end), at most a task's, of which nothing was asked.
+void Collision::write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept {
+  std::uint32_t pairs[kPairsPerTask];
+  std::iota(pairs, pairs + (end - first), first);
+  write_bodies({pairs, end - first}, to);
+}
+
+// Pairs [first, end), at most a task's, all convex and not carried over: those that touch, column
+// by column.
+void Collision::write_convex(std::uint32_t first, std::uint32_t end, Place& at) noexcept {
+  std::uint32_t touching[kPairsPerTask];
+  std::uint32_t count = 0;
+  for (std::uint32_t i = first; i < end; ++i) {
+    const bool is_shown = touches(scene_.answers, source_of(i));
+    if (carries_) remember(i, is_shown ? at.pair + count : kNoEntry);
+    touching[count] = i;
+    count += is_shown ? 1 : 0;
   }
-  if (level_ == ContactLevel::pairs) return;
+  ContactFrame& frame = contacts_.frame;
+  write_bodies({touching, count}, at.pair);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    frame.manifold_first[at.pair + i] = at.manifold + i;
+    frame.part[0][at.manifold + i] = frame.part[1][at.manifold + i] = kWholeShape;
+  }
+  write_answers({touching, count}, at);
+}
+
+// The answers about convex pairs that touch.
+void Collision::write_answers(std::span<const std::uint32_t> pairs, Place& at) noexcept {
+  const auto count = static_cast<std::uint32_t>(pairs.size());
+  const auto copy = [&](std::span<const double> from, Column<double>& to) {
+    double* const out = to.data() + at.manifold;
+    for (std::uint32_t i = 0; i < count; ++i) out[i] = from[source_of(pairs[i])];
+  };
+  const NarrowResult& answers = scene_.answers;
+  ContactFrame& frame = contacts_.frame;
+  if (level_ >= ContactLevel::distance) {
+    copy(answers.distance(), frame.distance);
+    copy(answers.error_bound(), frame.error_bound);
+    for (int k = 0; k < 3; ++k) copy(answers.normal(k), frame.normal[k]);
+  }
+  if (level_ == ContactLevel::distance) {
+    for (int k = 0; k < 3; ++k) copy(answers.point(k), frame.point[k]);
+  }
+  for (std::uint32_t i = 0; level_ == ContactLevel::manifold && i < count; ++i) {
+    frame.point_first[at.manifold + i] = at.point;
+    write_points(answers, source_of(pairs[i]), nullptr, at.point);
+  }
+  at.pair += count;
+  at.manifold += count;
+}
+
+// A pair of which a shape is composite and that touches, and was not carried over.
+void Collision::write_composite(std::uint32_t pair, const Place& to) noexcept {
+  write_bodies({&pair, 1}, to.pair);
+  ContactFrame& frame = contacts_.frame;
   frame.manifold_first[to.pair] = to.manifold;
   Place at = to;
-  if (origin_of(pair) == Origin::convex) {
-    frame.part[0][at.manifold] = frame.part[1][at.manifold] = kWholeShape;
-    write_manifold(scene_.answers, source_of(pair), nullptr, at);
-    return;
-  }
   if (reduces_) {
     for (const ContactRegion& region : scene_.parts->regions.of(source_of(pair))) {
       write_region(region, at);
@@ -452,7 +519,7 @@ void Collision::write(std::uint32_t pair, const Place& to) noexcept {
   }
 }
 
-// `offset`: where the primitive of a stands, relative to body a; null if it is the body.
+// The answer about a pair of primitives, of which that of a stands at `offset` from body a.
 void Collision::write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                                Place& to) noexcept {
   ContactFrame& frame = contacts_.frame;
@@ -462,27 +529,33 @@ void Collision::write_manifold(const NarrowResult& answers, std::size_t at, cons
     for (int k = 0; k < 3; ++k) {
       frame.normal[k][to.manifold] = answers.normal(k)[at];
       if (level_ == ContactLevel::distance) {
-        frame.point[k][to.manifold] = answers.point(k)[at] + (offset == nullptr ? 0.0 : offset[k]);
+        frame.point[k][to.manifold] = answers.point(k)[at] + offset[k];
       }
     }
   }
   if (level_ == ContactLevel::manifold) {
-    const std::uint32_t first = answers.contact_first()[at];
-    const std::uint32_t count = answers.contact_count()[at];
-    const ContactColumns& from = answers.contact_columns();
     frame.point_first[to.manifold] = to.point;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        const float p = from.position[k][first + i];
-        frame.points.position[k][to.point + i] =
-            offset == nullptr ? p : static_cast<float>(static_cast<double>(p) + offset[k]);
-      }
-      frame.points.depth[to.point + i] = from.depth[first + i];
-      frame.points.feature[to.point + i] = from.feature[first + i];
-    }
-    to.point += count;
+    write_points(answers, at, offset, to.point);
   }
   ++to.manifold;
+}
+
+// The points of an answer; `offset` is null where the primitive of a is the body.
+void Collision::write_points(const NarrowResult& answers, std::size_t at, const double* offset,
+                             std::uint32_t& to) noexcept {
+  ContactColumns& points = contacts_.frame.points;
+  const ContactColumns& from = answers.contact_columns();
+  const std::uint32_t first = answers.contact_first()[at];
+  const std::uint32_t end = first + answers.contact_count()[at];
+  for (std::uint32_t i = first; i < end; ++i, ++to) {
+    for (int k = 0; k < 3; ++k) {
+      const float p = from.position[k][i];
+      points.position[k][to] =
+          offset == nullptr ? p : static_cast<float>(static_cast<double>(p) + offset[k]);
+    }
+    points.depth[to] = from.depth[i];
+    points.feature[to] = from.feature[i];
+  }
 }
 
 void Collision::write_region(const ContactRegion& region, Place& to) noexcept {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace winnow {
 
@@ -34,14 +35,19 @@ class Collision {
 
   // What is known of the pairs (pair_memory.cpp).
   [[nodiscard]] bool wake_dormant();
-  void match(const Column<PairRecord>& records) noexcept;
+  void merge_dormant() noexcept;
+  [[nodiscard]] bool list_records();
+  void match(const PairRecords& records) noexcept;
   [[nodiscard]] bool match_carried();
   [[nodiscard]] bool decide();
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CarriedPair& carried, const PairRecord& record, const double (&to)[4]) noexcept;
+  void turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept;
   void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
   [[nodiscard]] bool close_frame();
-  [[nodiscard]] bool put_to_sleep(std::uint32_t old_shown) const noexcept;
+  [[nodiscard]] bool put_to_sleep();
+  [[nodiscard]] bool list_ended();
+  [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
+  [[nodiscard]] bool note_bodies();
 
   // Where contacts were (contact_history.cpp).
   [[nodiscard]] bool begin_history() noexcept;
@@ -117,13 +123,19 @@ class Collision {
   [[nodiscard]] Place count(std::uint32_t first, std::uint32_t end) const noexcept;
   void write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept;
   [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
-  void write(std::uint32_t pair, const Place& to) noexcept;
+  void write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept;
+  void write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept;
+  void write_convex(std::uint32_t first, std::uint32_t end, Place& at) noexcept;
+  void write_answers(std::span<const std::uint32_t> pairs, Place& at) noexcept;
+  void write_composite(std::uint32_t pair, const Place& to) noexcept;
   /// What is told of a pair's place in the last frame: none that slept was shown in it.
   [[nodiscard]] std::uint32_t place_before(std::uint32_t shown) const noexcept {
     return shown < shown_last_ ? shown : kNoContact;
   }
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                       Place& to) noexcept;
+  void write_points(const NarrowResult& answers, std::size_t at, const double* offset,
+                    std::uint32_t& to) noexcept;
   void write_region(const ContactRegion& region, Place& to) noexcept;
   [[nodiscard]] bool write_runs();
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
@@ -155,8 +167,9 @@ class Collision {
   bool remembers_places_;
   /// What is no farther apart touches.
   double limit_ = 0.0;
-  /// Pairs that the contacts showed before this call.
+  /// Pairs that the contacts showed before this call; and with those that slept and may have woken.
   std::uint32_t shown_last_ = 0;
+  std::uint32_t known_last_ = 0;
   /// What the contacts remember is of this scene; and of this level.
   bool same_scene_;
   bool same_level_;

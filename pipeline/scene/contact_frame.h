@@ -44,13 +44,10 @@ struct ContactFrame {
   /// Room for so much at a level, and for every run there may be. False if memory is refused.
   [[nodiscard]] bool reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
                              std::size_t contact_points, Pages pages) noexcept;
-  /// As much room as another frame has, so that the two can change places; or their pairs alone.
+  /// As much room as another frame has, so that the two can change places.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
-  [[nodiscard]] bool reserve_pairs_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
   void swap(ContactFrame& other) noexcept;
-  /// The bodies of pairs and what became of them, nothing else.
-  void swap_pairs(ContactFrame& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
   /// Where something is written: the next pair, manifold and point.
@@ -84,14 +81,65 @@ struct ContactFrame {
                    const Place& to) noexcept;
 };
 
-/// What is remembered of a pair from one `collide` to the next. Without carry-over only pairs that
-/// touch are.
-struct PairRecord {
-  BodyPair pair;
-  /// The kinds of its shapes: the first key of the order.
-  std::uint32_t code;
-  /// Its place in the ContactFrame, kNoEntry if it does not touch.
-  std::uint32_t shown;
+/// What is remembered of pairs from one `collide` to the next, in their order: of those that touch,
+/// and with carry-over of all.
+struct PairRecords {
+  explicit PairRecords(std::pmr::memory_resource* memory) noexcept : order(memory), shown(memory) {}
+
+  Column<PairOrder> order;
+  /// Its place in the ContactFrame, kNoEntry if it does not touch. Empty where record i is that of
+  /// pair i of the frame.
+  Column<std::uint32_t> shown;
+
+  [[nodiscard]] std::size_t size() const noexcept { return order.size(); }
+  [[nodiscard]] std::uint32_t shown_of(std::size_t record) const noexcept {
+    return shown.empty() ? static_cast<std::uint32_t>(record) : shown[record];
+  }
+  void push_back_within_room(PairOrder of, std::uint32_t at) noexcept {
+    (void)order.push_back(of);
+    (void)shown.push_back(at);
+  }
+  [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
+    return order.reserve(count, pages) && shown.reserve(count, pages);
+  }
+  void clear() noexcept {
+    order.clear();
+    shown.clear();
+  }
+  void swap(PairRecords& other) noexcept {
+    order.swap(other.order);
+    shown.swap(other.shown);
+  }
+  [[nodiscard]] Bytes bytes() const noexcept {
+    Bytes sum = order.bytes();
+    sum += shown.bytes();
+    return sum;
+  }
+};
+
+/// Which objects bodies were when contacts were last filled, by number: who they are now may have
+/// come in the place of others.
+struct KnownBodies {
+  explicit KnownBodies(std::pmr::memory_resource* memory) noexcept : stamp(memory), data(memory) {}
+
+  Column<std::uint32_t> stamp;  ///< of keys
+  Column<ClientData> data;
+  std::size_t live = 0;
+
+  [[nodiscard]] Key key(std::uint32_t body) const noexcept { return {body, stamp[body]}; }
+  void clear() noexcept {
+    stamp.clear();
+    data.clear();
+    live = 0;
+  }
+  [[nodiscard]] bool reserve(std::size_t bodies, Pages pages = Pages::untouched) noexcept {
+    return stamp.reserve(bodies, pages) && data.reserve(bodies, pages);
+  }
+  [[nodiscard]] Bytes bytes() const noexcept {
+    Bytes sum = stamp.bytes();
+    sum += data.bytes();
+    return sum;
+  }
 };
 
 /// With carry-over, of every pair.
@@ -112,21 +160,24 @@ struct CarriedPair {
   bool widened;
 };
 
+/// Everything that Contacts are.
 struct ContactsState {
   explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
 
   ContactLevel level = ContactLevel::pairs;
   ContactFrame frame;
-  /// The last one: its pairs alone, unless manifolds are carried over or points are to be found.
+  /// The last one, where manifolds are carried over or points are to be found in it.
   ContactFrame before;
   Column<EndedContact> ended;
-  Column<PairRecord> records;
-  Column<PairRecord> records_before;
+  /// Without carry-over and between two calls they are empty: the frame has the same.
+  PairRecords records;
+  PairRecords records_before;
+  KnownBodies known;
   Column<CarriedPair> carried;
   Column<CarriedPair> carried_before;
   /// Pairs of bodies that sleep, with what is known of them; sorted.
   ContactFrame dormant;
-  Column<PairRecord> dormant_records;
+  PairRecords dormant_records;
   Column<CarriedPair> dormant_carried;
   /// Of what is shown.
   ContactHistory history;

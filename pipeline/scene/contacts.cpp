@@ -82,24 +82,18 @@ bool ContactFrame::reserve(ContactLevel level, std::size_t pairs, std::size_t ma
   return true;
 }
 
-bool ContactFrame::reserve_pairs_as(const ContactFrame& other) noexcept {
-  bool good = event.reserve(other.event.capacity());
-  for (int side = 0; side < 2; ++side) {
-    good = good && key[side].reserve(other.key[side].capacity()) &&
-           data[side].reserve(other.data[side].capacity());
-  }
-  return good;
-}
-
 bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
-  bool good = reserve_pairs_as(other) && manifold_first.reserve(other.manifold_first.capacity()) &&
+  bool good = event.reserve(other.event.capacity()) &&
+              manifold_first.reserve(other.manifold_first.capacity()) &&
               distance.reserve(other.distance.capacity()) &&
               error_bound.reserve(other.error_bound.capacity()) &&
               point_first.reserve(other.point_first.capacity()) &&
               points.depth.reserve(other.points.depth.capacity()) &&
               points.feature.reserve(other.points.feature.capacity());
   for (int side = 0; side < 2; ++side) {
-    good = good && part[side].reserve(other.part[side].capacity());
+    good = good && key[side].reserve(other.key[side].capacity()) &&
+           data[side].reserve(other.data[side].capacity()) &&
+           part[side].reserve(other.part[side].capacity());
   }
   for (int axis = 0; axis < 3; ++axis) {
     good = good && normal[axis].reserve(other.normal[axis].capacity()) &&
@@ -128,19 +122,15 @@ void ContactFrame::clear() noexcept {
   points.set_size(0);
 }
 
-void ContactFrame::swap_pairs(ContactFrame& other) noexcept {
+void ContactFrame::swap(ContactFrame& other) noexcept {
+  runs.swap(other.runs);
   event.swap(other.event);
+  manifold_first.swap(other.manifold_first);
   for (int side = 0; side < 2; ++side) {
     key[side].swap(other.key[side]);
     data[side].swap(other.data[side]);
+    part[side].swap(other.part[side]);
   }
-}
-
-void ContactFrame::swap(ContactFrame& other) noexcept {
-  swap_pairs(other);
-  runs.swap(other.runs);
-  manifold_first.swap(other.manifold_first);
-  for (int side = 0; side < 2; ++side) part[side].swap(other.part[side]);
   distance.swap(other.distance);
   error_bound.swap(other.error_bound);
   for (int axis = 0; axis < 3; ++axis) {
@@ -234,6 +224,7 @@ ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
       ended(memory),
       records(memory),
       records_before(memory),
+      known(memory),
       carried(memory),
       carried_before(memory),
       dormant(memory),
@@ -252,6 +243,7 @@ void ContactsState::clear() noexcept {
   dormant.clear();
   ended.clear();
   records.clear();
+  known.clear();
   carried.clear();
   dormant_records.clear();
   dormant_carried.clear();
@@ -385,7 +377,7 @@ Footprint Contacts::footprint() const noexcept {
   footprint.results += bytes_of(s.history.pair, s.history.point);
   for (const Bytes& bytes :
        {s.before.bytes(), s.dormant.bytes(), s.records.bytes(), s.records_before.bytes(),
-        s.carried.bytes(), s.carried_before.bytes(), s.dormant_records.bytes(),
+        s.known.bytes(), s.carried.bytes(), s.carried_before.bytes(), s.dormant_records.bytes(),
         s.dormant_carried.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
         s.shown_again.bytes(), s.sums.bytes(), s.history.taken.bytes(), s.history.pose.bytes()}) {
     footprint.scratch += bytes;

@@ -12,7 +12,7 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
+#include <span>
 #include <utility>
 
 namespace winnow {
@@ -21,7 +21,14 @@ namespace {
 constexpr std::string_view kContactsMagic = "WINNOWCT";
 constexpr std::uint32_t kContactsVersion = 1;
 
-static_assert(sizeof(PairRecord) == 16 && sizeof(EndedContact) == 32);
+/// A record as it is saved.
+struct SavedRecord {
+  BodyPair pair;
+  std::uint32_t code;
+  std::uint32_t shown;
+};
+
+static_assert(sizeof(SavedRecord) == 16 && sizeof(EndedContact) == 32);
 
 /// Calls visit(column) for all columns of a frame but runs and keys, whatever its level.
 template <typename Frame, typename Visit>
@@ -58,7 +65,7 @@ class ContactsWriter {
     out_.put(std::uint64_t{contacts.carried_count});
     put_frame(contacts.frame, contacts.records, contacts.carried);
     put_ended(contacts.ended);
-    const bool sleeps = !contacts.dormant_records.empty();
+    const bool sleeps = contacts.dormant_records.size() != 0;
     out_.put(sleeps);
     if (sleeps) put_frame(contacts.dormant, contacts.dormant_records, contacts.dormant_carried);
     put_column(contacts.history.pair);
@@ -76,7 +83,7 @@ class ContactsWriter {
     out_.put(key.id);
     out_.put(scene_.keys.is_valid(key) ? 0U : key.stamp);
   }
-  void put_frame(const ContactFrame& frame, const Column<PairRecord>& records,
+  void put_frame(const ContactFrame& frame, const PairRecords& records,
                  const Column<CarriedPair>& carried) noexcept {
     out_.put(std::uint64_t{frame.pairs()});
     for (const Column<Key>& keys : frame.key) {
@@ -90,7 +97,7 @@ class ContactsWriter {
       out_.put(run.first);
       out_.put(run.count);
     }
-    put_column(records);
+    put_records(frame, records);
     out_.put(std::uint64_t{carried.size()});
     for (const CarriedPair& one : carried) {
       out_.put_bytes(&one.relative, sizeof one.relative);
@@ -102,6 +109,23 @@ class ContactsWriter {
       out_.put(one.from_b);
       out_.put(one.widened);
     }
+  }
+  // Those that are not kept are what the frame shows.
+  void put_records(const ContactFrame& frame, const PairRecords& records) noexcept {
+    const bool are_kept = records.size() != 0;
+    out_.put(std::uint64_t{are_kept ? records.size() : frame.pairs()});
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      put_record(records.order[r].bodies(), records.order[r].code(), records.shown_of(r));
+    }
+    for (const ContactRun& run : std::span(frame.runs.data(), are_kept ? 0 : frame.runs.size())) {
+      const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
+      for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+        put_record({frame.key[0][i].id, frame.key[1][i].id}, code, i);
+      }
+    }
+  }
+  void put_record(const BodyPair& pair, std::uint32_t code, std::uint32_t shown) noexcept {
+    for (const std::uint32_t number : {pair.a, pair.b, code, shown}) out_.put(number);
   }
   void put_ended(const Column<EndedContact>& ended) noexcept {
     out_.put(std::uint64_t{ended.size()});
@@ -161,7 +185,7 @@ class ContactsReader {
     return column.resize(static_cast<std::size_t>(count)) || in_.refuse_memory();
   }
 
-  [[nodiscard]] bool read_frame(ContactFrame& frame, Column<PairRecord>& records,
+  [[nodiscard]] bool read_frame(ContactFrame& frame, PairRecords& records,
                                 Column<CarriedPair>& carried) noexcept {
     const auto pairs = in_.get<std::uint64_t>();
     for (Column<Key>& keys : frame.key) {
@@ -177,11 +201,37 @@ class ContactsReader {
       run.first = in_.get<std::uint32_t>();
       run.count = in_.get<std::uint32_t>();
     }
-    (void)in_.get_array(records);
+    Column<SavedRecord> saved(frame.event.memory());
+    (void)in_.get_array(saved);
     if (!read_carried(carried)) return false;
-    return (has_good_columns(frame) && are_good(frame, records) &&
-            carried.size() == (carries_ ? records.size() : 0)) ||
-           in_.fail();
+    const bool good = has_good_columns(frame) && are_good(frame, saved) &&
+                      carried.size() == (carries_ ? saved.size() : 0);
+    return good ? take(saved, frame, records) : in_.fail();
+  }
+
+  /// What was found to be good.
+  [[nodiscard]] bool take(const Column<SavedRecord>& saved, const ContactFrame& frame,
+                          PairRecords& records) noexcept {
+    KnownBodies& known = contacts_.known;
+    const std::size_t bodies = scene_.keys.slot_count();
+    const std::size_t noted = known.stamp.size();
+    if (!records.reserve(saved.size()) || !known.stamp.resize(bodies) ||
+        !known.data.resize(bodies)) {
+      return in_.refuse_memory();
+    }
+    std::fill(known.stamp.begin() + noted, known.stamp.end(), 0U);
+    std::fill(known.data.begin() + noted, known.data.end(), ClientData{0});
+    for (const SavedRecord& record : saved) {
+      records.push_back_within_room(PairOrder::of(record.code, record.pair), record.shown);
+    }
+    for (int side = 0; side < 2; ++side) {
+      for (std::size_t i = 0; i < frame.pairs(); ++i) {
+        const Key key = frame.key[side][i];
+        known.stamp[key.id] = key.stamp;
+        known.data[key.id] = frame.data[side][i];
+      }
+    }
+    return true;
   }
 
   [[nodiscard]] bool read_carried(Column<CarriedPair>& carried) noexcept {
@@ -237,7 +287,7 @@ class ContactsReader {
   /// Runs of all pairs of what is shown; records in their order, each shown pair once, of its
   /// bodies.
   [[nodiscard]] bool are_good(const ContactFrame& frame,
-                              const Column<PairRecord>& records) noexcept {
+                              const Column<SavedRecord>& records) noexcept {
     std::size_t end = 0;
     for (const ContactRun& run : frame.runs) {
       if (run.first != end || run.kind_a >= kShapeKinds || run.kind_b >= kShapeKinds) {
@@ -247,13 +297,13 @@ class ContactsReader {
     }
     if (&frame == &contacts_.frame && end != frame.pairs()) return false;
     const std::size_t bodies = scene_.keys.slot_count();
-    const auto order = [](const PairRecord& r) { return std::tuple(r.code, r.pair.a, r.pair.b); };
+    const auto order = [](const SavedRecord& r) { return PairOrder::of(r.code, r.pair); };
     Column<std::uint8_t> seen(frame.event.memory());
     if (!seen.resize(frame.pairs())) return in_.refuse_memory();
     std::fill(seen.begin(), seen.end(), std::uint8_t{0});
     std::size_t shown = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      const PairRecord& record = records[i];
+      const SavedRecord& record = records[i];
       const bool is_pair = record.code < KindPairs::kCount && record.pair.a < bodies &&
                            record.pair.b < bodies && record.pair.a != record.pair.b;
       if (!is_pair || (i > 0 && !(order(records[i - 1]) < order(record)))) return false;

@@ -2,23 +2,23 @@
 // where they have hardly moved, told where they have ended.
 
 #include <winnow/core/rotation.h>
+#include "core/sort/stretches.h"
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/motion_bound.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 namespace winnow {
 namespace {
 
+constexpr std::size_t kPairsPerListing = 8192;
+
 // Relative error of turning a point in float, once.
 constexpr double kTurnError = 4.0e-7;
-
-[[nodiscard]] auto order_of(const PairRecord& record) noexcept {
-  return std::tuple(record.code, record.pair.a, record.pair.b);
-}
 
 // How far points of a body of this radius move when it turns.
 [[nodiscard]] double turn_bound(const double (&from)[4], const double (&to)[4],
@@ -48,11 +48,26 @@ struct PoseChange {
   }
 };
 
-[[nodiscard]] std::uint32_t code_of(const SceneState& scene, const BodyPair& pair) noexcept {
-  return KindPairs::index(scene.shape[pair.a], scene.shape[pair.b]);
-}
-
 }  // namespace
+
+// Of a frame whose records are not kept.
+bool Collision::list_records() {
+  ContactsState& c = contacts_;
+  known_last_ = shown_last_ = static_cast<std::uint32_t>(c.frame.pairs());
+  if (shown_last_ == 0 || c.records.size() != 0) return true;
+  if (!resize_steadily(c.records.order, shown_last_)) return false;
+  for (const ContactRun& run : c.frame.runs) {
+    const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
+    for_stretches(scene_.options.execution, run.count, kPairsPerListing,
+                  [&](std::size_t first, std::size_t end) {
+                    for (std::size_t i = run.first + first; i < run.first + end; ++i) {
+                      const BodyPair bodies{c.frame.key[0][i].id, c.frame.key[1][i].id};
+                      c.records.order[i] = PairOrder::of(code, bodies);
+                    }
+                  });
+  }
+  return true;
+}
 
 // Pairs of bodies that slept are put back among those of the last frame, when bodies may have
 // woken.
@@ -69,49 +84,55 @@ bool Collision::wake_dormant() {
            static_cast<std::uint32_t>(c.frame.points.size())};
   if (!c.frame.resize(level_, at.pair + count, at.manifold + c.dormant.manifolds(),
                       at.point + c.dormant.points.size()) ||
-      !c.records_before.resize(c.records.size() + count) ||
+      !c.records_before.reserve(c.records.size() + count) ||
       (carries_ && !c.carried_before.resize(c.records.size() + count))) {
     return false;
   }
-  for (PairRecord& record : c.dormant_records) {
-    c.frame.copy(c.dormant, record.shown, 1, at);
-    const Place taken = c.dormant.extent(record.shown);
-    record.shown = at.pair;
+  for (std::uint32_t& shown : c.dormant_records.shown) {
+    c.frame.copy(c.dormant, shown, 1, at);
+    const Place taken = c.dormant.extent(shown);
+    shown = at.pair;
     at += taken;
   }
   c.frame.close(level_, at);
+  known_last_ = at.pair;
+  merge_dormant();
+  return true;
+}
+
+// Both in the order of pairs. Room was made.
+void Collision::merge_dormant() noexcept {
+  ContactsState& c = contacts_;
+  const PairRecords& slept = c.dormant_records;
+  c.records_before.clear();
   std::size_t one = 0;
   std::size_t other = 0;
-  for (std::size_t i = 0; i < c.records_before.size(); ++i) {
-    const bool first =
-        other == count ||
-        (one < c.records.size() && order_of(c.records[one]) < order_of(c.dormant_records[other]));
+  for (std::size_t i = 0; i < c.records.size() + slept.size(); ++i) {
+    const bool first = other == slept.size() ||
+                       (one < c.records.size() && c.records.order[one] < slept.order[other]);
     if (carries_) c.carried_before[i] = first ? c.carried[one] : c.dormant_carried[other];
-    c.records_before[i] = first ? c.records[one++] : c.dormant_records[other++];
+    const PairRecords& from = first ? c.records : slept;
+    const std::size_t at = first ? one++ : other++;
+    c.records_before.push_back_within_room(from.order[at], from.shown_of(at));
   }
   c.records.swap(c.records_before);
   c.carried.swap(c.carried_before);
   c.dormant_records.clear();
   c.dormant_carried.clear();
-  return true;
 }
 
 // Which record each pair of the batch had. Both are sorted alike. Room was made.
-void Collision::match(const Column<PairRecord>& records) noexcept {
-  const auto order_of_pair = [&](std::uint32_t i) {
-    const BodyPair pair = scene_.pairs[i];
-    return std::tuple(code_of(scene_, pair), pair.a, pair.b);
-  };
+void Collision::match(const PairRecords& records) noexcept {
+  const PairOrder* const begin = records.order.begin();
+  const PairOrder* const none = records.order.end();
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
-    const PairRecord* record = std::lower_bound(
-        records.begin(), records.end(), order_of_pair(first),
-        [](const PairRecord& r, const auto& order) { return order_of(r) < order; });
+    const PairOrder* record = std::lower_bound(begin, none, scene_.pairs.order(first));
     for (std::uint32_t i = first; i < end; ++i) {
-      const auto order = order_of_pair(i);
-      while (record != records.end() && order_of(*record) < order) ++record;
-      const bool found = record != records.end() && order_of(*record) == order;
+      const PairOrder order = scene_.pairs.order(i);
+      while (record != none && *record < order) ++record;
+      const bool found = record != none && *record == order;
       contacts_.old_record[i - known_from_] =
-          found ? static_cast<std::uint32_t>(record++ - records.begin()) : kNoEntry;
+          found ? static_cast<std::uint32_t>(record++ - begin) : kNoEntry;
     }
   });
 }
@@ -168,14 +189,14 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
   if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
   CarriedPair& carried = c.carried[record];
-  const PairRecord& known = c.records[record];
+  const std::uint32_t shown = c.records.shown_of(record);
   const Pose& a = scene_.pose[bodies.a];
   const Pose& b = scene_.pose[bodies.b];
   const Pose now = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
   const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
                        static_cast<double>(carried.drift);
   if (!(moved <= carried.limit)) return false;
-  if (known.shown == kNoEntry) return true;
+  if (shown == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
       turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
@@ -184,12 +205,12 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
     const double drift = static_cast<double>(carried.radius_a) * kTurnError;
     if (!(moved + drift <= carried.limit)) return false;
     carried.drift = round_up(static_cast<double>(carried.drift) + drift);
-    turn(carried, known, unit.orientation);
+    turn(carried, shown, unit.orientation);
   }
   if (!carried.widened) {
     carried.widened = true;
-    const std::uint32_t end = c.frame.manifold_first[known.shown + 1];
-    for (std::uint32_t m = c.frame.manifold_first[known.shown]; m < end; ++m) {
+    const std::uint32_t end = c.frame.manifold_first[shown + 1];
+    for (std::uint32_t m = c.frame.manifold_first[shown]; m < end; ++m) {
       c.frame.error_bound[m] += scene_.options.carry_over;
     }
   }
@@ -197,12 +218,11 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
 }
 
 // Normals and points follow body a.
-void Collision::turn(CarriedPair& carried, const PairRecord& record,
-                     const double (&to)[4]) noexcept {
+void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
   const PoseChange turn(to, carried.turn);
-  const std::uint32_t first = frame.manifold_first[record.shown];
-  const std::uint32_t end = frame.manifold_first[record.shown + 1];
+  const std::uint32_t first = frame.manifold_first[shown];
+  const std::uint32_t end = frame.manifold_first[shown + 1];
   for (std::uint32_t m = first; m < end; ++m) {
     turn.apply(frame.normal, m);
     if (level_ == ContactLevel::distance) turn.apply(frame.point, m);
@@ -215,12 +235,12 @@ void Collision::turn(CarriedPair& carried, const PairRecord& record,
   std::copy_n(to, 4, carried.turn);
 }
 
-// Notes what a pair was found to be. Room was made.
+// Notes what a pair was found to be, to be carried over. Room was made.
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
-  c.records[carries_ ? pair : shown] = {bodies, code_of(scene_, bodies), shown};
-  if (!carries_) return;
+  c.records.order[pair] = scene_.pairs.order(pair);
+  c.records.shown[pair] = shown;
   if (origin_of(pair) == Origin::carried) {
     if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
     return;
@@ -242,10 +262,12 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
 }
 
 // A pair that is not looked at because neither body is dynamic any more.
-bool Collision::put_to_sleep(std::uint32_t old_shown) const noexcept {
-  for (const Column<Key>& keys : contacts_.before.key) {
-    const Key key = keys[old_shown];
-    if (!scene_.keys.is_valid(key) || scene_.motion[key.id] == Motion::dynamic) return false;
+bool Collision::sleeps(const BodyPair& pair) const noexcept {
+  for (const std::uint32_t body : {pair.a, pair.b}) {
+    if (!scene_.keys.is_valid(contacts_.known.key(body)) ||
+        scene_.motion[body] == Motion::dynamic) {
+      return false;
+    }
   }
   return true;
 }
@@ -253,43 +275,87 @@ bool Collision::put_to_sleep(std::uint32_t old_shown) const noexcept {
 // Pairs of the last frame that are not in this one have ended, or sleep.
 bool Collision::close_frame() {
   ContactsState& c = contacts_;
-  const ContactFrame& before = c.before;
-  c.ended.clear();
   // Bodies fall asleep by changing their partition, so that pairs are found anew.
   const bool may_sleep = same_level_ && !same_pairs_ && c.regroupings != scene_.regroupings;
-  if (may_sleep && (!c.dormant_records.reserve(before.pairs()) ||
-                    (carries_ && !c.dormant_carried.reserve(before.pairs())))) {
-    return false;
-  }
-  Place room;
-  for (std::size_t r = 0; may_sleep && r < c.records_before.size(); ++r) {
-    const PairRecord record = c.records_before[r];
-    if (record.shown == kNoEntry || c.shown_again[record.shown] != 0) continue;
-    if (!put_to_sleep(record.shown)) continue;
-    c.shown_again[record.shown] = 1;
-    room += before.extent(record.shown);
-    (void)c.dormant_records.push_back(record);
-    if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
-  }
-  for (std::size_t i = 0; i < before.pairs(); ++i) {
-    if (c.shown_again[i] == 0 && !c.ended.push_back({before.key[0][i], before.key[1][i],
-                                                     before.data[0][i], before.data[1][i]})) {
-      return false;
-    }
-  }
+  if ((may_sleep && !put_to_sleep()) || !list_ended()) return false;
   c.is_settled =
       c.ended.empty() && std::all_of(c.frame.event.begin(), c.frame.event.end(),
                                      [](ContactEvent e) { return e == ContactEvent::persisted; });
+  return true;
+}
+
+bool Collision::put_to_sleep() {
+  ContactsState& c = contacts_;
+  PairRecords& slept = c.dormant_records;
+  if (!slept.reserve(known_last_) || (carries_ && !c.dormant_carried.reserve(known_last_))) {
+    return false;
+  }
+  Place room;
+  for (std::size_t r = 0; r < c.records_before.size(); ++r) {
+    const PairOrder order = c.records_before.order[r];
+    const std::uint32_t shown = c.records_before.shown_of(r);
+    if (shown == kNoEntry || c.shown_again[shown] != 0 || !sleeps(order.bodies())) continue;
+    c.shown_again[shown] = 1;
+    room += c.before.extent(shown);
+    slept.push_back_within_room(order, shown);
+    if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
+  }
   if (room.pair == 0) return true;
   if (!c.dormant.resize(level_, room.pair, room.manifold, room.point)) return false;
   Place at;
-  for (PairRecord& record : c.dormant_records) {
-    c.dormant.copy(before, record.shown, 1, at);
-    const Place taken = before.extent(record.shown);
-    record.shown = at.pair;
-    at += taken;
+  for (std::size_t i = 0; i < slept.size(); ++i) {
+    const BodyPair bodies = slept.order[i].bodies();
+    const std::uint32_t ids[2] = {bodies.a, bodies.b};
+    for (int side = 0; side < 2; ++side) {
+      c.dormant.key[side][at.pair] = c.known.key(ids[side]);
+      c.dormant.data[side][at.pair] = c.known.data[ids[side]];
+    }
+    c.dormant.event[at.pair] = ContactEvent::persisted;
+    const std::uint32_t shown = std::exchange(slept.shown[i], at.pair);
+    c.dormant.copy(c.before, shown, 1, at);
+    at += c.before.extent(shown);
   }
   c.dormant.close(level_, at);
+  return true;
+}
+
+// In the order in which they were shown, those that slept last.
+bool Collision::list_ended() {
+  ContactsState& c = contacts_;
+  c.ended.clear();
+  const PairRecords& known = same_pairs_ ? c.records : c.records_before;
+  const auto list = [&](bool slept) {
+    for (std::size_t r = 0; r < known.size(); ++r) {
+      const std::uint32_t shown = known.shown_of(r);
+      if (shown == kNoEntry || (shown >= shown_last_) != slept || c.shown_again[shown] != 0) {
+        continue;
+      }
+      const auto [a, b] = known.order[r].bodies();
+      const EndedContact ended{c.known.key(a), c.known.key(b), c.known.data[a], c.known.data[b]};
+      if (!c.ended.push_back(ended)) return false;
+    }
+    return true;
+  };
+  return list(false) && (known_last_ == shown_last_ || list(true));
+}
+
+// Who the bodies are, where any touch; which has changed only if some came or went.
+bool Collision::note_bodies() {
+  KnownBodies& known = contacts_.known;
+  if (contacts_.frame.pairs() == 0 && contacts_.dormant_records.size() == 0) {
+    known.clear();
+    return true;
+  }
+  const std::span<const std::uint32_t> stamps = scene_.keys.stamps();
+  const std::span<const ClientData> data = scene_.keys.all_client_data();
+  if (known.stamp.size() == stamps.size() && known.live == scene_.keys.size() &&
+      contacts_.regroupings == scene_.regroupings) {
+    return true;
+  }
+  if (!known.stamp.resize(stamps.size()) || !known.data.resize(data.size())) return false;
+  std::ranges::copy(stamps, known.stamp.begin());
+  std::ranges::copy(data, known.data.begin());
+  known.live = scene_.keys.size();
   return true;
 }
 

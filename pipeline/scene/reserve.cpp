@@ -163,13 +163,13 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
   if (!frame.reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
-  // What is kept of the last frame, and of pairs that sleep, are pairs alone unless more is read.
+  // Of the last frame nothing is kept, and of pairs that sleep pairs alone, unless more is read.
   const bool has_more = carries || remembers_places;
   const std::size_t manifolds = has_more ? room.manifolds : 0;
   const std::size_t points_kept = has_more ? room.points : 0;
-  if (!before.reserve(has_more ? room.level : ContactLevel::pairs, shown, manifolds, points_kept,
-                      pages) ||
-      (may_sleep && !dormant.reserve(room.level, shown, manifolds, points_kept, pages))) {
+  if ((has_more && !before.reserve(room.level, shown, manifolds, points_kept, pages)) ||
+      (may_sleep && !dormant.reserve(room.level, shown, manifolds, points_kept, pages)) ||
+      !known.reserve(bodies_of(room), pages)) {
     return false;
   }
   const std::size_t points = room.level == ContactLevel::manifold ? room.points : 0;
@@ -182,8 +182,13 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const std::size_t looked_at = carries ? room.pairs : batch;
   const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch;
   const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
-  return reserve_all(shown, pages, ended, shown_again, dormant_records) &&
-         reserve_all(remembered, pages, records, records_before) &&
+  // Without carry-over the two take turns with one column, whose order alone is kept.
+  const bool two_orders = carries || may_sleep;
+  return reserve_all(shown, pages, ended, shown_again) &&
+         records.order.reserve(remembered, pages) &&
+         records_before.order.reserve(two_orders ? remembered : 0, pages) &&
+         reserve_all(two_orders ? remembered : 0, pages, records.shown, records_before.shown) &&
+         (!may_sleep || dormant_records.reserve(shown, pages)) &&
          reserve_all(carried_over, pages, carried, carried_before) &&
          dormant_carried.reserve(carries ? shown : 0, pages) && source.reserve(asked, pages) &&
          origin.reserve(told, pages) && old_record.reserve(looked_at, pages) &&
