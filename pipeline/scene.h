@@ -149,9 +149,11 @@ struct WINNOW_API SceneFootprint {
 
 /// Counters of the last `collide`, never timings, so that they repeat exactly.
 struct SceneStatistics {
-  std::uint64_t boxes_updated = 0;    ///< boxes that partitions were given since the one before
-  std::uint64_t body_pairs = 0;       ///< pairs that the broad phase found
-  std::uint64_t carried = 0;          ///< of them kept what they had
+  std::uint64_t boxes_updated = 0;  ///< boxes that partitions were given since the one before
+  std::uint64_t body_pairs = 0;     ///< pairs that the broad phase found
+  /// Of them not asked about any further since balls around the bodies are apart; 0 at level pairs.
+  std::uint64_t balls_apart = 0;
+  std::uint64_t carried = 0;          ///< of the others kept what they had
   std::uint64_t primitive_pairs = 0;  ///< pairs of parts that the mid phase made
   NarrowStatistics convex;            ///< narrow phase, pairs of convex bodies
   NarrowStatistics parts;             ///< narrow phase, pairs of parts

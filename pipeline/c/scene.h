@@ -220,6 +220,7 @@ typedef struct winnow_scene_counts {
   uint64_t part_pairs;  ///< narrow phase, pairs of parts
   uint64_t part_recomputed;
   uint64_t part_exact;
+  uint64_t balls_apart;  ///< of body_pairs, not asked about since balls around them are apart
 } winnow_scene_counts;
 WINNOW_C_API winnow_status winnow_scene_statistics(const winnow_scene* scene,
                                                    winnow_scene_counts* statistics);

@@ -270,6 +270,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
   py::dict result;
   result["boxes_updated"] = stats.boxes_updated;
   result["body_pairs"] = stats.body_pairs;
+  result["balls_apart"] = stats.balls_apart;
   result["carried"] = stats.carried;
   result["primitive_pairs"] = stats.primitive_pairs;
   result["convex"] = narrow_statistics(stats.convex);

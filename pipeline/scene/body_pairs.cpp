@@ -6,11 +6,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace winnow {
 namespace {
 
 constexpr std::size_t kPairsPerStretch = 8192;
+constexpr std::size_t kBits = 64;
+constexpr std::size_t kWordsPerStretch = kPairsPerStretch / kBits;
+
+[[nodiscard]] std::size_t stretches_of(const BodyPairs::Source& source) noexcept {
+  return (source.pairs.size() + kPairsPerStretch - 1) / kPairsPerStretch;
+}
 
 /// A pair as one number, which sorts as pairs are sorted.
 struct Packing {
@@ -28,69 +35,109 @@ struct Packing {
         mirrored ? KindPairs::index(other, one) : KindPairs::index(one, other);
     return (code << bits | a) << bits | b;
   }
-  /// The least number of a code.
-  [[nodiscard]] std::uint64_t first(std::uint32_t code) const noexcept {
-    return std::uint64_t{code} << 2 * bits;
-  }
 };
 
-/// Those that a selection wants, packed from `item` on; returns their end.
-std::uint64_t* pack_selected(const BodyPairs::Source& source, const ShapeId* shapes,
-                             const Packing& packing, const PairSelection& selection,
-                             std::uint64_t* item) {
-  for (const Pair& pair : source.pairs) {
-    const BodyPair bodies{source.first_body[pair.first], source.second_body[pair.second]};
-    if (!selection.wants(selection.context, bodies.a, bodies.b)) continue;
-    *item++ = packing.pack(shapes, bodies, {selection.place[bodies.a], selection.place[bodies.b]});
+/// Stretches of the pairs of all sources, one source after the other.
+template <typename Body>
+void for_source_stretches(std::span<const BodyPairs::Source> sources, const Execution& execution,
+                          Body&& body) {
+  std::size_t before = 0;
+  for (const BodyPairs::Source& source : sources) {
+    for_stretches(execution, source.pairs.size(), kPairsPerStretch,
+                  [&](std::size_t first, std::size_t end) {
+                    body(source, before + first / kPairsPerStretch, first, end);
+                  });
+    before += stretches_of(source);
   }
-  return item;
 }
 
 }  // namespace
 
-std::size_t BodyPairs::pack(std::span<const Source> sources, const ShapeId* shapes,
-                            const Execution& execution, const PairSelection* selection) {
-  const Packing packing{bits_};
-  std::uint64_t* item = items_[0].data();
-  for (const Source& source : sources) {
-    if (selection != nullptr) {
-      item = pack_selected(source, shapes, packing, *selection, item);
-      continue;
-    }
-    for_stretches(
-        execution, source.pairs.size(), kPairsPerStretch, [&](std::size_t first, std::size_t end) {
-          for (std::size_t i = first; i < end; ++i) {
-            const Pair& pair = source.pairs[i];
-            const BodyPair bodies{source.first_body[pair.first], source.second_body[pair.second]};
-            item[i] = packing.pack(shapes, bodies, bodies);
-          }
-        });
-    item += source.pairs.size();
-  }
-  return static_cast<std::size_t>(item - items_[0].data());
-}
-
-Status BodyPairs::assign(std::span<const Source> sources, const ShapeId* shapes, std::size_t bodies,
-                         const Execution& execution, const PairSelection* selection) {
-  std::size_t count = 0;
-  for (const Source& source : sources) count += source.pairs.size();
-  if (!resize_steadily(items_[0], count) || !resize_steadily(items_[1], count)) {
+Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
+                         const Execution& execution) {
+  std::size_t stretches = 0;
+  for (const Source& source : sources) stretches += stretches_of(source);
+  if (!resize_steadily(wanted_, stretches * kWordsPerStretch) ||
+      !resize_steadily(counts_, stretches)) {
     clear();
     return Status::out_of_memory;
   }
-  bits_ = static_cast<unsigned>(std::bit_width(bodies));
-  size_ = pack(sources, shapes, execution, selection);
+  are_all_ = known.balls == nullptr;
+  choose(sources, known, execution);
+  if (!resize_steadily(items_[0], size_) || !resize_steadily(items_[1], size_)) {
+    clear();
+    return Status::out_of_memory;
+  }
+  bits_ = static_cast<unsigned>(std::bit_width(known.bodies));
+  pack(sources, known, execution);
   const unsigned code_bits = std::bit_width(KindPairs::kCount);
   const std::uint64_t* const sorted =
       radix_sort(items_[0].data(), items_[1].data(), size_, 2 * bits_ + code_bits, execution, 0);
   sorted_ = sorted == items_[0].data() ? 0 : 1;
-  for (std::uint32_t code = 0; code <= KindPairs::kCount; ++code) {
-    first_[code] = static_cast<std::uint32_t>(
-        std::lower_bound(sorted, sorted + size_, Packing{bits_}.first(code)) - sorted);
-  }
-  if (selection != nullptr) name_bodies(*selection, execution);
+  if (known.selection != nullptr) name_bodies(*known.selection, execution);
   ++serial_;
   return Status::ok;
+}
+
+// Which pairs are taken, and where those of each stretch are put.
+void BodyPairs::choose(std::span<const Source> sources, const Known& known,
+                       const Execution& execution) noexcept {
+  const PairSelection* const selection = known.selection;
+  for_source_stretches(
+      sources, execution,
+      [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
+        std::uint64_t* word = wanted_.data() + stretch * kWordsPerStretch;
+        Count count{};
+        for (; first < end; first += kBits) {
+          std::uint64_t bits = 0;
+          const std::size_t last = std::min(end, first + kBits);
+          for (std::size_t i = first; i < last; ++i) {
+            const auto [a, b] = source.bodies(i);
+            const bool apart = known.balls != nullptr && are_apart(known.balls[a], known.balls[b]);
+            const bool wanted =
+                !apart && (selection == nullptr || selection->wants(selection->context, a, b));
+            count.apart += apart ? 1U : 0U;
+            bits |= std::uint64_t{wanted ? 1U : 0U} << (i - first);
+          }
+          count.taken += static_cast<std::uint32_t>(std::popcount(bits));
+          *word++ = bits;
+        }
+        counts_[stretch] = count;
+      });
+  size_ = apart_ = 0;
+  for (Count& count : counts_) {
+    apart_ += count.apart;
+    const std::uint32_t taken = std::exchange(count.taken, static_cast<std::uint32_t>(size_));
+    size_ += taken;
+  }
+}
+
+void BodyPairs::pack(std::span<const Source> sources, const Known& known,
+                     const Execution& execution) noexcept {
+  const Packing packing{bits_};
+  const PairSelection* const selection = known.selection;
+  for_source_stretches(
+      sources, execution,
+      [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
+        const std::uint64_t* word = wanted_.data() + stretch * kWordsPerStretch;
+        std::uint64_t* item = items_[0].data() + counts_[stretch].taken;
+        for (; first < end; first += kBits) {
+          for (std::uint64_t bits = *word++; bits != 0; bits &= bits - 1) {
+            const BodyPair bodies =
+                source.bodies(first + static_cast<std::size_t>(std::countr_zero(bits)));
+            const BodyPair places = selection == nullptr ? bodies
+                                                         : BodyPair{selection->place[bodies.a],
+                                                                    selection->place[bodies.b]};
+            *item++ = packing.pack(known.shapes, bodies, places);
+          }
+        }
+      });
+}
+
+// Each source may end with a stretch that is not full.
+bool BodyPairs::reserve_choice(std::size_t count, Pages pages) noexcept {
+  const std::size_t stretches = count / kPairsPerStretch + kMostSources;
+  return wanted_.reserve(stretches * kWordsPerStretch, pages) && counts_.reserve(stretches, pages);
 }
 
 void BodyPairs::name_bodies(const PairSelection& selection, const Execution& execution) noexcept {
@@ -106,15 +153,15 @@ void BodyPairs::name_bodies(const PairSelection& selection, const Execution& exe
 }
 
 void BodyPairs::clear() noexcept {
-  size_ = 0;
-  std::fill_n(first_, KindPairs::kCount + 1, 0U);
+  size_ = apart_ = 0;
   for (std::uint64_t& change : changes) change = ~0ULL;
   ++serial_;
 }
 
 Bytes BodyPairs::bytes() const noexcept {
-  Bytes bytes = items_[0].bytes();
-  bytes += items_[1].bytes();
+  Bytes bytes = wanted_.bytes();
+  bytes += counts_.bytes();
+  for (const Column<std::uint64_t>& items : items_) bytes += items.bytes();
   return bytes;
 }
 

@@ -29,9 +29,10 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
     return logged(Status::invalid_argument, "Scene::collide");
   }
   state_->statistics = {};
-  Status status = state_->find_pairs();
+  Status status = state_->find_pairs(level == ContactLevel::pairs);
   if (status == Status::ok) {
-    state_->statistics.body_pairs = state_->pairs.size();
+    state_->statistics.body_pairs = state_->pairs.size() + state_->pairs.apart();
+    state_->statistics.balls_apart = state_->pairs.apart();
     status = Collision(*state_, *contacts.state_, level).run();
   }
   if (status == Status::ok) {

@@ -75,7 +75,8 @@ bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
   if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body)) return false;
   if (pages == Pages::touched) {
     keys.touch();
-    touch_columns(shape, pose, motion, place, moved_at, shaped_at, stale, is_stale, chosen, left);
+    touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale, chosen,
+                  left);
     anchor.touch();
   }
   return true;

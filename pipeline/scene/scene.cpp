@@ -89,6 +89,7 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       moved_at(given.memory),
       shaped_at(given.memory),
       anchor(given.memory),
+      ball(given.memory),
       offsets(given.memory),
       layer(given.memory),
       layers(given.memory),
@@ -326,11 +327,11 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.bodies += s.keys.key_bytes();
   footprint.bodies += s.keys.client_data_bytes();
   for (const Bytes& bytes :
-       {s.shape.bytes(), s.pose.bytes(), s.motion.bytes(), s.place.bytes(), s.moved_at.bytes(),
-        s.shaped_at.bytes(), s.anchor.bytes(), s.offsets.bytes(), s.stale.bytes(),
-        s.is_stale.bytes(), s.boxes.bytes(), s.boxes_of.bytes(), s.boxes_body.bytes(),
-        s.chosen.bytes(), s.left.bytes(), s.ignored.bytes(), s.ignores.bytes(), s.layer.bytes(),
-        s.layers.bytes()}) {
+       {s.shape.bytes(),    s.pose.bytes(),       s.motion.bytes(),   s.place.bytes(),
+        s.moved_at.bytes(), s.shaped_at.bytes(),  s.anchor.bytes(),   s.ball.bytes(),
+        s.offsets.bytes(),  s.stale.bytes(),      s.is_stale.bytes(), s.boxes.bytes(),
+        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),   s.left.bytes(),
+        s.ignored.bytes(),  s.ignores.bytes(),    s.layer.bytes(),    s.layers.bytes()}) {
     footprint.bodies += bytes;
   }
   for (std::size_t i = 0; i < kMotions; ++i) {

@@ -160,6 +160,7 @@ class SceneReader {
       for_live(keys_.all_stamps(),
                [&](ObjectId body) { (void)in_.get_bytes(&column[body], sizeof column[body]); });
     });
+    scene_.ball.set_size(slots);
     scene_.place.set_size(slots);
     std::fill(scene_.place.begin(), scene_.place.end(), Key{});
     scene_.is_stale.set_size(slots);
@@ -234,6 +235,7 @@ class SceneReader {
     if (count == 0) return in_.get_bool() ? Status::invalid_argument : status_of(in_);
     if (!scene_.boxes.resize(count)) return Status::out_of_memory;
     (void)in_.get_bytes(scene_.boxes.data(), count * sizeof(PlainBox));
+    scene_.set_balls({scene_.chosen.data(), count}, set.origin);
     const Status placed = scene_.place_boxes(which, {scene_.chosen.data(), count});
     return placed == Status::ok ? read_filters(set) : placed;
   }
@@ -281,6 +283,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.moved_at.swap(read.moved_at);
   scene.shaped_at.swap(read.shaped_at);
   scene.anchor.swap(read.anchor);
+  scene.ball.swap(read.ball);
   scene.offsets.swap(read.offsets);
   scene.with_offsets = read.with_offsets;
   scene.layer.swap(read.layer);

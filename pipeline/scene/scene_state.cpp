@@ -8,6 +8,8 @@
 #include "pipeline/scene/scene_origin.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace winnow {
@@ -83,6 +85,35 @@ void SceneState::choose_origin() noexcept {
   origin = places.origin(origin);
 }
 
+// What rounding and the difference lose is added to the radius.
+BodyBall SceneState::ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept {
+  constexpr double kCenterError = 0x1p-23;
+  const Pose& at = anchor.empty() ? pose[body] : anchor[body];
+  BodyBall made;
+  double length = 0.0;
+  bool is_float = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double center = at.position[axis] - from[axis];
+    made.center[axis] = static_cast<float>(center);
+    length += std::abs(center);
+    is_float = is_float && std::isfinite(made.center[axis]);
+  }
+  const double grown = radius(body) + growth + offsets_of(body).contact +
+                       (length * kCenterError + std::numeric_limits<float>::min());
+  made.radius = is_float ? round_up(grown) : std::numeric_limits<float>::infinity();
+  return made;
+}
+
+void SceneState::set_balls(std::span<const std::uint32_t> bodies,
+                           const Eigen::Vector3d& from) noexcept {
+  for_stretches(options.execution, bodies.size(), kBodiesPerStretch,
+                [&](std::size_t first, std::size_t end) {
+                  for (const std::uint32_t body : bodies.subspan(first, end - first)) {
+                    ball[body] = ball_from(from, body);
+                  }
+                });
+}
+
 // Of what lies in `boxes`.
 BoxView SceneState::box_view() const noexcept {
   const PlainBox* const first = boxes.data();
@@ -106,6 +137,7 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   for (const std::uint32_t body : bodies) {
     if (!anchor.empty()) anchor[body] = with_unit_turn(pose[body]);
   }
+  set_balls(bodies, target.origin);
   boxes_since_look += bodies.size();
   return Status::ok;
 }
@@ -155,8 +187,8 @@ bool SceneState::reserve(std::size_t fresh) noexcept {
   const bool has_room =
       (!has_offsets() || offsets.grow(slots)) && (!with_layers || layer.grow(slots));
   return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
-         place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) && stale.grow(slots) &&
-         is_stale.grow(slots) && chosen.grow(slots) && left.grow(slots);
+         ball.grow(slots) && place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) &&
+         stale.grow(slots) && is_stale.grow(slots) && chosen.grow(slots) && left.grow(slots);
 }
 
 Key SceneState::acquire(const BodyDefinition& body) noexcept {
@@ -167,6 +199,7 @@ Key SceneState::acquire(const BodyDefinition& body) noexcept {
     pose.set_size(slots);
     motion.set_size(slots);
     place.set_size(slots);
+    ball.set_size(slots);
     moved_at.set_size(slots);
     shaped_at.set_size(slots);
     is_stale.set_size(slots);
@@ -351,6 +384,7 @@ Status SceneState::refresh_set(Motion which) {
   if (!anchor.empty()) {
     for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
   }
+  set_balls({chosen.data(), count}, origin);
   target.origin = origin;
   boxes_since_look += count;
   boxes_updated += count;
@@ -359,14 +393,15 @@ Status SceneState::refresh_set(Motion which) {
 }
 
 // Dynamic bodies among themselves, then with each other set. Asked only if something changed.
-Status SceneState::find_pairs() {
+Status SceneState::find_pairs(bool all) {
   if (const Status status = refresh(); status != Status::ok) return status;
-  bool changed = false;
+  bool changed = pairs.are_all() != all;
   for (std::size_t i = 0; i < kMotions; ++i) {
     changed = changed || pairs.changes[i] != sets[i].changes;
   }
   if (!changed) return Status::ok;
   const SceneSet& dynamic = set(Motion::dynamic);
+  static_assert(kMotions <= BodyPairs::kMostSources);
   BodyPairs::Source sources[kMotions];
   std::size_t count = 0;
   for (SceneSet& other : sets) {
@@ -380,8 +415,9 @@ Status SceneState::find_pairs() {
     if (status != Status::ok) return status;
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
   }
-  const Status status =
-      pairs.assign({sources, count}, shape.data(), keys.slot_count(), options.execution, selection);
+  const Status status = pairs.assign(
+      {sources, count}, {shape.data(), all ? nullptr : ball.data(), keys.slot_count(), selection},
+      options.execution);
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < kMotions; ++i) pairs.changes[i] = sets[i].changes;
   return Status::ok;

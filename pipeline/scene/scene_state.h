@@ -81,6 +81,9 @@ struct SceneState {
   Column<std::uint32_t> shaped_at;
   /// Pose at which the partition was given the body's box. Empty without carry-over.
   Column<Pose> anchor;
+  /// What holds the body as it was when the partition was given its box, measured from where that
+  /// is, and grown as much.
+  Column<BodyBall> ball;
   /// Empty as long as no body has had any.
   Column<ContactOffsets> offsets;
   bool with_offsets = false;
@@ -173,6 +176,9 @@ struct SceneState {
   /// The box around a shape, grown to every side, and measured from a point.
   [[nodiscard]] PlainBox bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,
                                      double grown_by) const noexcept;
+  /// The bodies' boxes are measured from `from`.
+  void set_balls(std::span<const std::uint32_t> bodies, const Eigen::Vector3d& from) noexcept;
+  [[nodiscard]] BodyBall ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept;
   [[nodiscard]] BoxView box_view() const noexcept;
   [[nodiscard]] Status make_partition_of(Motion which);
   /// Those of the given keys whose bodies are in a set, into `chosen`. Room was made.
@@ -193,7 +199,8 @@ struct SceneState {
   [[nodiscard]] Status refresh();
   [[nodiscard]] Status refresh_set(Motion which);
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
-  [[nodiscard]] Status find_pairs();
+  /// With all pairs whose boxes meet, or without those whose balls are apart.
+  [[nodiscard]] Status find_pairs(bool all);
   /// Which pairs may meet (meetings.cpp).
   [[nodiscard]] bool meets_all() const noexcept {
     return ignored.empty() && layers.all_meet() && predicate.accept == nullptr;

@@ -218,6 +218,7 @@ static void ask_state(const trace* t, winnow_scene* scene, const winnow_key* key
   winnow_scene_counts counts = {.size = sizeof counts};
   OK(winnow_scene_statistics(scene, &counts));
   note(t, "statistics", counts.body_pairs);
+  note(t, "statistics", counts.balls_apart);
   note(t, "statistics", counts.convex_pairs);
   note(t, "statistics", counts.part_pairs);
 }

@@ -189,6 +189,7 @@ void ask_state(const trace* t, const Scene& scene, std::span<const Key> keys) {
   (void)scene.debug_draw(counter);
   note(t, "drawn", counter.drawn);
   note(t, "statistics", scene.statistics().body_pairs);
+  note(t, "statistics", scene.statistics().balls_apart);
   note(t, "statistics", scene.statistics().convex.pairs);
   note(t, "statistics", scene.statistics().parts.pairs);
 }

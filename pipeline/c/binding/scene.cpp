@@ -205,7 +205,7 @@ winnow_status winnow_scene_statistics(const winnow_scene* scene, winnow_scene_co
   const winnow::SceneStatistics& own = scene->value.statistics();
   write_sized({0, own.boxes_updated, own.body_pairs, own.carried, own.primitive_pairs,
                own.convex.pairs, own.convex.recomputed, own.convex.exact, own.parts.pairs,
-               own.parts.recomputed, own.parts.exact},
+               own.parts.recomputed, own.parts.exact, own.balls_apart},
               *statistics);
   return WINNOW_OK;
 }

@@ -1,0 +1,197 @@
+// Scenes of more pairs than are answered at a time, and pairs that are left out because balls
+// around their bodies are apart.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "tests/pipeline/scene_world.h"
+#include "tests/support/meshes.h"
+
+namespace winnow::test {
+namespace {
+
+/// More than twice as many pairs as a scene answers at a time.
+constexpr std::size_t kManyPairs = 70000;
+
+/// Bodies of which nearly all meet all, with meshes among them.
+class DenseWorld {
+ public:
+  DenseWorld() : world_(450, 77), composites_(world_.pool) {
+    ShapeId mesh;
+    const MeshData data = torus(7, 5);
+    EXPECT_EQ(composites_.add_mesh(data.points(), data.indices(), mesh), Status::ok);
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+      BodyDefinition& body = world_.bodies[i];
+      body.motion = Motion::dynamic;
+      body.filter = {};
+      if (i % 40 == 0) body.shape = mesh;
+    }
+    squeeze();
+  }
+
+  /// One scene answers everything at once, for it may have floors; it has none.
+  [[nodiscard]] SceneOptions options(bool at_once) const {
+    return {.seamless_floors = at_once, .warm_start = true, .composites = &composites_};
+  }
+  [[nodiscard]] SceneWorld& world() { return world_; }
+  void stir() {
+    world_.stir(0.05);
+    squeeze();
+  }
+
+ private:
+  void squeeze() {
+    for (BodyDefinition& body : world_.bodies) {
+      for (double& p : body.pose.position) p = std::fmod(std::abs(p), 0.7);
+    }
+  }
+
+  SceneWorld world_;
+  CompositePool composites_;
+};
+
+TEST(SceneBatches, are_what_is_answered_at_once) {
+  for (const double carry_over : {0.0, 0.2}) {
+    for (const ContactLevel level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+      DenseWorld dense;
+      SceneOptions batches = dense.options(false);
+      SceneOptions at_once = dense.options(true);
+      batches.carry_over = at_once.carry_over = carry_over;
+      Scene one(dense.world().pool, batches);
+      Scene other(dense.world().pool, at_once);
+      Contacts of_one;
+      Contacts of_other;
+      SceneWorld& world = dense.world();
+      std::vector<Key> keys(world.bodies.size());
+      ASSERT_EQ(one.add(world.bodies, keys), Status::ok);
+      std::vector<Key> other_keys(world.bodies.size());
+      ASSERT_EQ(other.add(world.bodies, other_keys), Status::ok);
+      for (int frame = 0; frame < 3; ++frame) {
+        ASSERT_EQ(one.collide(level, of_one), Status::ok);
+        ASSERT_EQ(other.collide(level, of_other), Status::ok);
+        ASSERT_GT(one.statistics().body_pairs - one.statistics().balls_apart, kManyPairs);
+        ASSERT_EQ(digest(of_one), digest(of_other)) << frame;
+        ASSERT_EQ(of_one.ended().size(), of_other.ended().size());
+        dense.stir();
+        for (std::size_t i = 0; i < keys.size(); i += frame == 0 ? 1 : 7) {
+          ASSERT_EQ(one.move(keys[i], world.bodies[i].pose), Status::ok);
+          ASSERT_EQ(other.move(other_keys[i], world.bodies[i].pose), Status::ok);
+        }
+      }
+    }
+  }
+}
+
+TEST(SceneBatches, tell_where_each_pair_was) {
+  DenseWorld dense;
+  SceneWorld& world = dense.world();
+  Scene scene(world.pool, dense.options(false));
+  Contacts contacts;
+  ASSERT_EQ(scene.add(world.bodies, world.keys), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+  std::map<std::pair<ObjectId, ObjectId>, std::uint32_t> before;
+  for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+    before[{contacts.a()[i].id, contacts.b()[i].id}] = i;
+  }
+  dense.stir();
+  ASSERT_EQ(move_all(scene, world), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+  std::size_t persisted = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto was = before.find({contacts.a()[i].id, contacts.b()[i].id});
+    EXPECT_EQ(contacts.previous_pair()[i], was == before.end() ? kNoContact : was->second);
+    EXPECT_EQ(contacts.event()[i],
+              was == before.end() ? ContactEvent::begun : ContactEvent::persisted);
+    persisted += was == before.end() ? 0 : 1;
+  }
+  EXPECT_EQ(contacts.ended().size(), before.size() - persisted);
+  EXPECT_GT(persisted, 0U);
+  EXPECT_GT(contacts.ended().size(), 0U);
+}
+
+/// A size of bodies, and how far from the origin they are.
+struct Place {
+  double size;
+  double offset;
+};
+
+/// Balls and rods about as large as their distances, some of them exactly touching.
+[[nodiscard]] std::vector<BodyDefinition> bodies_at(const Place& place, ShapePool& pool,
+                                                    Random& random) {
+  std::array<ShapeId, 3> shapes;
+  EXPECT_EQ(pool.add(SphereShape{place.size}, shapes[0]), Status::ok);
+  EXPECT_EQ(pool.add(SphereShape{0.25 * place.size}, shapes[1]), Status::ok);
+  EXPECT_EQ(pool.add(CapsuleShape{0.5 * place.size, place.size}, shapes[2]), Status::ok);
+  std::vector<BodyDefinition> bodies(200);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bodies[i].shape = shapes[i % shapes.size()];
+    for (double& p : bodies[i].pose.position) {
+      const double steps = std::floor(random.uniform(0.0, 40.0)) * 0.25;
+      const double wobble = i % 2 == 0 ? 0.0 : random.uniform(-1e-7, 1e-7);
+      p = place.offset + (steps + wobble) * place.size;
+    }
+  }
+  return bodies;
+}
+
+TEST(SceneBalls, leave_out_no_pair_that_is_a_contact) {
+  Random random(91);
+  for (const Place& place : {Place{1.0, 0.0}, Place{1.0, 1e9}, Place{1e-3, 1e3}, Place{1e-18, 0.0},
+                             Place{1e-25, 0.0}, Place{1e15, -1e17}}) {
+    for (const double share : {0.0, 0.3}) {
+      ShapePool pool;
+      std::vector<BodyDefinition> bodies = bodies_at(place, pool, random);
+      if (share > 0.0) bodies[0].offsets = {place.size, 0.0};
+      Scene scene(pool, {.margin = share * place.size});
+      std::vector<Key> keys(bodies.size());
+      ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+      Contacts near;
+      ASSERT_EQ(scene.collide(ContactLevel::pairs, near), Status::ok);
+      EXPECT_EQ(scene.statistics().balls_apart, 0U);
+      std::vector<ShapeId> shapes;
+      std::vector<Pose> poses;
+      for (const BodyDefinition& body : bodies) {
+        shapes.push_back(body.shape);
+        poses.push_back(body.pose);
+      }
+      std::vector<BodyPair> pairs;
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        pairs.push_back({near.a()[i].id, near.b()[i].id});
+      }
+      NarrowPhase narrow;
+      NarrowResult answers;
+      ASSERT_EQ(
+          narrow.collide(pool, {shapes, poses}, pairs, {.level = ContactLevel::distance}, answers),
+          Status::ok);
+      std::set<std::pair<ObjectId, ObjectId>> expected;
+      for (std::size_t i = 0; i < answers.size(); ++i) {
+        const BodyPair& pair = pairs[answers.pair_of(i)];
+        const bool is_wide = share > 0.0 && (pair.a == 0 || pair.b == 0);
+        const double gap = share * place.size + (is_wide ? place.size : 0.0);
+        if (answers.distance()[i] <= gap) expected.insert({pair.a, pair.b});
+      }
+      Contacts contacts;
+      ASSERT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
+      std::set<std::pair<ObjectId, ObjectId>> shown;
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        shown.insert({contacts.a()[i].id, contacts.b()[i].id});
+      }
+      EXPECT_EQ(shown, expected) << place.size << ", " << place.offset;
+      EXPECT_EQ(scene.statistics().body_pairs, near.size());
+      if (place.size >= 1e-3) {
+        EXPECT_GT(scene.statistics().balls_apart, 0U);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
