@@ -85,22 +85,28 @@ Status Collision::show() {
   if (!open_frame()) return Status::out_of_memory;
   Place end;
   const std::uint32_t step = batch_size(scene_.options, pair_count());
-  for (std::uint32_t first = 0; first < pair_count(); first = batch_end_) {
-    batch_first_ = first;
-    batch_end_ = first + std::min(step, pair_count() - first);
+  batch_end_ = 0;
+  do {
+    batch_first_ = batch_end_;
+    batch_end_ += std::min(step, pair_count() - batch_first_);
     if (const Status status = answer(); status != Status::ok) return status;
     const StageScope stage(WorkStage::contacts);
-    if (!show_batch(end)) return Status::out_of_memory;
-  }
-  const StageScope stage(WorkStage::contacts);
+    const bool is_last = batch_end_ == pair_count();
+    if (!show_batch(end) || (is_last && !close(end))) return Status::out_of_memory;
+  } while (batch_end_ < pair_count());
+  return Status::ok;
+}
+
+// What all batches wrote, up to `end`.
+bool Collision::close(const Place& end) {
   contacts_.frame.close(level_, end);
-  if (!reserve_next() || !write_runs() || !close_frame()) return Status::out_of_memory;
+  if (!reserve_next() || !write_runs() || !close_frame()) return false;
   if (!carries_) {
     // The next call lists them anew, in the same memory.
     contacts_.records.swap(contacts_.records_before);
     contacts_.records.clear();
   }
-  return Status::ok;
+  return true;
 }
 
 // What was shown becomes what was before.

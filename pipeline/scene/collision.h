@@ -99,6 +99,7 @@ class Collision {
   [[nodiscard]] bool open_frame();
   [[nodiscard]] Status show();
   [[nodiscard]] Status answer();
+  [[nodiscard]] bool close(const Place& end);
   [[nodiscard]] bool show_batch(Place& end);
   [[nodiscard]] bool grow_frame(const Place& end);
   [[nodiscard]] bool reserve_next();
