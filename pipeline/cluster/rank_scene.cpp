@@ -456,7 +456,7 @@ void RankScene::show_events() {
 RankCounts RankScene::counts() const noexcept {
   const SceneStatistics& found = scene_.statistics();
   return {owned_, ghosts_, contacts_.size(), departed_.size(),
-          scene_.size() + found.body_pairs + found.primitive_pairs};
+          scene_.size() + (found.body_pairs - found.balls_apart) + found.primitive_pairs};
 }
 
 void RankScene::measure_work() {

@@ -79,30 +79,49 @@ Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
   return Status::ok;
 }
 
+// A bit for each of at most 64 pairs, set where their balls are apart. Without a branch: whether
+// they are is what cannot be foreseen.
+std::uint64_t BodyPairs::bits_apart(const Source& source, const BodyBall* balls, std::size_t first,
+                                    std::size_t count) noexcept {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [a, b] = source.bodies(first + i);
+    bits |= std::uint64_t{are_apart(balls[a], balls[b])} << i;
+  }
+  return bits;
+}
+
+std::uint64_t BodyPairs::bits_wanted(const Source& source, const PairSelection& selection,
+                                     std::size_t first, std::size_t count) noexcept {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [a, b] = source.bodies(first + i);
+    bits |= std::uint64_t{selection.wants(selection.context, a, b)} << i;
+  }
+  return bits;
+}
+
 // Which pairs are taken, and where those of each stretch are put.
 void BodyPairs::choose(std::span<const Source> sources, const Known& known,
                        const Execution& execution) noexcept {
-  const PairSelection* const selection = known.selection;
   for_source_stretches(
       sources, execution,
       [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
         std::uint64_t* word = wanted_.data() + stretch * kWordsPerStretch;
-        Count count{};
+        Count sum{};
         for (; first < end; first += kBits) {
-          std::uint64_t bits = 0;
-          const std::size_t last = std::min(end, first + kBits);
-          for (std::size_t i = first; i < last; ++i) {
-            const auto [a, b] = source.bodies(i);
-            const bool apart = known.balls != nullptr && are_apart(known.balls[a], known.balls[b]);
-            const bool wanted =
-                !apart && (selection == nullptr || selection->wants(selection->context, a, b));
-            count.apart += apart ? 1U : 0U;
-            bits |= std::uint64_t{wanted ? 1U : 0U} << (i - first);
+          const std::size_t count = std::min(end - first, kBits);
+          const std::uint64_t apart =
+              known.balls != nullptr ? bits_apart(source, known.balls, first, count) : 0;
+          std::uint64_t wanted = ~std::uint64_t{0} >> (kBits - count) & ~apart;
+          if (known.selection != nullptr) {
+            wanted &= bits_wanted(source, *known.selection, first, count);
           }
-          count.taken += static_cast<std::uint32_t>(std::popcount(bits));
-          *word++ = bits;
+          sum.apart += static_cast<std::uint32_t>(std::popcount(apart));
+          sum.taken += static_cast<std::uint32_t>(std::popcount(wanted));
+          *word++ = wanted;
         }
-        counts_[stretch] = count;
+        counts_[stretch] = sum;
       });
   size_ = apart_ = 0;
   for (Count& count : counts_) {
