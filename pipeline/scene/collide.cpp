@@ -8,6 +8,7 @@
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
 
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -81,6 +82,12 @@ std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pai
   return options.seamless_floors ? all : std::min(all, kPairsPerBatch);
 }
 
+// A few pairs more than before need no more room.
+std::size_t Collision::batch_room(const SceneOptions& options, std::size_t pairs) noexcept {
+  const std::size_t batch = batch_size(options, pairs);
+  return batch == 0 || batch > kPairsPerBatch ? batch : std::bit_ceil(batch);
+}
+
 Status Collision::show() {
   if (!open_frame()) return Status::out_of_memory;
   Place end;
@@ -136,9 +143,7 @@ bool Collision::open_frame() {
 Status Collision::answer() {
   if (!carries_) {
     known_from_ = batch_first_;
-    if (!resize_steadily(contacts_.old_record, batch_end_ - batch_first_)) {
-      return Status::out_of_memory;
-    }
+    if (!resize_for_batch(contacts_.old_record)) return Status::out_of_memory;
     match(contacts_.records_before);
   }
   if (!list_pairs()) return Status::out_of_memory;
@@ -154,11 +159,11 @@ bool Collision::list_pairs() {
   scene_.convex.clear();
   scene_.composite.clear();
   if (level_ == ContactLevel::pairs) return true;
-  const std::size_t count = batch_end_ - batch_first_;
-  if (!resize_steadily(contacts_.source, count) || !scene_.convex.reserve(count) ||
-      (!carries_ && !resize_steadily(contacts_.origin, count))) {
+  if (!resize_for_batch(contacts_.source) || !resize_for_batch(scene_.convex) ||
+      (!carries_ && !resize_for_batch(contacts_.origin))) {
     return false;
   }
+  scene_.convex.clear();
   for (std::uint32_t i = batch_first_; i < batch_end_; ++i) {
     const BodyPair pair = scene_.pairs[i];
     if (!carries_) {

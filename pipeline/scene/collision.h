@@ -23,6 +23,9 @@ class Collision {
   /// So many of a scene's pairs at a time.
   [[nodiscard]] static std::uint32_t batch_size(const SceneOptions& options,
                                                 std::size_t pairs) noexcept;
+  /// Elements of what holds one for each pair of a batch.
+  [[nodiscard]] static std::size_t batch_room(const SceneOptions& options,
+                                              std::size_t pairs) noexcept;
 
   Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept;
 
@@ -143,6 +146,11 @@ class Collision {
 
   [[nodiscard]] std::uint32_t pair_count() const noexcept {
     return static_cast<std::uint32_t>(scene_.pairs.size());
+  }
+  template <typename T>
+  [[nodiscard]] bool resize_for_batch(Column<T>& column) const noexcept {
+    return column.grow(batch_room(scene_.options, pair_count())) &&
+           column.resize(batch_end_ - batch_first_);
   }
   /// Of the batch.
   [[nodiscard]] std::size_t task_count() const noexcept {

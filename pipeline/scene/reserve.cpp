@@ -124,7 +124,10 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
       ++bodies;
     }
   }
-  if (!list_rehearsal(bodies / 2, batch)) return Status::out_of_memory;
+  if (!convex.reserve(Collision::batch_room(options, room.pairs), pages) ||
+      !list_rehearsal(bodies / 2, batch)) {
+    return Status::out_of_memory;
+  }
   const Status status =
       narrow.collide(shapes, {{ids, bodies}, {poses, bodies}}, {convex.data(), convex.size()},
                      {room.level, NarrowTier::robust, options.margin, options.execution}, answers);
@@ -180,8 +183,9 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const std::size_t carried_over = carries ? remembered : 0;
   // What may be carried over is looked at before anything is answered.
   const std::size_t batch = Collision::batch_size(options, room.pairs);
-  const std::size_t looked_at = carries ? room.pairs : batch;
-  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch;
+  const std::size_t batch_room = Collision::batch_room(options, room.pairs);
+  const std::size_t looked_at = carries ? std::max(room.pairs, batch_room) : batch_room;
+  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch_room;
   const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
   // Without carry-over the two take turns with one column, whose order alone is kept.
   const bool two_orders = carries || may_sleep;
