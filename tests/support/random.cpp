@@ -18,7 +18,7 @@ namespace {
 double scale() {
   static const double factor = [] {
     const char* text = std::getenv("WINNOW_TEST_SCALE");
-    return text != nullptr ? std::clamp(std::strtod(text, nullptr), 0.01, 1.0) : 1.0;
+    return text != nullptr ? std::clamp(std::strtod(text, nullptr), 0.01, 100.0) : 1.0;
   }();
   return factor;
 }

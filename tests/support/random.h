@@ -9,8 +9,8 @@ namespace winnow::test {
 /// The seed of every randomised test: the environment variable WINNOW_SEED, or 1.
 [[nodiscard]] std::uint64_t base_seed();
 
-/// `count`, scaled by the environment variable WINNOW_TEST_SCALE (a factor in (0, 1]; slow builds
-/// set it), at least 1.
+/// `count`, scaled by the environment variable WINNOW_TEST_SCALE (a factor in [0.01, 100]; slow
+/// builds set a small one), at least 1.
 [[nodiscard]] std::size_t scaled(std::size_t count);
 
 /// True if tests run at less than their scale.

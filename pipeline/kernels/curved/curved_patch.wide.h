@@ -124,7 +124,7 @@ class CurvedPatch {
     float x[3];
     hull::vertex_at(shape, vertex, x);
     const float doubt = hull::kFloatError * static_cast<float>(pair_.size * pair_.unit);
-    const std::uint32_t face = hull::face_across(shape, direction, x, doubt);
+    const std::uint32_t face = hull::face_across(shape, d, x, doubt);
     if (face != hull::kNoFeature) {
       const HullFace& f = shape.faces[face];
       // Of polygons with more corners than there is room for, every second (third, ...) is taken.

@@ -93,7 +93,7 @@ class HullPatch {
     float x[3];
     vertex_at(hull_, vertex, x);
     const float slack = kFloatError * static_cast<float>(pair_.size);
-    const std::uint32_t face_index = face_across(hull_, direction, x, slack);
+    const std::uint32_t face_index = face_across(hull_, outward_, x, slack);
     if (face_index != kNoFeature) return face(face_index);
     const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
     if (other != kNoFeature) return edge_alone(find_edge(hull_, vertex, other));
@@ -235,12 +235,10 @@ static inline std::uint32_t feature_at_point(const HullPair& pair, const HullCon
     if (edge != kNoFeature) return id(FeatureKind::edge, edge);
   }
   if (pair.count > 1) {
-    float direction[3];
     float x[3];
-    for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(ask.normal[k]);
     vertex_at(hull, v, x);
     const float slack = kFloatError * static_cast<float>(pair.size);
-    const std::uint32_t face = face_across(hull, direction, x, slack);
+    const std::uint32_t face = face_across(hull, ask.normal, x, slack);
     if (face != kNoFeature) return id(FeatureKind::face, face);
   }
   return id(FeatureKind::vertex, v);

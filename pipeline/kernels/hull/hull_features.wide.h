@@ -19,20 +19,42 @@ static inline std::uint32_t find_edge(const HullShape& hull, std::uint32_t v, st
   return kNoFeature;
 }
 
+/// Cosines that float may have in the wrong order differ by no more.
+inline constexpr float kTiedCosines = 1e-6F;
+
+/// `face_across` in double, for faces that are nearly one plane.
+static inline std::uint32_t tied_face_across(const HullShape& hull, const double* direction,
+                                             const float* x, float doubt) {
+  const float* const* plane = hull.plane_float;
+  std::uint32_t best = kNoFeature;
+  double most = kFaceCosine;
+  for (std::uint32_t i = 0; i < hull.face_count; ++i) {
+    const float n[3] = {plane[0][i], plane[1][i], plane[2][i]};
+    const double cosine = dot3(hull.faces[i].normal, direction);
+    if (!(cosine > most) || !(plane[3][i] - dot3(n, x) <= doubt)) continue;
+    most = cosine;
+    best = i;
+  }
+  return best;
+}
+
 /// The face most along the direction of those that pass within `doubt` of the vertex at x, if it
 /// lies across the direction.
-static inline std::uint32_t face_across(const HullShape& hull, const float* direction,
+static inline std::uint32_t face_across(const HullShape& hull, const double* direction,
                                         const float* x, float doubt) {
   const float* const* plane = hull.plane_float;
+  const Vec3<float> along{static_cast<float>(direction[0]), static_cast<float>(direction[1]),
+                          static_cast<float>(direction[2])};
   const Floats slack(doubt);
   std::uint32_t best = kNoFeature;
   auto most = static_cast<float>(kFaceCosine);
+  float next = most;
   for (std::uint32_t row = 0; row < hull.face_count; row += kLanes) {
     const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
                         Floats::load(plane[2] + row)};
-    const Floats cosine = dot(n, Vec3<float>{direction[0], direction[1], direction[2]});
+    const Floats cosine = dot(n, along);
     const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
-    Mask16 hit = bits((cosine > Floats(most)) & (below <= slack));
+    Mask16 hit = bits((cosine > Floats(next)) & (below <= slack));
     const std::uint32_t left = hull.face_count - row;
     if (left < kLanes) hit &= lanes_below(left);
     if (hit == 0) continue;
@@ -40,12 +62,17 @@ static inline std::uint32_t face_across(const HullShape& hull, const float* dire
     cosine.store(value);
     for (; hit != 0; hit &= hit - 1) {
       const unsigned lane = winnow::WINNOW_ISA_NAME::first(hit);
-      if (!(value[lane] > most)) continue;
+      if (!(value[lane] > most)) {
+        next = value[lane] > next ? value[lane] : next;
+        continue;
+      }
+      next = most;
       most = value[lane];
       best = row + lane;
     }
   }
-  return best;
+  const bool is_tied = best != kNoFeature && most - next <= kTiedCosines;
+  return is_tied ? tied_face_across(hull, direction, x, doubt) : best;
 }
 
 /// The neighbour of a vertex that lies least below it, if the edge to it lies across the direction.

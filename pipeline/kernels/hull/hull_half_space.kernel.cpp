@@ -46,15 +46,16 @@ class StandingPoints {
       : shape_(shape), up_(up) {
     add(lowest);
     limit_ = hull::dot3(up, point_[0]) + reach;
-    const float direction[3] = {static_cast<float>(-up[0]), static_cast<float>(-up[1]),
-                                static_cast<float>(-up[2])};
+    const double down[3] = {-up[0], -up[1], -up[2]};
     float x[3];
     hull::vertex_at(shape, lowest, x);
     const float doubt = hull::kFloatError * static_cast<float>(hull::reach_of(shape));
-    const std::uint32_t face = hull::face_across(shape, direction, x, doubt);
+    const std::uint32_t face = hull::face_across(shape, down, x, doubt);
     if (face != kNoFeature) {
       take_face(shape.faces[face]);
     } else {
+      const float direction[3] = {static_cast<float>(down[0]), static_cast<float>(down[1]),
+                                  static_cast<float>(down[2])};
       const std::uint32_t other = hull::neighbour_across(shape, direction, lowest, x);
       if (other != kNoFeature) add(other);
     }
