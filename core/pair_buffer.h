@@ -57,6 +57,7 @@ class WINNOW_API PairBuffer {
         heads_(std::move(other.heads_)),
         places_(std::move(other.places_)),
         state_(std::exchange(other.state_, State::loose)),
+        may_link_(other.may_link_),
         provenance_(std::exchange(other.provenance_, {})) {}
 
   /// All pairs, in the order that was asked for.
@@ -139,6 +140,7 @@ class WINNOW_API PairBuffer {
   Column<std::uint32_t> heads_;
   Column<std::uint32_t> places_;
   State state_ = State::loose;
+  bool may_link_ = true;
   Provenance provenance_;
 };
 

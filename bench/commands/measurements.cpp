@@ -467,11 +467,16 @@ class AccuracyCommand final : public PairsCommand {
 class Pipeline final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    one_of(app, "--scene", scenes_, scenes_, "Which");
+    one_of(app, "--scene", scenes_, {"pile", "terrain", "balls", "tori"}, "Which");
     one_of(app, "--level", levels_, scene_level_names(), "How much winnow is asked for");
+    app.add_flag(
+        "--costs", costs_,
+        "Instead, bytes of winnow's contacts, and what a margin costs, on the first number "
+        "of threads");
     add_threads_option(app, asked_.threads, "Numbers of threads that winnow takes");
     number(app, "--frames", asked_.frames, 1, 10'000, "Timed frames");
-    number(app, "--bodies", asked_.bodies, 1, 1e6, "Fewer or more of them in pile and terrain");
+    number(app, "--bodies", asked_.bodies, 1, 1e6,
+           "Fewer or more of them in pile, terrain and balls");
     app.add_flag("!--no-peers", asked_.peers, "Without other libraries");
     add_seed_option(app, asked_.seed);
     add_rows_options(app);
@@ -482,16 +487,27 @@ class Pipeline final : public RowsCommand {
     plan(2 * scenes_.size() * levels_.size());
     declare_scenes(results, true);
     for (const std::string& scene : scenes_) {
-      if (scene == "tori") {
+      if (costs_) {
+        step(scene, [&] { measure_costs(scene); });
+      } else if (scene == "tori") {
         step(scene, [&] { add_tori(results, asked_.frames, asked_.peers, false); });
       } else {
         measure_scene(scene);
       }
     }
     for (const char* table :
-         {"whole_scenes", "scene_ratios", "scene_levels", "tori", "mesh_builds"}) {
+         {"whole_scenes", "scene_ratios", "scene_levels", "scene_costs", "tori", "mesh_builds"}) {
       print(table);
     }
+  }
+
+  void measure_costs(const std::string& scene) {
+    if (scene == "tori") return;
+    add_scene_costs(results, {.scene = scene,
+                              .threads = asked_.threads.front(),
+                              .frames = asked_.frames,
+                              .bodies = asked_.bodies,
+                              .seed = asked_.seed});
   }
 
   /// All are asked for manifolds; winnow alone for less.
@@ -515,6 +531,7 @@ class Pipeline final : public RowsCommand {
 
   std::vector<std::string> scenes_{"pile", "terrain", "tori"};
   std::vector<std::string> levels_{"manifold"};
+  bool costs_ = false;
   PipelineMeasureOptions asked_{.machine_clock = false};
 };
 

@@ -34,6 +34,8 @@ class SceneEngine {
   virtual void frame(std::span<const Pose> poses) = 0;
   /// Of the last frame. Not timed.
   [[nodiscard]] virtual SceneFinds finds() const = 0;
+  /// That it holds after the last frame, all in all; 0 if it does not tell.
+  [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 
  protected:
   SceneEngine() = default;

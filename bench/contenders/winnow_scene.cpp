@@ -21,18 +21,19 @@ std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
 
 class WinnowScene final : public SceneEngine {
  public:
-  WinnowScene(int threads, double carry_over, ContactLevel level)
-      : execution_(execution_for(threads)), carry_over_(carry_over), level_(level) {}
+  WinnowScene(int threads, const WinnowSceneOptions& options)
+      : execution_(execution_for(threads)), options_(options) {}
 
   [[nodiscard]] std::string name() const override {
-    return carry_over_ > 0.0 ? "winnow, carrying over" : "winnow";
+    return carries_over() ? "winnow, carrying over" : "winnow";
   }
-  [[nodiscard]] bool carries_over() const override { return carry_over_ > 0.0; }
+  [[nodiscard]] bool carries_over() const override { return options_.carry_over > 0.0; }
 
   void start(const BodySet& set) override {
     composites_.emplace(set.pool);
     scene_.emplace(set.pool, SceneOptions{.execution = execution_,
-                                          .carry_over = carry_over_,
+                                          .margin = options_.margin,
+                                          .carry_over = options_.carry_over,
                                           .composites = &*composites_});
     std::vector<BodyDefinition> bodies(set.poses.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -52,15 +53,17 @@ class WinnowScene final : public SceneEngine {
 
   void frame(std::span<const Pose> poses) override {
     need(scene_->move(keys_, poses), "poses");
-    need(scene_->collide(level_, contacts_), "contacts");
+    need(scene_->collide(options_.level, contacts_), "contacts");
   }
 
   [[nodiscard]] SceneFinds finds() const override { return {contacts_.size(), contacts_.points()}; }
+  [[nodiscard]] std::size_t bytes() const override {
+    return scene_->footprint().total().reserved + contacts_.footprint().total().reserved;
+  }
 
  private:
   Execution execution_;
-  double carry_over_;
-  ContactLevel level_;
+  WinnowSceneOptions options_;
   std::optional<CompositePool> composites_;
   std::optional<Scene> scene_;
   std::vector<Key> keys_;
@@ -118,8 +121,8 @@ class WinnowMesh final : public MeshEngine {
 
 }  // namespace
 
-std::unique_ptr<SceneEngine> make_winnow_scene(int threads, double carry_over, ContactLevel level) {
-  return std::make_unique<WinnowScene>(threads, carry_over, level);
+std::unique_ptr<SceneEngine> make_winnow_scene(int threads, const WinnowSceneOptions& options) {
+  return std::make_unique<WinnowScene>(threads, options);
 }
 
 std::unique_ptr<MeshEngine> make_winnow_mesh() {

@@ -7,9 +7,15 @@
 
 namespace winnow::bench {
 
-/// winnow on a scene. What rests is carried over if `carry_over` is above 0.
+struct WinnowSceneOptions {
+  double carry_over = 0.0;  ///< what rests is carried over if this is above 0
+  ContactLevel level = ContactLevel::manifold;
+  double margin = 0.0;
+};
+
+/// winnow on a scene.
 [[nodiscard]] std::unique_ptr<SceneEngine> make_winnow_scene(
-    int threads, double carry_over, ContactLevel level = ContactLevel::manifold);
+    int threads, const WinnowSceneOptions& options = {});
 [[nodiscard]] std::unique_ptr<MeshEngine> make_winnow_mesh();
 
 }  // namespace winnow::bench

@@ -362,6 +362,11 @@ void goal_scenes(const Json& options, Lab& /*lab*/, Measured& measured) {
                             .machine_ms;
 }
 
+void goal_scene_costs(const Json& options, Lab& /*lab*/, Measured& measured) {
+  declare_scenes(measured.results);
+  add_scene_costs(measured.results, {.scene = options.at("scene")});
+}
+
 void goal_tori(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
   declare_scenes(measured.results);
   measured.machine_ms = add_tori(measured.results, 11, true, true).machine_ms;
@@ -439,6 +444,7 @@ const Measurer* find_measurer(const std::string& name) {
                                                    {"sweeps", goal_sweeps},
                                                    {"barriers", goal_barriers},
                                                    {"scenes", goal_scenes},
+                                                   {"scene_costs", goal_scene_costs},
                                                    {"tori", goal_tori},
                                                    {"mesh_rays", goal_mesh_rays},
                                                    {"flow_frames", goal_flow_frames},

@@ -46,6 +46,7 @@ std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
   for (std::size_t i = 0; i < contenders.size(); ++i) {
     timings[i].ms = std::move(ms[i]);
     timings[i].finds = contenders[i].engine->finds();
+    timings[i].bytes = contenders[i].engine->bytes();
   }
   return timings;
 }
@@ -84,6 +85,7 @@ std::vector<MeshTiming> race_meshes(std::span<const std::unique_ptr<MeshEngine>>
 namespace {
 
 constexpr std::size_t kPileBodies = 20'000;
+constexpr std::size_t kBalls = 100'000;
 constexpr std::size_t kTerrainBodies = 2'000;
 /// 200,978 triangles.
 constexpr std::uint32_t kTerrainCells = 317;
@@ -98,6 +100,7 @@ void tick(MachineClock& clock) {
 std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size_t bodies,
                                              std::uint64_t seed) {
   if (scene == "pile") return make_heap(bodies != 0 ? bodies : kPileBodies, seed);
+  if (scene == "balls") return make_balls(bodies != 0 ? bodies : kBalls, seed);
   if (bodies == 0) return make_landscape(kTerrainBodies, kTerrainCells, seed);
   const double share = static_cast<double>(bodies) / static_cast<double>(kTerrainBodies);
   const auto cells = static_cast<std::uint32_t>(std::lround(kTerrainCells * std::sqrt(share)));
@@ -116,7 +119,9 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
   std::vector<SceneContender> contenders;
   for (const int threads : options.threads) {
     contenders.push_back(
-        {make_winnow_scene(threads, options.resting ? kCarryOver : 0.0, options.level), threads});
+        {make_winnow_scene(
+             threads, {.carry_over = options.resting ? kCarryOver : 0.0, .level = options.level}),
+         threads});
   }
   if (options.peers) {
     for (std::unique_ptr<SceneEngine>& peer : make_scene_peers()) {
@@ -131,6 +136,24 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
   tick(clock);
   measured.machine_ms = clock.median_ms();
   return measured;
+}
+
+std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options) {
+  constexpr double kMargin = 0.02;
+  const std::unique_ptr<BodySet> set =
+      make_pipeline_scene(options.scene, options.bodies, options.seed);
+  std::vector<SceneCost> costs;
+  std::vector<SceneContender> contenders;
+  for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
+    for (const double margin : {0.0, kMargin}) {
+      costs.push_back({.level = level, .margin = margin, .timing = {}});
+      contenders.push_back({make_winnow_scene(options.threads, {.level = level, .margin = margin}),
+                            options.threads});
+    }
+  }
+  std::vector<SceneTiming> timings = race_scene(*set, kMoving, contenders, options.frames);
+  for (std::size_t i = 0; i < costs.size(); ++i) costs[i].timing = std::move(timings[i]);
+  return costs;
 }
 
 MeshMeasurement measure_meshes(std::size_t rounds, bool peers, bool machine_clock) {

@@ -25,6 +25,7 @@ struct SceneTiming {
   int threads = 1;
   std::vector<double> ms{};  ///< a frame
   SceneFinds finds{};        ///< in the last frame
+  std::size_t bytes = 0;     ///< that it held then
 };
 
 /// All contenders on the same frames in turns; two frames more are not timed. Time on one thread
@@ -50,7 +51,7 @@ struct MeshTiming {
 
 /// A race on a scene of the whole pipeline.
 struct PipelineMeasureOptions {
-  std::string scene = "pile";  ///< pile or terrain
+  std::string scene = "pile";  ///< pile, terrain or balls
   bool resting = false;        ///< and winnow carries contacts over
   ContactLevel level = ContactLevel::manifold;
   std::vector<int> threads{1, 2};
@@ -74,6 +75,25 @@ struct PipelineMeasurement {
 };
 
 [[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);
+
+/// What contacts of a scene cost beside each other, bodies moving a little: by level, and by how
+/// far apart bodies may be.
+struct SceneCostOptions {
+  std::string scene = "balls";
+  int threads = 1;
+  std::size_t frames = 9;
+  std::size_t bodies = 0;
+  std::uint64_t seed = 1;
+};
+
+struct SceneCost {
+  ContactLevel level{};
+  double margin = 0.0;  ///< 0, then a fiftieth of a body's size, for each level
+  SceneTiming timing;
+};
+
+/// Of levels distance and manifold.
+[[nodiscard]] std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options);
 
 struct MeshMeasurement {
   std::vector<MeshTiming> timings;  ///< winnow's is the first

@@ -219,6 +219,15 @@ ReportSteps plan_pipeline(const ReportOptions& options) {
   };
   add_scene("pile", 200, 9.0);
   add_scene("terrain", 40, 3.0);
+  for (const char* const scene : {"pile", "terrain", "balls"}) {
+    SceneCostOptions costs{.scene = scene, .seed = options.seed};
+    if (options.quick) {
+      costs.bodies = 60;
+      costs.frames = 2;
+    }
+    steps.push_back({std::string(scene) + ", costs", 4.0,
+                     [costs](Results& results) { add_scene_costs(results, costs); }});
+  }
   const std::size_t rounds = options.quick ? 2 : 5;
   steps.push_back({"tori", 0.6, [rounds, peers = options.peers](Results& results) {
                      add_tori(results, rounds, peers, false);

@@ -53,6 +53,14 @@ void declare_scenes(Results& results, bool levels_by_setting) {
                    {{"ms", "a frame", "ms", Better::less},
                     {"touching", "pairs reported", "", Better::neither, Format::count},
                     {"points", "contact points", "", Better::neither, Format::count}}});
+  results.declare({"scene_costs",
+                   "pipeline",
+                   "bytes of contacts, and what a margin costs",
+                   {"scene", "level", "margin", "threads"},
+                   {{"ms", "a frame", "ms", Better::less},
+                    {"over_none", "times the frame without a margin", "", Better::less},
+                    {"bytes_per_contact", "all bytes a pair that touches", "bytes", Better::less},
+                    {"touching", "touching pairs", "", Better::neither, Format::count}}});
   results.declare(
       {"tori",
        "pipeline",
@@ -117,6 +125,30 @@ void add_scene_level(Results& results, PipelineMeasureOptions options, const std
       row["threads"] = timing.threads;
     }
     results.add("scene_levels", std::move(row));
+  }
+}
+
+void add_scene_costs(Results& results, const SceneCostOptions& options) {
+  const std::string again =
+      "bench/run pipeline --costs --scene " + options.scene + " --threads " +
+      std::to_string(options.threads) + " --frames " + std::to_string(options.frames) + " --seed " +
+      std::to_string(options.seed) + " --isa " + isa_name() +
+      (options.bodies != 0 ? " --bodies " + std::to_string(options.bodies) : "");
+  double without = 0.0;
+  for (const SceneCost& cost : measure_scene_costs(options)) {
+    const double ms = median_of(cost.timing.ms);
+    if (cost.margin == 0.0) without = ms;
+    const auto touching = static_cast<double>(cost.timing.finds.touching);
+    results.add("scene_costs",
+                {{"scene", options.scene},
+                 {"level", to_text(cost.level)},
+                 {"margin", cost.margin},
+                 {"threads", options.threads},
+                 {"ms", to_value(cost.timing.ms)},
+                 {"over_none", ms / without},
+                 {"bytes_per_contact", static_cast<double>(cost.timing.bytes) / touching},
+                 {"touching", cost.timing.finds.touching},
+                 {"command", again}});
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace winnow::bench {
 
-/// whole_scenes, scene_ratios, scene_levels, tori, mesh_builds.
+/// whole_scenes, scene_ratios, scene_levels, scene_costs, tori, mesh_builds.
 /// Levels are told apart by scene and level alone, or by motion and threads as well.
 void declare_scenes(Results& results, bool levels_by_setting = false);
 
@@ -16,6 +16,8 @@ void declare_scenes(Results& results, bool levels_by_setting = false);
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options);
 /// winnow alone, up to a level.
 void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level);
+/// winnow alone: bytes of contacts, and what a margin costs.
+void add_scene_costs(Results& results, const SceneCostOptions& options);
 /// Two tori: contacts, and the tree that finds them.
 MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock);
 

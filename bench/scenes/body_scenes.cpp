@@ -150,6 +150,23 @@ std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
   return set;
 }
 
+std::unique_ptr<BodySet> make_balls(std::size_t bodies, std::uint64_t seed) {
+  constexpr double kContactsPerBody = 7.5;
+  // Two meet where the center of one lies in a ball of unit radius about that of the other.
+  constexpr double kUnitBall = 4.18879020478639;
+  auto set = std::make_unique<BodySet>();
+  ShapeId ball;
+  need(set->pool.add(SphereShape{0.5}, ball), "a ball");
+  set->shapes.assign(bodies, ball);
+  const double side = cube_root(static_cast<double>(bodies) * kUnitBall / (2 * kContactsPerBody));
+  Random random(seed);
+  set->poses.resize(bodies);
+  for (Pose& pose : set->poses) {
+    for (double& p : pose.position) p = side * random.unit();
+  }
+  return set;
+}
+
 std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
                                         std::uint64_t seed) {
   constexpr double kEdge = 0.85;

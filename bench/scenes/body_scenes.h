@@ -16,6 +16,9 @@ namespace winnow::bench {
 /// and 2.5 contacts a body.
 [[nodiscard]] std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed);
 
+/// Balls of unit diameter at random places in a cube, 7.5 contacts a body.
+[[nodiscard]] std::unique_ptr<BodySet> make_balls(std::size_t bodies, std::uint64_t seed);
+
 /// Hulls of 16 to 32 vertices that lie on a terrain of 2 * cells^2 triangles of about half their
 /// size; every 40th leans on its neighbour.
 [[nodiscard]] std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,

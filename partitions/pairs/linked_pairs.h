@@ -27,14 +27,18 @@ class LinkedPairs {
  public:
   explicit LinkedPairs(PairBuffer& out) noexcept : out_(out) {}
 
+  /// The buffer is never linked: for who looks at all pairs in every frame whatever moved.
+  void forbid() noexcept { out_.may_link_ = false; }
   /// True if a frame in which so many objects moved is to update the buffer here: where few do, the
   /// second of two frames in a row begins to link it.
   [[nodiscard]] bool is_due(std::size_t moved) const noexcept;
   [[nodiscard]] static bool is_linked(const PairBuffer& out) noexcept {
     return out.state_ == PairBuffer::State::linked;
   }
-  /// False for more pairs than links can name.
-  [[nodiscard]] bool can_link() const noexcept { return out_.size() <= kNoPlace / 4; }
+  /// False where that is forbidden, and for more pairs than links can name.
+  [[nodiscard]] bool can_link() const noexcept {
+    return out_.may_link_ && out_.size() <= kNoPlace / 4;
+  }
   /// Begins to link the buffer unless that has begun, with room for objects below `slots`. False if
   /// memory is refused.
   [[nodiscard]] bool link(std::size_t slots) noexcept;

@@ -3,6 +3,7 @@
 #include <winnow/pipeline/scene.h>
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
+#include "partitions/pairs/linked_pairs.h"
 #include "pipeline/scene/body_pairs.h"
 #include "pipeline/scene/layers.h"
 #include "pipeline/scene/seams.h"
@@ -27,7 +28,9 @@ struct PlainBox {
 /// One set of bodies and its partition, made when its first body comes.
 struct SceneSet {
   explicit SceneSet(std::pmr::memory_resource* memory) noexcept
-      : body_of(memory), with_dynamic(memory) {}
+      : body_of(memory), with_dynamic(memory) {
+    LinkedPairs(with_dynamic).forbid();
+  }
 
   std::optional<Partition> partition;
   /// What the partition's boxes are measured from: the scene's origin, or the one before while

@@ -173,7 +173,7 @@ TEST(SceneRace, a_heap_is_the_same_whenever_it_is_made_and_lies_close) {
       EXPECT_EQ(set->poses[i].position[axis], again->poses[i].position[axis]);
     }
   }
-  std::array<SceneContender, 1> contenders{{{make_winnow_scene(1, 0.0), 1}}};
+  std::array<SceneContender, 1> contenders{{{make_winnow_scene(1), 1}}};
   const auto timings = race_scene(*set, kMoving, contenders, 1);
   EXPECT_GT(timings.front().finds.touching, 400U);
   EXPECT_LT(timings.front().finds.touching, 2000U);
@@ -182,7 +182,7 @@ TEST(SceneRace, a_heap_is_the_same_whenever_it_is_made_and_lies_close) {
 TEST(SceneRace, every_engine_finds_as_much_as_the_first) {
   const auto set = make_landscape(60, 24, 5);
   std::array<SceneContender, 2> contenders{
-      {{make_winnow_scene(1, 0.0), 1}, {make_winnow_scene(2, kCarryOver), 2}}};
+      {{make_winnow_scene(1), 1}, {make_winnow_scene(2, {.carry_over = kCarryOver}), 2}}};
   const auto timings = race_scene(*set, kResting, contenders, 2);
   ASSERT_EQ(timings.size(), 2U);
   EXPECT_GE(timings[0].finds.touching, 60U);
