@@ -126,4 +126,34 @@ class Answers {
   const PairBlockTables& tables_;
 };
 
+/// A step of all lanes of a block that are active: what it looks at, and how lanes end.
+class BlockStep {
+ protected:
+  BlockStep(const ImpactJob& job, ImpactBlock& block)
+      : p_(block.lanes),
+        tables_(block.tables),
+        answers_(job, block.tables),
+        active_(p_.active > Doubles(0.0)) {}
+
+  void end_unsure(const Truth& lanes) {
+    answers_.put_unsure(bits(active_ & lanes), p_.time);
+    active_ = active_ & !lanes;
+  }
+  void end_apart(const Truth& lanes) {
+    answers_.put_apart(bits(active_ & lanes));
+    active_ = active_ & !lanes;
+  }
+  /// Notes which lanes go on, and returns them.
+  [[nodiscard]] Mask16 go_on() {
+    p_.active = one_where(active_);
+    return bits(active_);
+  }
+
+  PairLanes& p_;
+  const PairBlockTables& tables_;
+  Answers answers_;
+  Truth active_;
+  LookLanes look_;
+};
+
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -87,15 +87,12 @@ constexpr double kLongest = 1e40;
   return select(core.angle > Doubles(0.0), swept, high);
 }
 
-class ImpactStep {
+class ImpactStep : BlockStep {
  public:
   /// `coarse`: the first look, before which nothing is known.
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
-      : p_(block.lanes),
-        tables_(block.tables),
-        coarse_(coarse && !has_closed_form(tables_.a.kind, tables_.b.kind)),
-        answers_(job, block.tables),
-        active_(p_.active > Doubles(0.0)) {}
+      : BlockStep(job, block),
+        coarse_(coarse && !has_closed_form(tables_.a.kind, tables_.b.kind)) {}
 
   /// Looks at all lanes once. Returns those that go on.
   [[nodiscard]] Mask16 run() {
@@ -104,20 +101,10 @@ class ImpactStep {
     look();
     advance(axis, gap);
     decide();
-    p_.active = one_where(active_);
-    return bits(active_);
+    return go_on();
   }
 
  private:
-  void end_unsure(const Truth& lanes) {
-    answers_.put_unsure(bits(active_ & lanes), p_.time);
-    active_ = active_ & !lanes;
-  }
-  void end_apart(const Truth& lanes) {
-    answers_.put_apart(bits(active_ & lanes));
-    active_ = active_ & !lanes;
-  }
-
   /// The lanes where they are next.
   void look() {
     place(tables_.a, p_.next, p_.a);
@@ -278,14 +265,9 @@ class ImpactStep {
     return min(p_.time + step, end);
   }
 
-  PairLanes& p_;
-  const PairBlockTables& tables_;
   bool coarse_;
-  Answers answers_;
-  Truth active_;
   /// The new look is where they are surely apart until.
   Truth whole_;
-  LookLanes look_;
   /// The gap along the axis of the last look.
   Doubles then_;
 };

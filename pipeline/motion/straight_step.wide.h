@@ -13,13 +13,9 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 /// One step of all lanes of a block, which are placed. Of lanes without a closed form `axis` is the
 /// nearest point of the simplex, or any direction while there is none; the witness has, in the axes
 /// of the world, its points of a and the ways from them to those of b.
-class StraightStep {
+class StraightStep : BlockStep {
  public:
-  StraightStep(const ImpactJob& job, ImpactBlock& block)
-      : p_(block.lanes),
-        tables_(block.tables),
-        answers_(job, block.tables),
-        active_(p_.active > Doubles(0.0)) {}
+  StraightStep(const ImpactJob& job, ImpactBlock& block) : BlockStep(job, block) {}
 
   /// Returns the lanes that go on.
   [[nodiscard]] Mask16 run() {
@@ -36,20 +32,10 @@ class StraightStep {
       decide();
       if (bits(active_) != 0) move_on(before);
     }
-    p_.active = one_where(active_);
-    return bits(active_);
+    return go_on();
   }
 
  private:
-  void end_unsure(const Truth& lanes) {
-    answers_.put_unsure(bits(active_ & lanes), p_.time);
-    active_ = active_ & !lanes;
-  }
-  void end_apart(const Truth& lanes) {
-    answers_.put_apart(bits(active_ & lanes));
-    active_ = active_ & !lanes;
-  }
-
   /// Which slots of the simplex are in use, and of these which have another point than a new one.
   void compare_with(const Vector& way) {
     for (int s = 0; s < kSlots; ++s) {
@@ -169,13 +155,8 @@ class StraightStep {
     }
   }
 
-  PairLanes& p_;
-  const PairBlockTables& tables_;
-  Answers answers_;
-  Truth active_;
   /// No direction shows more than the one that was tried.
   Truth settled_;
-  LookLanes look_;
   /// Of the distance to the simplex.
   Doubles square_;
   /// From the point of a that is farthest to that of b, without the way between the middles.
