@@ -23,7 +23,7 @@ constexpr std::size_t kManyPairs = 70000;
 /// Bodies of which nearly all meet all, with meshes among them.
 class DenseWorld {
  public:
-  DenseWorld() : world_(450, 77), composites_(world_.pool) {
+  DenseWorld() : world_(400, 77), composites_(world_.pool) {
     ShapeId mesh;
     const MeshData data = torus(7, 5);
     EXPECT_EQ(composites_.add_mesh(data.points(), data.indices(), mesh), Status::ok);
@@ -57,37 +57,38 @@ class DenseWorld {
   CompositePool composites_;
 };
 
-TEST(SceneBatches, are_what_is_answered_at_once) {
-  for (const double carry_over : {0.0, 0.2}) {
-    for (const ContactLevel level :
-         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-      DenseWorld dense;
-      SceneOptions batches = dense.options(false);
-      SceneOptions at_once = dense.options(true);
-      batches.carry_over = at_once.carry_over = carry_over;
-      Scene one(dense.world().pool, batches);
-      Scene other(dense.world().pool, at_once);
-      Contacts of_one;
-      Contacts of_other;
-      SceneWorld& world = dense.world();
-      std::vector<Key> keys(world.bodies.size());
-      ASSERT_EQ(one.add(world.bodies, keys), Status::ok);
-      std::vector<Key> other_keys(world.bodies.size());
-      ASSERT_EQ(other.add(world.bodies, other_keys), Status::ok);
-      for (int frame = 0; frame < 3; ++frame) {
-        ASSERT_EQ(one.collide(level, of_one), Status::ok);
-        ASSERT_EQ(other.collide(level, of_other), Status::ok);
-        ASSERT_GT(one.statistics().body_pairs - one.statistics().balls_apart, kManyPairs);
-        ASSERT_EQ(digest(of_one), digest(of_other)) << frame;
-        ASSERT_EQ(of_one.ended().size(), of_other.ended().size());
-        dense.stir();
-        for (std::size_t i = 0; i < keys.size(); i += frame == 0 ? 1 : 7) {
-          ASSERT_EQ(one.move(keys[i], world.bodies[i].pose), Status::ok);
-          ASSERT_EQ(other.move(other_keys[i], world.bodies[i].pose), Status::ok);
-        }
-      }
+void expect_batches_are_what_is_answered_at_once(ContactLevel level, double carry_over) {
+  DenseWorld dense;
+  SceneOptions batches = dense.options(false);
+  SceneOptions at_once = dense.options(true);
+  batches.carry_over = at_once.carry_over = carry_over;
+  Scene one(dense.world().pool, batches);
+  Scene other(dense.world().pool, at_once);
+  Contacts of_one;
+  Contacts of_other;
+  SceneWorld& world = dense.world();
+  std::vector<Key> keys(world.bodies.size());
+  ASSERT_EQ(one.add(world.bodies, keys), Status::ok);
+  std::vector<Key> other_keys(world.bodies.size());
+  ASSERT_EQ(other.add(world.bodies, other_keys), Status::ok);
+  for (int frame = 0; frame < 2; ++frame) {
+    ASSERT_EQ(one.collide(level, of_one), Status::ok);
+    ASSERT_EQ(other.collide(level, of_other), Status::ok);
+    ASSERT_GT(one.statistics().body_pairs - one.statistics().balls_apart, kManyPairs);
+    ASSERT_EQ(digest(of_one), digest(of_other)) << frame;
+    ASSERT_EQ(of_one.ended().size(), of_other.ended().size());
+    dense.stir();
+    for (std::size_t i = 0; i < keys.size(); i += 3) {
+      ASSERT_EQ(one.move(keys[i], world.bodies[i].pose), Status::ok);
+      ASSERT_EQ(other.move(other_keys[i], world.bodies[i].pose), Status::ok);
     }
   }
+}
+
+TEST(SceneBatches, are_what_is_answered_at_once) {
+  expect_batches_are_what_is_answered_at_once(ContactLevel::boolean, 0.0);
+  expect_batches_are_what_is_answered_at_once(ContactLevel::manifold, 0.0);
+  expect_batches_are_what_is_answered_at_once(ContactLevel::distance, 0.2);
 }
 
 TEST(SceneBatches, tell_where_each_pair_was) {
