@@ -22,6 +22,8 @@ struct LanesOps {
   void (*max)(const float* a, const float* b, float* out);
   void (*add)(const float* a, const float* b, float* out);
   void (*multiply)(const float* a, const float* b, float* out);
+  void (*divide)(const float* a, const float* b, float* out);
+  void (*sqrt)(const float* in, float* out);
   void (*multiply_add)(const float* a, const float* b, const float* c, float* out);
   std::uint32_t (*less_equal)(const float* a, const float* b);
   void (*keep_less_equal)(const float* a, const float* b, const float* v, float* out);

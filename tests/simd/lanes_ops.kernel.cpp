@@ -41,6 +41,12 @@ void add_lanes(const float* a, const float* b, float* out) {
 void multiply_lanes(const float* a, const float* b, float* out) {
   (Floats::load_unaligned(a) * Floats::load_unaligned(b)).store_unaligned(out);
 }
+void divide_lanes(const float* a, const float* b, float* out) {
+  (Floats::load_unaligned(a) / Floats::load_unaligned(b)).store_unaligned(out);
+}
+void sqrt_lanes(const float* in, float* out) {
+  sqrt(Floats::load_unaligned(in)).store_unaligned(out);
+}
 void multiply_add_lanes(const float* a, const float* b, const float* c, float* out) {
   multiply_add(Floats::load_unaligned(a), Floats::load_unaligned(b), Floats::load_unaligned(c))
       .store_unaligned(out);
@@ -109,6 +115,8 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .max = isa::max_lanes,
     .add = isa::add_lanes,
     .multiply = isa::multiply_lanes,
+    .divide = isa::divide_lanes,
+    .sqrt = isa::sqrt_lanes,
     .multiply_add = isa::multiply_add_lanes,
     .less_equal = isa::less_equal_lanes,
     .keep_less_equal = isa::keep_less_equal_lanes,

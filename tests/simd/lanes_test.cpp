@@ -125,6 +125,21 @@ TEST_P(LaneOps, arithmetic_is_lane_wise) {
       ops().add, [](float a, float b) { return a + b; }, true);
   expect_lane_wise(
       ops().multiply, [](float a, float b) { return a * b; }, true);
+  expect_lane_wise(
+      ops().divide, [](float a, float b) { return a / b; }, true);
+}
+
+TEST_P(LaneOps, roots_are_rounded_to_nearest) {
+  for (int round = 0; round < 5000; ++round) {
+    const Floats in = lanes(true);
+    Floats out;
+    ops().sqrt(in.data(), out.data());
+    for (std::size_t i = 0; i < 16; ++i) {
+      const float expected = std::sqrt(in[i]);
+      ASSERT_TRUE(out[i] == expected || (std::isnan(out[i]) && std::isnan(expected)))
+          << in[i] << " gives " << out[i];
+    }
+  }
 }
 
 TEST_P(LaneOps, a_product_and_sum_are_rounded_once_or_twice) {
