@@ -72,6 +72,12 @@ target_link_libraries(winnow_flags INTERFACE Eigen3::Eigen)
 target_compile_options(winnow_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
   $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>)
+# So would Eigen's own vectors on AArch64, which fuse where this says that they can. Kernels, which
+# fuse for bounds, do not read Eigen.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
+  target_compile_options(winnow_flags INTERFACE
+    $<$<NOT:$<BOOL:$<TARGET_PROPERTY:WINNOW_KERNELS>>>:-U__ARM_FEATURE_FMA>)
+endif()
 if(WINNOW_COVERAGE)
   set(winnow_coverage --coverage)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")

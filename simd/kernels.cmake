@@ -76,7 +76,8 @@ function(winnow_add_kernels target)
     target_include_directories(${objects} PRIVATE ${WINNOW_INCLUDE_DIR} ${PROJECT_SOURCE_DIR})
     target_include_directories(${objects} SYSTEM PRIVATE ${WINNOW_XSIMD_INCLUDE_DIR})
     target_link_libraries(${objects} PRIVATE winnow_flags)
-    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON
+    set_target_properties(${objects} PROPERTIES WINNOW_KERNELS ON
+                                                POSITION_INDEPENDENT_CODE ON
                                                 CXX_VISIBILITY_PRESET hidden
                                                 VISIBILITY_INLINES_HIDDEN ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
