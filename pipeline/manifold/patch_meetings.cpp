@@ -1,7 +1,12 @@
 #include "pipeline/manifold/patch_meetings.h"
 
+#include "pipeline/shapes/directions_around.h"
+#include "pipeline/shapes/hypotenuse.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 namespace winnow {
@@ -75,16 +80,17 @@ void Outline::take(const Patch& patch, const PatchFrame& frame, std::uint32_t ve
 
 // The farthest vertices in fifteen directions around, and the deepest.
 void Outline::take_outermost(const Patch& patch, const PatchFrame& frame, double up) noexcept {
+  static_assert(kOutlineVertices == std::size(kFifteenthsOfTurn) + 1);
   std::uint32_t chosen[kOutlineVertices];
   for (std::uint32_t k = 0; k < kOutlineVertices; ++k) {
-    const double turn = 0.41887902047863906 * k;
     double direction[3];
     for (int i = 0; i < 3; ++i) {
-      direction[i] = k == 15
+      direction[i] = k == std::size(kFifteenthsOfTurn)
                          ? up * frame.axis[2][i]
-                         : std::cos(turn) * frame.axis[0][i] + std::sin(turn) * frame.axis[1][i];
+                         : kFifteenthsOfTurn[k][0] * frame.axis[0][i] +
+                               kFifteenthsOfTurn[k][1] * frame.axis[1][i];
     }
-    double best = -INFINITY;
+    double best = -std::numeric_limits<double>::infinity();
     chosen[k] = 0;
     for (std::uint32_t i = 0; i < patch.count; ++i) {
       const double reach = dot(direction, patch.vertex[i]);
@@ -146,10 +152,10 @@ std::uint32_t Outline::farthest_from(std::uint32_t vertex) const noexcept {
 
 std::uint32_t Outline::least_rise_from(std::uint32_t vertex, double up) const noexcept {
   std::uint32_t best = vertex;
-  double least = INFINITY;
+  double least = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double away = std::hypot(x[i] - x[vertex], y[i] - y[vertex]);
+    const double away = hypotenuse(x[i] - x[vertex], y[i] - y[vertex]);
     if (!(away > kSamePlace * size)) continue;
     const double rise = up * (h[vertex] - h[i]) / away;
     if (rise < least - kSameRise || (rise <= least + kSameRise && away > farthest)) {
@@ -385,8 +391,8 @@ void crossing_meetings(const Outline& a, const Outline& b, PatchMeetings& out) {
 // Where outlines come closest to each other that do not meet, but for rounding, or of which one is
 // a point: a vertex of one and an edge of the other, the deepest of equally close ones.
 void closest_meeting(const Outline* const outline[2], PatchMeetings& out) {
-  double least = INFINITY;
-  double deepest = -INFINITY;
+  double least = std::numeric_limits<double>::infinity();
+  double deepest = -std::numeric_limits<double>::infinity();
   PatchMeeting best = {};
   for (int of = 0; of < 2; ++of) {
     const Outline& p = *outline[of];

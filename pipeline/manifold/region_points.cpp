@@ -1,9 +1,11 @@
 #include "pipeline/manifold/region_points.h"
 
+#include "pipeline/shapes/directions_around.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <numbers>
 
 namespace winnow {
 namespace {
@@ -159,10 +161,10 @@ const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const no
 void RegionPoints::thin() noexcept {
   bool stays[kRoom] = {};
   double unused = 0.0;
+  static_assert(kDirections == std::size(kSixteenthsOfTurn));
   for (std::uint32_t k = 0; k < kDirections; ++k) {
-    constexpr double kStep = 2.0 * std::numbers::pi / kDirections;
-    const double c = std::cos(kStep * k);
-    const double s = std::sin(kStep * k);
+    const double c = kSixteenthsOfTurn[k][0];
+    const double s = kSixteenthsOfTurn[k][1];
     double most = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < count_; ++i) {
       most = std::max(most, c * point_[i].x + s * point_[i].y);

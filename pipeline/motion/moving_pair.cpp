@@ -2,6 +2,7 @@
 
 #include "pipeline/motion/turn.h"
 #include "pipeline/shapes/difference.h"
+#include "pipeline/shapes/hypotenuse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +107,7 @@ double extent_of(const Core& core) noexcept {
       return 0.0;
     case CoreKind::cylinder:
     case CoreKind::cone:
-      return core.rounding + std::hypot(core.half.x(), core.half.z());
+      return core.rounding + hypotenuse(core.half.x(), core.half.z());
     default:
       return core.size;
   }

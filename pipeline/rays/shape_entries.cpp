@@ -1,5 +1,6 @@
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/shapes/accurate_cross.h"
+#include "pipeline/shapes/hypotenuse.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,8 +20,8 @@ struct Clearance {
 
 /// From the distances out of a core of revolution, along the radius and along z.
 [[nodiscard]] Clearance clearance(const Vector3d& p, double radial, double axial) noexcept {
-  const double rho = std::hypot(p.x(), p.y());
-  const double distance = std::hypot(radial, axial);
+  const double rho = hypotenuse(p.x(), p.y());
+  const double distance = hypotenuse(radial, axial);
   if (distance == 0.0) return {};
   const double share = rho > 0.0 ? radial / rho : 0.0;
   return {distance, Vector3d(share * p.x(), share * p.y(), axial) / distance};
@@ -32,7 +33,7 @@ struct CylinderCore {
 
   [[nodiscard]] Clearance at(const Vector3d& p) const noexcept {
     const double beyond = std::max(std::fabs(p.z()) - half_length, 0.0);
-    return clearance(p, std::max(std::hypot(p.x(), p.y()) - radius, 0.0),
+    return clearance(p, std::max(hypotenuse(p.x(), p.y()) - radius, 0.0),
                      std::copysign(beyond, p.z()));
   }
 };
@@ -42,7 +43,7 @@ struct ConeCore {
   ConeCore(double r, double h) noexcept
       : radius(r),
         half_length(h),
-        slant(std::hypot(r, 2.0 * h)),
+        slant(hypotenuse(r, 2.0 * h)),
         sine(r / slant),
         cosine(2.0 * h / slant) {}
   double radius;
@@ -53,7 +54,7 @@ struct ConeCore {
   double cosine;
 
   [[nodiscard]] Clearance at(const Vector3d& p) const noexcept {
-    const double rho = std::hypot(p.x(), p.y());
+    const double rho = hypotenuse(p.x(), p.y());
     const double depth = half_length - p.z();
     if (p.z() < -half_length && rho <= radius) return clearance(p, 0.0, p.z() + half_length);
     const double height = cosine * rho - sine * depth;
@@ -67,7 +68,7 @@ struct ConeCore {
   /// The normal of the base or the side, at a point of its surface that is entered along
   /// `direction`.
   [[nodiscard]] Vector3d outward(const Vector3d& p, const Vector3d& direction) const noexcept {
-    const double rho = std::hypot(p.x(), p.y());
+    const double rho = hypotenuse(p.x(), p.y());
     const double across = rho > 0.0 ? cosine / rho : 0.0;
     const Vector3d side(across * p.x(), across * p.y(), sine);
     const Vector3d base(0.0, 0.0, -1.0);
@@ -88,7 +89,7 @@ class TaperSurface {
         cosine_(std::sqrt((1.0 - sine_) * (1.0 + sine_))) {}
 
   [[nodiscard]] Clearance at(const Vector3d& p) const noexcept {
-    const double rho = std::hypot(p.x(), p.y());
+    const double rho = hypotenuse(p.x(), p.y());
     const double up = p.z() + half_;
     const double along = cosine_ * up - sine_ * rho;
     if (along <= 0.0 || along >= 2.0 * half_ * cosine_) {
@@ -159,7 +160,7 @@ class ConeCrossing {
   [[nodiscard]] double polished(double t) const noexcept {
     for (int step = 0; step < 2 && std::isfinite(t); ++step) {
       const Vector3d p = o_ + t * d_;
-      const double rho = std::hypot(p.x(), p.y());
+      const double rho = hypotenuse(p.x(), p.y());
       if (rho == 0.0) break;
       const double slope =
           cone_.cosine * (p.x() * d_.x() + p.y() * d_.y()) / rho - cone_.sine * d_.z();
@@ -173,7 +174,7 @@ class ConeCrossing {
     RaySpan span{in, out, Vector3d::Zero()};
     if (!std::isfinite(in)) return span;
     const Vector3d p = o_ + in * d_;
-    const double rho = std::hypot(p.x(), p.y());
+    const double rho = hypotenuse(p.x(), p.y());
     if (rho > kGrazing) {
       span.normal = Vector3d(cone_.cosine * p.x() / rho, cone_.cosine * p.y() / rho, cone_.sine);
     }

@@ -2,6 +2,7 @@
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/shapes/hypotenuse.h"
 #include "pipeline/shapes/support_core.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ struct AnyDirection {
   [[nodiscard]] double length() const noexcept { return d.norm(); }
   [[nodiscard]] Vec unit() const noexcept { return d.stableNormalized(); }
   /// Of its part at right angles to the z axis.
-  [[nodiscard]] double across() const noexcept { return std::hypot(d.x(), d.y()); }
+  [[nodiscard]] double across() const noexcept { return hypotenuse(d.x(), d.y()); }
   /// No product with a point of a hull's core is larger.
   [[nodiscard]] double most(const HullShape& hull) const noexcept {
     return d.lpNorm<1>() * (Eigen::Map<const Vec>(hull.center).cwiseAbs().maxCoeff() + hull.radius);
@@ -240,12 +241,12 @@ double radius_of(const ShapeTables& tables, ShapeId shape) noexcept {
       break;
     case ShapeKind::cylinder: {
       const CylinderShape& s = tables.cylinders[i];
-      radius = std::hypot(s.radius, s.half_length) + s.rounding;
+      radius = hypotenuse(s.radius, s.half_length) + s.rounding;
       break;
     }
     case ShapeKind::cone: {
       const ConeShape& s = tables.cones[i];
-      radius = std::hypot(s.radius, s.half_length) + s.rounding;
+      radius = hypotenuse(s.radius, s.half_length) + s.rounding;
       break;
     }
     case ShapeKind::hull: {

@@ -1,5 +1,7 @@
 #include "pipeline/solver/core.h"
 
+#include "pipeline/shapes/hypotenuse.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,14 +9,14 @@ namespace winnow::solver {
 namespace {
 
 Vec rim(const Core& core, const Vec& local, double z) noexcept {
-  const double length = std::hypot(local.x(), local.y());
+  const double length = hypotenuse(local.x(), local.y());
   if (length == 0.0) return {0.0, 0.0, z};
   // Divided first: directions may be short enough for the quotient of the radius to overflow.
   return {core.half.x() * (local.x() / length), core.half.x() * (local.y() / length), z};
 }
 
 double radial(const Core& core, const Vec& local) noexcept {
-  return core.half.x() * std::hypot(local.x(), local.y());
+  return core.half.x() * hypotenuse(local.x(), local.y());
 }
 
 /// From the center, in the core's axes; `d` is unit.
@@ -48,7 +50,7 @@ Vec without(const Vec& v, const Vec& e) noexcept {
 
 // Blocks of eight keep independent maxima, so that the loop does not wait for each comparison.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept {
-  constexpr std::uint32_t kBlock = 8;
+  constexpr int kBlock = 8;
   using Block = Eigen::Array<double, kBlock, 1>;
   double best = -std::numeric_limits<double>::infinity();
   std::uint32_t best_at = 0;
@@ -59,9 +61,9 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
     const double top = dot.maxCoeff();
     if (!(top > best)) continue;
     best = top;
-    std::uint32_t k = 0;
+    int k = 0;
     while (k + 1 < kBlock && dot[k] != top) ++k;
-    best_at = i + k;
+    best_at = i + static_cast<std::uint32_t>(k);
   }
   value = best;
   // Padding repeats vertex 0.
@@ -171,7 +173,7 @@ Core meridian(const Core& core, const Vec& direction) noexcept {
   if (core.kind != CoreKind::cylinder && core.kind != CoreKind::cone) return core;
   const Vec d = core.rotation.transpose() * direction;
   // Along the axis all planes are alike.
-  if (std::hypot(d.x(), d.y()) <= 1e-7 * std::abs(d.z())) return core;
+  if (hypotenuse(d.x(), d.y()) <= 1e-7 * std::abs(d.z())) return core;
   const double h = core.half.z();
   const Vec low = rim(core, d, -h);
   const Vec high = core.kind == CoreKind::cone ? Vec(0.0, 0.0, h) : rim(core, d, h);
@@ -295,7 +297,7 @@ std::uint32_t direction_count(const Core& core) noexcept {
 Vec direction(const Core& core, std::uint32_t i) noexcept {
   switch (core.kind) {
     case CoreKind::box:
-      return core.rotation.col(i);
+      return core.rotation.col(static_cast<Eigen::Index>(i));
     case CoreKind::triangle:
       return core.side[i];
     case CoreKind::hull: {
@@ -328,7 +330,7 @@ std::uint32_t normal_count(const Core& core) noexcept {
 Vec normal(const Core& core, std::uint32_t i) noexcept {
   switch (core.kind) {
     case CoreKind::box:
-      return core.rotation.col(i);
+      return core.rotation.col(static_cast<Eigen::Index>(i));
     case CoreKind::triangle:
       return triangle_normal(core);
     case CoreKind::hull:

@@ -3,9 +3,12 @@
 #include <winnow/core/rounding.h>
 #include "pipeline/manifold/contact_patch.h"
 #include "pipeline/manifold/patch_meetings.h"
+#include "pipeline/shapes/directions_around.h"
+#include "pipeline/shapes/hypotenuse.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace winnow::solver {
 namespace {
@@ -141,10 +144,9 @@ void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
 
 void SupportingPatch::add_cap(const Core& core, const Vec& out, double z) noexcept {
   const std::uint32_t first = z > 0.0 ? 0 : kRimCorners;
+  static_assert(kRimCorners == std::size(kSixteenthsOfTurn));
   for (std::uint32_t i = 0; i < kRimCorners; ++i) {
-    constexpr double kStep = 6.283185307179586 / kRimCorners;
-    const double c = std::cos(kStep * i);
-    const double s = std::sin(kStep * i);
+    const auto [c, s] = kSixteenthsOfTurn[i];
     const Vec at(core.half.x() * (c * out.x() - s * out.y()),
                  core.half.x() * (c * out.y() + s * out.x()), z);
     add(core.center + core.rotation * at, first + i, first + i);
@@ -156,7 +158,7 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const Vec d = core.rotation.transpose() * outward;
   const double r = core.half.x();
   const double h = core.half.z();
-  const double radial = std::hypot(d.x(), d.y());
+  const double radial = hypotenuse(d.x(), d.y());
   // A direction along the axis has no side; the cap then begins at +x, always.
   const Vec out = radial > kAlongAxis ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
   const bool cone = core.kind == CoreKind::cone;
@@ -187,7 +189,6 @@ void SupportingPatch::add_taper(const Core& core, const Vec& outward) noexcept {
 // points of what is round come together, and count as the one of them that is farthest out.
 void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
   constexpr std::uint32_t kSamples = 8;
-  constexpr double kStep = 6.283185307179586 / kSamples;
   constexpr double kTilt = 0.04;
   int least = 0;
   (core.rotation.transpose() * outward).cwiseAbs().minCoeff(&least);
@@ -207,8 +208,8 @@ void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept
     kept[count++] = x;
   };
   for (std::uint32_t i = 0; i < kSamples; ++i) {
-    const double angle = kStep * i;
-    take(support(core, outward + (u * std::cos(angle) + v * std::sin(angle)) * kTilt));
+    const auto [c, s] = kSixteenthsOfTurn[2 * i];
+    take(support(core, outward + (u * c + v * s) * kTilt));
   }
   if (count == 1) kept[0] = support(core, outward);
   for (std::uint32_t i = 0; i < count; ++i) add(kept[i], i, i);

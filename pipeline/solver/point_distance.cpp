@@ -1,5 +1,7 @@
 #include "pipeline/solver/point_distance.h"
 
+#include "pipeline/shapes/hypotenuse.h"
+
 #include <cmath>
 
 namespace winnow::solver {
@@ -43,7 +45,7 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
   const Ellipsoid shape(radius);
   const Vec weight = radius.cwiseProduct(q.cwiseAbs());
   double s = 0.0;
-  for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : std::hypot(s, weight[i]);
+  for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : hypotenuse(s, weight[i]);
   // The sum falls and is convex: from the left no step passes the root.
   constexpr int kMostSteps = 200;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -70,7 +72,7 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
 
 /// The same of the hull of balls of radii `low` at z = -half and `high` at z = half.
 Vec outward_of_taper(double low, double high, double half, const Vec& q) noexcept {
-  const double rho = std::hypot(q.x(), q.y());
+  const double rho = hypotenuse(q.x(), q.y());
   const Vec out = rho > 0.0 ? Vec(q.x() / rho, q.y() / rho, 0.0) : Vec(Vec::UnitX());
   const double rise = low - high;
   const bool swallows = std::abs(rise) >= 2.0 * half;
