@@ -80,7 +80,8 @@ CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept
   const auto first_of = [&](std::size_t i) -> std::size_t {
     if (i == threads_) return buckets_;
     const std::size_t rows = std::size_t{start_[buckets_]} * i / threads_;
-    return std::ranges::lower_bound(start_.first(buckets_), rows) - start_.begin();
+    return static_cast<std::size_t>(std::ranges::lower_bound(start_.first(buckets_), rows) -
+                                    start_.begin());
   };
   return {first_of(owner), first_of(owner + 1)};
 }
@@ -95,7 +96,7 @@ void CountingSort::place_many(std::uint32_t* order) noexcept {
     for_own_rows(bucket_, first, end, threads_,
                  [&](std::uint32_t row, std::uint32_t bucket) { order[start_[bucket]++] = row; });
     // Where the last row of a bucket went the next one begins.
-    std::copy_backward(start_.begin() + first, start_.begin() + end - 1, start_.begin() + end);
+    std::copy_backward(start_.data() + first, start_.data() + end - 1, start_.data() + end);
     start_[first] = begin;
   });
 }

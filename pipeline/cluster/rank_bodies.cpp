@@ -121,7 +121,7 @@ bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
       // Most have no other flag.
       std::array<std::uint8_t, kTogether> flags{};
       if (std::max(some.front().id, some.back().id) >= flags_.size()) return false;
-      std::copy_n(flags_.begin() + some.front().id, kTogether, flags.begin());
+      std::copy_n(flags_.data() + some.front().id, kTogether, flags.begin());
       if (flags == std::array<std::uint8_t, kTogether>{kOwned, kOwned, kOwned, kOwned}) continue;
     }
     if (!std::ranges::all_of(some, look)) return false;

@@ -2,6 +2,7 @@
 #include "pipeline/composites/search.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace winnow::mid {
 namespace {
@@ -101,7 +102,9 @@ bool Expansion::search_all(const Execution& execution) noexcept {
   // Each chunk fills one block of both kinds at least, if it finds anything.
   std::uint64_t blocks = 2 * chunks_;
   while (true) {
-    if (!out_.scratch.resize((head_ + blocks) * WordArena::kBlock)) return false;
+    const std::uint64_t words = (head_ + blocks) * WordArena::kBlock;
+    if (!std::in_range<std::size_t>(words)) return false;
+    if (!out_.scratch.resize(static_cast<std::size_t>(words))) return false;
     // All that has been reserved, so that a call like the last one needs no second run.
     blocks = out_.scratch.capacity() / WordArena::kBlock - head_;
     WordArena arena(this->blocks(), blocks);
@@ -152,9 +155,12 @@ Status Expansion::count() noexcept {
     return Status::too_many_objects;
   }
   for (std::size_t i = 0; i < pairs_.size(); ++i) out_.first[i + 1] += out_.first[i];
-  const bool ok = out_.shapes.resize(primitives) && out_.poses.resize(primitives) &&
-                  out_.part.resize(primitives) && out_.triangles.resize(triangles) &&
-                  out_.active_edges.resize(triangles) && out_.pairs.resize(pairs);
+  const auto shapes = static_cast<std::size_t>(primitives);
+  const auto corners = static_cast<std::size_t>(triangles);
+  const bool ok = out_.shapes.resize(shapes) && out_.poses.resize(shapes) &&
+                  out_.part.resize(shapes) && out_.triangles.resize(corners) &&
+                  out_.active_edges.resize(corners) &&
+                  out_.pairs.resize(static_cast<std::size_t>(pairs));
   return ok ? Status::ok : Status::out_of_memory;
 }
 

@@ -151,8 +151,8 @@ struct ChildVisitor {
   /// Calls visit(child, limit).
   template <typename Visit>
   [[nodiscard]] static ChildVisitor of(Visit& visit) noexcept {
-    return {[](void* context, std::uint32_t child, double limit) {
-              return (*static_cast<Visit*>(context))(child, limit);
+    return {[](void* called, std::uint32_t child, double limit) {
+              return (*static_cast<Visit*>(called))(child, limit);
             },
             &visit};
   }

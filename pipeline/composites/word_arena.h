@@ -30,7 +30,7 @@ class WordArena {
   [[nodiscard]] bool was_enough() const noexcept { return asked() <= blocks_; }
 
   [[nodiscard]] std::uint32_t index_of(const std::uint32_t* block) const noexcept {
-    return static_cast<std::uint32_t>((block - words_) / kBlock);
+    return static_cast<std::uint32_t>(static_cast<std::size_t>(block - words_) / kBlock);
   }
 
  private:

@@ -143,7 +143,7 @@ class SceneReader {
 
  private:
   [[nodiscard]] bool is_live(std::uint64_t body) const noexcept {
-    return body < keys_.stamps.size() && (keys_.stamps[body] & 1U) != 0;
+    return body < keys_.stamps.size() && (keys_.stamps[static_cast<std::size_t>(body)] & 1U) != 0;
   }
 
   /// Places of bodies that are gone hold nothing.
@@ -197,8 +197,8 @@ class SceneReader {
     std::fill(scene_.ignores.begin(), scene_.ignores.end(), std::uint8_t{0});
     std::uint64_t before = 0;
     for (const std::uint64_t pair : scene_.ignored) {
-      const std::uint64_t first = pair >> 32U;
-      const std::uint64_t second = pair & 0xFFFFFFFFU;
+      const auto first = static_cast<std::uint32_t>(pair >> 32U);
+      const auto second = static_cast<std::uint32_t>(pair);
       const bool good = first < second && pair > before && is_live(first) && is_live(second);
       if (!good) return in_.fail();
       scene_.ignores[first] = scene_.ignores[second] = 1;

@@ -150,7 +150,7 @@ TYPED_TEST(KdopTest, around_a_box_contains_its_corners_and_has_its_bounds) {
     ASSERT_EQ(volume.bounds(), box);
     for (unsigned corner = 0; corner < 8; ++corner) {
       Eigen::Vector3f p;
-      for (unsigned axis = 0; axis < 3; ++axis) {
+      for (int axis = 0; axis < 3; ++axis) {
         p[axis] = (corner >> axis & 1U) != 0 ? box.max[axis] : box.min[axis];
       }
       ASSERT_TRUE(contains(volume, p));

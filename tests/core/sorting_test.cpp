@@ -60,7 +60,7 @@ TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
 
 TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_however_buckets_are_filled) {
   Random random(1);
-  for (const std::size_t buckets : {1, 3, 300, 60000}) {
+  for (const std::size_t buckets : {1U, 3U, 300U, 60000U}) {
     for (const std::size_t used : {std::size_t{1}, (buckets + 1) / 2, buckets}) {
       std::vector<std::uint32_t> bucket(40000);
       for (std::uint32_t& b : bucket) {

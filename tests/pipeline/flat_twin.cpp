@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace winnow::test {
 
@@ -24,7 +25,7 @@ LongVector offset(const Pose& pose, const double origin[3]) {
 struct Search {
   const FlatTwin& a;
   const FlatTwin& b;
-  long double best = -HUGE_VALL;
+  long double best = -std::numeric_limits<long double>::infinity();
 
   void look(const LongVector& axis) {
     const long double size =
@@ -81,8 +82,8 @@ FlatTwin::FlatTwin(const TriangleShape& triangle, const Pose& pose, const double
 
 long double separation(const FlatTwin& a, const FlatTwin& b, const LongVector& axis) {
   const LongVector n = axis.stableNormalized();
-  long double top = -HUGE_VALL;
-  long double bottom = HUGE_VALL;
+  long double top = -std::numeric_limits<long double>::infinity();
+  long double bottom = std::numeric_limits<long double>::infinity();
   for (const LongVector& v : a.vertices) top = std::max(top, n.dot(v));
   for (const LongVector& v : b.vertices) bottom = std::min(bottom, n.dot(v));
   return bottom - top - a.rounding - b.rounding;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -79,7 +80,7 @@ PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, 
 }
 
 double depth_of(const PairAnswers& answer) {
-  double deepest = -INFINITY;
+  double deepest = -std::numeric_limits<double>::infinity();
   for (const ContactPoint& c : answer.contacts) deepest = std::max<double>(deepest, c.depth);
   return deepest;
 }

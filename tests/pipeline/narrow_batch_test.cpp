@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -143,7 +144,7 @@ TEST_F(Batches, pairs_within_the_margin_have_contacts_as_deep_as_they_are) {
       for (std::size_t i = 0; i < answers.size(); ++i) {
         const PairAnswers& m = answers[i];
         if (m.distance > margin) continue;
-        double deepest = -INFINITY;
+        double deepest = -std::numeric_limits<double>::infinity();
         for (const ContactPoint& c : m.contacts) {
           deepest = std::max(deepest, static_cast<double>(c.depth));
         }

@@ -51,7 +51,8 @@ struct QueryWorld {
       static_cast<std::vector<FlatPart>*>(list)->push_back({p.shape, p.pose, p.part, p.triangle});
       return limit;
     };
-    composites.visit_near(shape, here, {}, HUGE_VAL, {collect, &result});
+    composites.visit_near(shape, here, {}, std::numeric_limits<double>::infinity(),
+                          {collect, &result});
     return result;
   }
   [[nodiscard]] std::vector<FlatPart> parts(std::size_t body) const {

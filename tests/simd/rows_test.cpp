@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "tests/simd/rows_ops.h"
@@ -90,7 +91,8 @@ TEST_P(RowsToLanes, bytes_become_words_above_a_base) {
 }
 
 TEST_P(RowsToLanes, negation_turns_the_sign_of_zero) {
-  const std::array<double, 8> in{0.0, -0.0, 1.0, -1.0, 5e-324, -5e-324, INFINITY, -INFINITY};
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::array<double, 8> in{0.0, -0.0, 1.0, -1.0, 5e-324, -5e-324, infinity, -infinity};
   std::array<double, 8> out{};
   rows_ops().negate(in.data(), out.data());
   for (std::size_t lane = 0; lane < 8; ++lane) {

@@ -84,7 +84,7 @@ MeshData thin_sheets(std::uint32_t cells) {
   for (const double lift : {0.0, 0.001}) {
     for (std::uint32_t i = 0; i < cells * cells; ++i) {
       const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      for (const auto& [u, v] : {std::pair{0U, 0U}, {1U, 0U}, {1U, 1U}, {0U, 1U}}) {
         const double x = (i % cells + u) / n;
         const double y = (i / cells + v) / n;
         mesh.vertices.push_back(point(x, y, 0.05 * std::sin(9.0 * x + 4.0 * y) + lift));
