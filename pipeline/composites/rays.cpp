@@ -68,7 +68,7 @@ struct RayTarget {
       : body(placed), about(show_about) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
     Vec::Map(frame.position) = body.position;
-    for (int i = 0; i < 3; ++i) Vec::Map(frame.to_own[i]) = body.to_local.row(i);
+    Mat::Map(frame.to_own[0]) = body.to_local;
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
@@ -80,8 +80,9 @@ struct RayTarget {
 
 /// Takes one ray into the frame of a surface. One that begins far away is moved to where it comes
 /// near the surface. False for one whose numbers are too large or too small for that.
+template <std::uint32_t Room>
 [[nodiscard]] bool place_ray(const RayTarget& target, const ShapeRay& ray, std::uint32_t lane,
-                             SurfaceRays& own) noexcept {
+                             SurfaceRayColumns<Room>& own) noexcept {
   const PlacedBody& body = target.body;
   const double size = target.frame.size;
   const Eigen::Map<const Vec> origin(ray.origin);
@@ -118,20 +119,22 @@ struct RayTarget {
 }
 
 /// Takes rays through a surface, and tells of the triangles that they meet.
+template <std::uint32_t Room>
 class RayGuides {
  public:
   RayGuides(const RayTarget& target, std::span<const ShapeRay> rays,
             const RayVisitor& visitor) noexcept
       : target_(target), rays_(rays), visitor_(visitor) {}
 
-  [[nodiscard]] bool is_full() const noexcept { return count_ == kRaysAtOnce; }
+  [[nodiscard]] bool is_full() const noexcept { return count_ == Room; }
   void add(std::size_t ray, double limit) noexcept;
   /// Calls elsewhere(ray) for those that take other ways.
   template <typename Elsewhere>
   void go(Elsewhere&& elsewhere);
 
  private:
-  void fill_up() noexcept;
+  /// Gives back a bit for each that is left.
+  [[nodiscard]] std::uint64_t place() noexcept;
   void go_through_mesh();
   void go_through_field(std::uint32_t i);
   [[nodiscard]] double own(std::uint32_t i, double t) const noexcept {
@@ -160,15 +163,16 @@ class RayGuides {
   const RayVisitor& visitor_;
   std::uint32_t count_ = 0;
   /// As the visitor knows them.
-  std::size_t number_[kRaysAtOnce];
+  std::size_t number_[Room];
   /// In the caller's t, and in own t as they begin.
-  double limit_[kRaysAtOnce];
-  alignas(64) double own_limit_[kRaysAtOnce];
-  RayColumns world_;
-  SurfaceRays own_;
+  double limit_[Room];
+  alignas(kRayAlignment<Room>) double own_limit_[Room];
+  RayColumns<Room> world_;
+  SurfaceRayColumns<Room> own_;
 };
 
-void RayGuides::add(std::size_t ray, double limit) noexcept {
+template <std::uint32_t Room>
+void RayGuides<Room>::add(std::size_t ray, double limit) noexcept {
   const ShapeRay& asked = rays_[ray];
   for (int axis = 0; axis < 3; ++axis) {
     world_.origin[axis][count_] = asked.origin[axis];
@@ -179,22 +183,27 @@ void RayGuides::add(std::size_t ray, double limit) noexcept {
   ++count_;
 }
 
-void RayGuides::fill_up() noexcept {
-  const std::uint32_t rest = count_ == 1 ? 0 : (kRayLanes - count_ % kRayLanes) % kRayLanes;
-  const std::uint32_t last = count_ - 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::fill_n(world_.origin[axis] + count_, rest, world_.origin[axis][last]);
-    std::fill_n(world_.direction[axis] + count_, rest, world_.direction[axis][last]);
+template <std::uint32_t Room>
+std::uint64_t RayGuides<Room>::place() noexcept {
+  if constexpr (Room == 1) {
+    return mesh_kernels().place_ray(target_.frame, world_, own_) ? 0 : 1;
+  } else {
+    const std::uint32_t rest = (kRayLanes - count_ % kRayLanes) % kRayLanes;
+    const std::uint32_t last = count_ - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::fill_n(world_.origin[axis] + count_, rest, world_.origin[axis][last]);
+      std::fill_n(world_.direction[axis] + count_, rest, world_.direction[axis][last]);
+    }
+    std::fill_n(own_limit_ + count_, rest, -1.0);
+    return mesh_kernels().place_rays(target_.frame, world_, count_, own_);
   }
-  std::fill_n(own_limit_ + count_, rest, -1.0);
 }
 
+template <std::uint32_t Room>
 template <typename Elsewhere>
-void RayGuides::go(Elsewhere&& elsewhere) {
+void RayGuides<Room>::go(Elsewhere&& elsewhere) {
   if (count_ == 0) return;
-  fill_up();
-  std::uint64_t left = mesh_kernels().place_rays(target_.frame, world_, count_, own_);
-  for (; left != 0; left &= left - 1) {
+  for (std::uint64_t left = place(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     if (place_ray(target_, rays_[number_[i]], i, own_)) continue;
     elsewhere(number_[i]);
@@ -211,16 +220,23 @@ void RayGuides::go(Elsewhere&& elsewhere) {
   count_ = 0;
 }
 
-void RayGuides::go_through_mesh() {
-  mesh_rays(*target_.body.mesh, own_, own_limit_, count_,
-            {[](void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t found,
-                double limit) {
-               return static_cast<RayGuides*>(context)->show_slots(ray, slots, found, limit);
-             },
-             this});
+template <std::uint32_t Room>
+void RayGuides<Room>::go_through_mesh() {
+  const RaySlotVisitor visitor{[](void* context, std::uint32_t ray, const std::uint32_t* slots,
+                                  std::uint32_t found, double limit) {
+                                 return static_cast<RayGuides*>(context)->show_slots(ray, slots,
+                                                                                     found, limit);
+                               },
+                               this};
+  if constexpr (Room == 1) {
+    mesh_ray(*target_.body.mesh, own_, own_limit_[0], visitor);
+  } else {
+    mesh_rays(*target_.body.mesh, own_, own_limit_, count_, visitor);
+  }
 }
 
-void RayGuides::go_through_field(std::uint32_t i) {
+template <std::uint32_t Room>
+void RayGuides<Room>::go_through_field(std::uint32_t i) {
   if (own_limit_[i] < 0.0) return;
   struct Way {
     RayGuides* guides;
@@ -238,7 +254,8 @@ void RayGuides::go_through_field(std::uint32_t i) {
                 &way});
 }
 
-double RayGuides::show(std::uint32_t i, std::uint32_t slot) const {
+template <std::uint32_t Room>
+double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot) const {
   double corner[3][3];
   if (!target_.body.own_corners(slot, corner)) return limit_[i];
   const SurfaceRay ray = own_[i];
@@ -254,8 +271,9 @@ double RayGuides::show(std::uint32_t i, std::uint32_t slot) const {
   return limit_[i];
 }
 
-double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                       const double (&corner)[3][3], const SurfaceRay& ray) const {
+template <std::uint32_t Room>
+double RayGuides<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+                             const double (&corner)[3][3], const SurfaceRay& ray) const {
   const PlacedBody& body = target_.body;
   ShapeHit hit;
   hit.hit = true;
@@ -267,15 +285,17 @@ double RayGuides::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& fo
   return visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]);
 }
 
-double RayGuides::look(std::uint32_t i, std::uint32_t slot) const {
+template <std::uint32_t Room>
+double RayGuides<Room>::look(std::uint32_t i, std::uint32_t slot) const {
   Primitive primitive;
   const NearBody near(target_.body, target_.about, rays_[number_[i]]);
   if (!near.body.primitive(slot, primitive)) return limit_[i];
   return visitor_.look(visitor_.context, number_[i], primitive, limit_[i]);
 }
 
-double RayGuides::show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
-                             double own_before) {
+template <std::uint32_t Room>
+double RayGuides<Room>::show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
+                                   double own_before) {
   double& limit = limit_[i];
   const double before = limit;
   for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) limit = show(i, slots[k]);
@@ -311,20 +331,27 @@ void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& vis
         children);
 }
 
-/// Primitives are shown about a place.
-void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const ShapeRay> rays,
-                   const double* limits, const RayVisitor& visitor) {
+template <std::uint32_t Room>
+void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
+                const RayVisitor& visitor) {
   const auto look = [&](std::size_t ray) {
-    look_at_all(NearBody(surface, about, rays[ray]), ray, visitor, {});
+    look_at_all(NearBody(target.body, target.about, rays[ray]), ray, visitor, {});
   };
-  const RayTarget target(surface, about);
-  RayGuides guides(target, rays, visitor);
+  RayGuides<Room> guides(target, rays, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
     guides.add(i, limits[i]);
     if (guides.is_full()) guides.go(look);
   }
   guides.go(look);
+}
+
+/// Primitives are shown about a place.
+void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const ShapeRay> rays,
+                   const double* limits, const RayVisitor& visitor) {
+  const RayTarget target(surface, about);
+  const bool is_alone = rays.size() == 1;
+  (is_alone ? guide_rays<1> : guide_rays<kRaysAtOnce>)(target, rays, limits, visitor);
 }
 
 /// Ray `number` through a child of a compound with surfaces, both about the compound: gives back

@@ -46,21 +46,19 @@ class Winding {
 
  private:
   void shoot(const double (&way)[3]) noexcept {
-    SurfaceRays rays;
+    LoneSurfaceRay lone;
     for (int axis = 0; axis < 3; ++axis) {
-      rays.ray.origin[axis][0] = at_[axis];
-      rays.ray.direction[axis][0] = way[axis];
+      lone.ray.origin[axis][0] = at_[axis];
+      lone.ray.direction[axis][0] = way[axis];
     }
-    rays.slack[0] = slack_;
-    rays.shift[0] = 0.0;
-    rays.stretch[0] = 1.0;
-    ray_ = rays[0];
-    const double limit = std::numeric_limits<double>::infinity();
-    mesh_rays(
-        *body_.mesh, rays, &limit, 1,
-        {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
-            double most) { return static_cast<Winding*>(context)->cross(slots, count, most); },
-         this});
+    lone.slack[0] = slack_;
+    lone.shift[0] = 0.0;
+    lone.stretch[0] = 1.0;
+    ray_ = lone[0];
+    mesh_ray(*body_.mesh, lone, std::numeric_limits<double>::infinity(),
+             {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
+                 double most) { return static_cast<Winding*>(context)->cross(slots, count, most); },
+              this});
   }
   /// Gives back the limit to go on with.
   double cross(const std::uint32_t* slots, std::uint32_t count, double limit) noexcept {

@@ -11,7 +11,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Whether the line of a ray passes a triangle by for certain, by the rule of cross_triangle: two
 /// of its volumes with the sides have different signs, whatever rounding and slack do.
-[[gnu::always_inline]] inline bool passes_by(const SurfaceRays& rays, std::uint32_t ray,
+template <std::uint32_t Room>
+[[gnu::always_inline]] inline bool passes_by(const SurfaceRayColumns<Room>& rays, std::uint32_t ray,
                                              const MeshView& mesh, std::uint32_t slot) {
   using D = CornerDoubles;
   using V = Vec3<double, D::kParts>;

@@ -29,5 +29,8 @@ struct SurfaceHit {
 /// otherwise as those of mesh_traversal.h.
 void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor) noexcept;
+/// The same of one ray, whose index is 0.
+void mesh_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+              const RaySlotVisitor& visitor) noexcept;
 
 }  // namespace winnow

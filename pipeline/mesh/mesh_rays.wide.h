@@ -11,6 +11,7 @@
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
+#include "simd/lanes/positive.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
@@ -19,8 +20,9 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 /// Coordinates of corners from there, no longer than `size`, are wrong by u of themselves, and in
 /// the sheared frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size`
 /// and by what the ray is. The area of two such corners is wrong by less than `doubt`.
+template <std::uint32_t Room>
 [[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
-                                             const ReadyRays& rays, std::uint32_t ray,
+                                             const ReadyRays<Room>& rays, std::uint32_t ray,
                                              float entry) {
   constexpr float kUnit = 0x1p-24F;
   Floats from[3];
@@ -39,7 +41,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
       at[axis] = at[axis] - from[axis];
       size = max(size, abs(at[axis]));
     }
-    const auto across = [&](const float(&row)[3][ReadyRays::kFloats]) {
+    const auto across = [&](const float(&row)[3][ReadyRays<Room>::kFloats]) {
       return multiply_add(at[2], Floats(row[2][ray]),
                           multiply_add(at[1], Floats(row[1][ray]), at[0] * Floats(row[0][ray])));
     };
@@ -67,9 +69,11 @@ enum RayStep : std::uint32_t { kEnterInner, kEnterLeaf, kFetchVertices, kLook, k
 template <bool Alone>
 class RayWalk {
  public:
+  static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
+
   /// `ray`: its place among those that are ready, and as its visitor knows it.
-  void start(const MeshView& mesh, const SurfaceRays& own, const ReadyRays& rays, std::uint32_t ray,
-             double limit) {
+  void start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
+             const ReadyRays<kRoom>& rays, std::uint32_t ray, double limit) {
     own_ = &own;
     rays_ = &rays;
     ray_ = ray;
@@ -82,34 +86,34 @@ class RayWalk {
     size_ = 0;
     // What is below a top level of few nodes is nearly as soon asked.
     const std::uint32_t top = mesh.levels - 1;
-    if (top == 0 || mesh.count[top] > kFewNodes) return meet(mesh, top, 0);
-    meet(mesh, top - 1, 0);
-    if (mesh.count[top] == kFewNodes) meet(mesh, top - 1, kLanes);
+    if (top == 0 || mesh.count[top] > kFewNodes) return wait(mesh, top, 0);
+    wait(mesh, top - 1, 0);
+    if (mesh.count[top] == kFewNodes) wait(mesh, top - 1, kLanes);
     if (size_ == kFewNodes && nearest(0) < nearest(1)) exchange();
   }
 
   /// The next step, once nodes are dropped that begin behind what was met: into the nearest of
   /// those that wait, or none.
   [[gnu::always_inline]] RayStep next() {
-    for (; size_ != 0; --size_) {
+    while (size_ != 0) {
       const std::uint32_t at = size_ - 1;
-      const Mask16 rest = rest_[at];
-      const float key = (rest & (rest - 1)) == 0 ? key_[at][first(rest)] : nearest(at);
-      const auto key_bits = __builtin_bit_cast(std::uint32_t, key);
-      const std::uint32_t lane = key_bits % kLanes;
-      entry_ = __builtin_bit_cast(float, key_bits - lane);
-      if (!(entry_ <= last_)) continue;
-      node_ = first_node_[at] + lane;
-      gone_to_[at] = key;
-      rest_[at] = rest & ~(1U << lane);
-      if (rest_[at] == 0) --size_;
-      return node_ >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
+      const std::uint32_t key = nearest(at);
+      if (!aim(key, first_node_[at])) {
+        --size_;
+        continue;
+      }
+      const Mask16 rest = rest_[at] & ~(1U << key % kLanes);
+      gone_to_[at] = __builtin_bit_cast(float, key);
+      rest_[at] = rest;
+      if (rest == 0) --size_;
+      return kind_of_step();
     }
     return kNoStep;
   }
-  /// Goes into that inner node.
-  [[gnu::always_inline]] void enter_inner(const MeshView& mesh) {
-    meet(mesh, (node_ >> kLevelShift) - 1, (node_ & kNodeMask) * kLanes);
+  /// Goes into that inner node, and gives the step after.
+  [[gnu::always_inline]] RayStep enter_inner(const MeshView& mesh) {
+    return meet(mesh, (node_ >> kLevelShift) - 1, (node_ & kNodeMask) * kLanes) ? kind_of_step()
+                                                                                : next();
   }
   /// Goes to that leaf: false if none of its triangles need be looked at. Before they are, their
   /// vertices are to be fetched.
@@ -130,14 +134,15 @@ class RayWalk {
   /// The whole way of one ray. A leaf is looked at after the next node, while its vertices come.
   void go(const MeshView& mesh, const RaySlotVisitor& visitor) {
     asked_.triangles = 0;
+    RayStep step = next();
     for (;;) {
+      while (step == kEnterInner) step = enter_inner(mesh);
       const Asked asked = asked_;
       asked_.triangles = 0;
-      const RayStep step = next();
-      if (step == kEnterInner) enter_inner(mesh);
       if (step == kEnterLeaf && enter_leaf(mesh)) fetch_vertices(mesh);
       if (asked.triangles != 0 && !look(mesh, asked, visitor)) return;
-      if (step == kNoStep && asked.triangles == 0) return;
+      if (step == kNoStep && asked_.triangles == 0) return;
+      step = next();
     }
   }
 
@@ -173,40 +178,75 @@ class RayWalk {
       const Floats inverse(rays_->inverse[axis][ray_]);
       const Floats near = load_short(bounds + near_bound_[axis]);
       const Floats far = load_short(bounds + far_bound_[axis]);
-      in = max(in, multiply_add(near, inverse, Floats(rays_->near[axis][ray_])));
-      out = min(out, multiply_add(far, inverse, Floats(rays_->far[axis][ray_])));
+      in = larger_positive(in, multiply_add(near, inverse, Floats(rays_->near[axis][ray_])));
+      out = smaller_positive(out, multiply_add(far, inverse, Floats(rays_->far[axis][ray_])));
     }
     return in <= out;
   }
 
-  /// Lets those of sixteen nodes wait that the ray meets.
-  [[gnu::always_inline]] void meet(const MeshView& mesh, std::uint32_t level,
-                                   std::uint32_t first_node) {
+  /// Which of sixteen nodes the ray meets, and their keys.
+  [[gnu::always_inline]] Mask16 find(const MeshView& mesh, std::uint32_t level,
+                                     std::uint32_t first_node, Floats& key) {
     alignas(64) static constexpr std::uint32_t kNumbers[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                    8, 9, 10, 11, 12, 13, 14, 15};
     Floats in;
     const LaneMask<float> met = enter(mesh.node[level] + std::size_t{6} * first_node, in);
-    const Mask16 hits = bits(met) & present(mesh.count[level], first_node);
+    const Floats number = Floats::load(reinterpret_cast<const float*>(kNumbers));
+    const Floats without_number(__builtin_bit_cast(float, ~(kLanes - 1U)));
+    key = select(met, (in & without_number) | number, Floats(kNobody));
+    const Mask16 all = bits(met);
+    const Mask16 hits = all & present(mesh.count[level], first_node);
+    if (hits != all) [[unlikely]] {
+      alignas(64) float one[kLanes];
+      key.store(one);
+      for (Mask16 rest = all & ~hits; rest != 0; rest &= rest - 1) one[first(rest)] = kNobody;
+      key = Floats::load(one);
+    }
     if (Alone && level == 0) {
       for (Mask16 rest = hits; rest != 0; rest &= rest - 1) fetch(mesh, first_node + first(rest));
     }
-    if (hits == 0) return;
-    const Floats number = Floats::load(reinterpret_cast<const float*>(kNumbers));
-    const Floats without_number(__builtin_bit_cast(float, ~(kLanes - 1U)));
-    select(met, (in & without_number) | number, Floats(kNobody)).store(key_[size_]);
-    for (std::uint32_t lane = mesh.count[level] - first_node; lane < kLanes; ++lane) {
-      key_[size_][lane] = kNobody;
-    }
-    gone_to_[size_] = 0.0F;
-    rest_[size_] = hits;
-    first_node_[size_] = level << kLevelShift | first_node;
+    return hits;
+  }
+  void put(const Floats& key, std::uint32_t first_node, Mask16 rest, float gone_to) {
+    key.store(key_[size_]);
+    gone_to_[size_] = gone_to;
+    rest_[size_] = rest;
+    first_node_[size_] = first_node;
     ++size_;
+  }
+  /// Lets those of sixteen nodes wait that the ray meets.
+  void wait(const MeshView& mesh, std::uint32_t level, std::uint32_t first_node) {
+    Floats key;
+    const Mask16 hits = find(mesh, level, first_node, key);
+    if (hits != 0) put(key, level << kLevelShift | first_node, hits, 0.0F);
+  }
+  /// The same, but aims at the nearest of them: false if there is none.
+  [[gnu::always_inline]] bool meet(const MeshView& mesh, std::uint32_t level,
+                                   std::uint32_t first_node) {
+    Floats key;
+    const Mask16 hits = find(mesh, level, first_node, key);
+    if (hits == 0) return false;
+    const std::uint32_t nearest = reduce_min_positive(key);
+    const std::uint32_t named = level << kLevelShift | first_node;
+    const Mask16 rest = hits & ~(1U << nearest % kLanes);
+    if (rest != 0) put(key, named, rest, __builtin_bit_cast(float, nearest));
+    return aim(nearest, named);
+  }
+  /// At the node with that key; false if it begins behind what was met.
+  [[gnu::always_inline]] bool aim(std::uint32_t key, std::uint32_t first_node) {
+    const std::uint32_t lane = key % kLanes;
+    node_ = first_node + lane;
+    entry_ = __builtin_bit_cast(float, key - lane);
+    return entry_ <= last_;
+  }
+  [[nodiscard]] RayStep kind_of_step() const {
+    return node_ >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
   }
 
   /// The least key of those that still wait: they are gone to by their order.
-  [[nodiscard]] float nearest(std::uint32_t at) const {
+  [[nodiscard]] std::uint32_t nearest(std::uint32_t at) const {
     const Floats key = Floats::load(key_[at]);
-    return reduce_min(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
+    return reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
   }
   /// The first two blocks that wait, of which nothing was gone to.
   void exchange() {
@@ -277,8 +317,8 @@ class RayWalk {
     return limit >= 0.0;
   }
 
-  const SurfaceRays* own_;
-  const ReadyRays* rays_;
+  const SurfaceRayColumns<kRoom>* own_;
+  const ReadyRays<kRoom>* rays_;
   std::uint32_t ray_;
   /// Where the bounds of sixteen nodes lie that it passes as it enters and leaves them.
   std::uint32_t near_bound_[3];
@@ -307,19 +347,15 @@ class WaitingRays {
   WaitingRays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
               std::uint32_t count)
       : mesh_(mesh), rays_(rays), limits_(limits) {
-    if (count == 1) {
-      come_ = make_ready<true>(mesh.span, rays, limits, 0, ready_) & 1U;
-      return;
-    }
     for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-      come_ |= std::uint64_t{make_ready<false>(mesh.span, rays, limits, first, ready_)} << first;
+      const Mask16 come = make_ready<RaysInLanes>(mesh.span, rays, limits, first, ready_);
+      come_ |= std::uint64_t{come} << first;
     }
     if (count < kRaysAtOnce) come_ &= (std::uint64_t{1} << count) - 1U;
   }
 
   /// Lets the next one start that does not pass the mesh by; false if there is none.
-  template <bool Alone>
-  [[gnu::always_inline]] bool start(RayWalk<Alone>& walk) {
+  [[gnu::always_inline]] bool start(RayWalk<false>& walk) {
     if (come_ == 0) return false;
     const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
     come_ &= come_ - 1;
@@ -332,7 +368,7 @@ class WaitingRays {
   const SurfaceRays& rays_;
   const double* limits_;
   std::uint64_t come_ = 0;
-  ReadyRays ready_;
+  ReadyRays<kRaysAtOnce> ready_;
 };
 
 /// Rays that go through a mesh side by side, so that none waits for memory. In each round all take
@@ -359,10 +395,7 @@ class RaysSideBySide {
         if (first_step == kLook) walk.fetch_vertices(mesh_);
         waits_[first_step].put(walk);
       });
-      each(kEnterInner, [&](Walk& walk) {
-        walk.enter_inner(mesh_);
-        sort_in(walk);
-      });
+      each(kEnterInner, [&](Walk& walk) { sort_in(walk, walk.enter_inner(mesh_)); });
     }
   }
 
@@ -384,8 +417,8 @@ class RaysSideBySide {
   }
   /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
   /// its end.
-  [[gnu::always_inline]] void sort_in(Walk& walk) {
-    RayStep next = walk.next();
+  [[gnu::always_inline]] void sort_in(Walk& walk) { sort_in(walk, walk.next()); }
+  [[gnu::always_inline]] void sort_in(Walk& walk, RayStep next) {
     while (next == kNoStep) {
       if (!waiting_.start(walk)) return;
       next = walk.next();
@@ -412,12 +445,16 @@ class RaysSideBySide {
 inline void show_on_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                          std::uint32_t count, const RaySlotVisitor& visitor) {
   WaitingRays waiting(mesh, rays, limits, count);
-  if (count == 1) {
-    RayWalk<true> walk;
-    if (waiting.start(walk)) walk.go(mesh, visitor);
-    return;
-  }
   RaysSideBySide(mesh, visitor, waiting).run();
+}
+/// The same of one ray.
+inline void show_on_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+                        const RaySlotVisitor& visitor) {
+  ReadyRays<1> ready;
+  if (make_ready<AxesInLanes>(mesh.span, ray, &limit, 0, ready) == 0) return;
+  RayWalk<true> walk;
+  walk.start(mesh, ray, ready, 0, limit);
+  walk.go(mesh, visitor);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -150,10 +150,14 @@ struct MeshKernels {
   void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
                      const SlotPairVisitor& visitor);
   /// Takes rays into the frame of a surface; gives back a bit for each that is left to the caller.
-  std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns& world,
+  std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                               std::uint32_t count, SurfaceRays& own);
+  /// The same of one; false if it is left.
+  bool (*place_ray)(const SurfaceFrame& frame, const RayColumns<1>& world, LoneSurfaceRay& own);
   void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor);
+  void (*ray)(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+              const RaySlotVisitor& visitor);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

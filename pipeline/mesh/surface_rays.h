@@ -2,6 +2,7 @@
 
 // Plain structs: kernel files include this.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace winnow {
@@ -18,10 +19,18 @@ inline constexpr double kMostRayLength = 1e150;
 /// theirs into the world.
 inline constexpr double kRaySlack = 0x1p-46;
 
+/// Rows of a column of vectors: those of a lone ray, whose numbers follow each other, are written
+/// four at a time.
+template <std::uint32_t Room>
+inline constexpr std::uint32_t kVectorRows = Room == 1 ? 4 : 3;
+template <std::uint32_t Room>
+inline constexpr std::size_t kRayAlignment = Room == 1 ? 8 : 64;
+
 /// Rays by component.
+template <std::uint32_t Room>
 struct RayColumns {
-  alignas(64) double origin[3][kRaysAtOnce];
-  alignas(64) double direction[3][kRaysAtOnce];
+  alignas(kRayAlignment<Room>) double origin[kVectorRows<Room>][Room];
+  alignas(kRayAlignment<Room>) double direction[kVectorRows<Room>][Room];
 };
 
 /// A ray in the own frame of a mesh or height field, whose length along it is about that of t.
@@ -34,11 +43,12 @@ struct SurfaceRay {
 };
 
 /// The same in columns. The caller's t is shift + own t * stretch.
-struct SurfaceRays {
-  RayColumns ray;
-  alignas(64) double slack[kRaysAtOnce];
-  alignas(64) double shift[kRaysAtOnce];
-  alignas(64) double stretch[kRaysAtOnce];
+template <std::uint32_t Room>
+struct SurfaceRayColumns {
+  RayColumns<Room> ray;
+  alignas(kRayAlignment<Room>) double slack[Room];
+  alignas(kRayAlignment<Room>) double shift[Room];
+  alignas(kRayAlignment<Room>) double stretch[Room];
 
   [[nodiscard]] SurfaceRay operator[](std::uint32_t i) const noexcept {
     const auto& from = ray.origin;
@@ -47,10 +57,14 @@ struct SurfaceRays {
   }
 };
 
+using SurfaceRays = SurfaceRayColumns<kRaysAtOnce>;
+using LoneSurfaceRay = SurfaceRayColumns<1>;
+
 /// Where a surface stands, and the matrix that takes the world's vectors into its frame. No
 /// coordinate of it is larger than `reach` in that frame, or than `size` in the world's axes.
 struct SurfaceFrame {
   double position[3];
+  /// By columns.
   double to_own[3][3];
   double reach;
   double size;

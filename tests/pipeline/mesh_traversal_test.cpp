@@ -398,14 +398,14 @@ Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
   return point;
 }
 
-SurfaceRays columns_of(const SurfaceRay& ray) {
-  SurfaceRays rays{};
+LoneSurfaceRay lone(const SurfaceRay& ray) {
+  LoneSurfaceRay result{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::fill_n(rays.ray.origin[axis], kRayLanes, ray.origin[axis]);
-    std::fill_n(rays.ray.direction[axis], kRayLanes, ray.direction[axis]);
+    result.ray.origin[axis][0] = ray.origin[axis];
+    result.ray.direction[axis][0] = ray.direction[axis];
   }
-  std::fill_n(rays.slack, kRayLanes, ray.slack);
-  return rays;
+  result.slack[0] = ray.slack;
+  return result;
 }
 
 TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
@@ -426,14 +426,12 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
       ray.slack = 0x1p-48 * (from.cwiseAbs().maxCoeff() + at.cwiseAbs().maxCoeff() + far);
       const double limit =
           random.chance(0.3) ? std::numeric_limits<double>::infinity() : far * (1.0 + 1e-9);
-      alignas(64) double limits[kRayLanes];
-      std::fill_n(limits, kRayLanes, limit);
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_rays(view_of(mesh), columns_of(ray), limits, 1,
-                  {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
-                      double most) { return Seen::visit(context, slots, count, most); },
-                   &seen});
+        mesh_ray(view_of(mesh), lone(ray), limit,
+                 {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
+                     double most) { return Seen::visit(context, slots, count, most); },
+                  &seen});
         std::sort(seen.slots.begin(), seen.slots.end());
         return std::binary_search(seen.slots.begin(), seen.slots.end(), aim) ? Slots{aim} : Slots{};
       });
@@ -478,7 +476,7 @@ TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
   Random random(13);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = twin(view_of(mesh));
-    for (const std::uint32_t count : {2U, 9U, kRaysAtOnce}) {
+    for (const std::uint32_t count : {1U, 2U, 9U, kRaysAtOnce}) {
       SurfaceRays rays{};
       alignas(64) double limits[kRaysAtOnce] = {};
       std::fill_n(limits, kRaysAtOnce, -1.0);
@@ -498,7 +496,7 @@ TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
         mesh_rays(view_of(mesh), rays, limits, count, {SeenByRays::visit, &together});
         for (std::uint32_t i = 0; i < count; ++i) {
           SeenByRays alone;
-          mesh_rays(view_of(mesh), columns_of(rays[i]), &limits[i], 1, {SeenByRays::visit, &alone});
+          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], {SeenByRays::visit, &alone});
           EXPECT_EQ(together.slots[i], alone.slots[0]) << "ray " << i << " of " << count;
         }
       }
