@@ -14,13 +14,16 @@
 namespace winnow::mid {
 namespace {
 
-/// A vector, transformed, of length 1.
-[[nodiscard]] Vec unit_under(const Mat& matrix, const Vec& v) noexcept {
-  const Vec plain = matrix * v;
+/// A vector times the transpose of a matrix, of length 1.
+[[nodiscard]] Vec unit_under(const Mat& transposed, const Vec& v) noexcept {
+  const auto times = [&](const Vec& of) {
+    return Vec(transposed.col(0).dot(of), transposed.col(1).dot(of), transposed.col(2).dot(of));
+  };
+  const Vec plain = times(v);
   const double square = plain.squaredNorm();
   constexpr double kSafe = 1e200;
   if (square > 1.0 / kSafe && square < kSafe) return plain * (1.0 / std::sqrt(square));
-  return (matrix * v.stableNormalized()).stableNormalized();
+  return times(v.stableNormalized()).stableNormalized();
 }
 
 /// The power of two that brings x, which is positive, into [1/2, 1).
@@ -66,7 +69,13 @@ struct NearBody {
 struct RayTarget {
   RayTarget(const PlacedBody& placed, const Vec& show_about) noexcept
       : body(placed), about(show_about) {
-    const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
+    const bool is_mesh = body.kind == PlacedBody::Kind::mesh;
+    const Aabb bounds = is_mesh ? body.shared->mesh.bounds() : body.field->bounds();
+    Vec corner;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[static_cast<Eigen::Index>(axis)] =
+          static_cast<double>(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])));
+    }
     Vec::Map(frame.position) = body.position;
     Mat::Map(frame.to_own[0]) = body.to_local;
     frame.reach = corner.maxCoeff();
@@ -150,13 +159,13 @@ class RayGuides {
     const double limit = own_limit(i, t);
     return limit + 0x1p-20 * (std::abs(limit) + target_.frame.reach);
   }
-  /// Those that show a triangle, or some, give back the limit to go on with.
-  [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot) const;
+  // Those that show a triangle, or some, give back the own limit to go on with.
   [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                            const double (&corner)[3][3], const SurfaceRay& ray) const;
-  [[nodiscard]] double look(std::uint32_t i, std::uint32_t slot) const;
-  double show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
-                    double own_limit);
+                            double own_before);
+  [[nodiscard]] double look(std::uint32_t i, std::uint32_t slot, double own_before);
+  [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot, double own_before);
+  /// The limit in the caller's t has become `limit`.
+  [[nodiscard]] double after(std::uint32_t i, double limit, double own_before) noexcept;
 
   const RayTarget& target_;
   std::span<const ShapeRay> rays_;
@@ -211,6 +220,8 @@ void RayGuides<Room>::go(Elsewhere&& elsewhere) {
   }
   for (std::uint32_t i = 0; i < count_; ++i) {
     own_limit_[i] = limit_[i] >= 0.0 ? first_limit(i, limit_[i]) : -1.0;
+    own_.low[i] = own(i, 0.0);
+    own_.high[i] = own(i, rays_[number_[i]].max_t);
   }
   if (target_.body.kind == PlacedBody::Kind::mesh) {
     go_through_mesh();
@@ -222,12 +233,13 @@ void RayGuides<Room>::go(Elsewhere&& elsewhere) {
 
 template <std::uint32_t Room>
 void RayGuides<Room>::go_through_mesh() {
-  const RaySlotVisitor visitor{[](void* context, std::uint32_t ray, const std::uint32_t* slots,
-                                  std::uint32_t found, double limit) {
-                                 return static_cast<RayGuides*>(context)->show_slots(ray, slots,
-                                                                                     found, limit);
-                               },
-                               this};
+  const RaySlotVisitor visitor{
+      [](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& found,
+         double limit) { return static_cast<RayGuides*>(context)->meet(ray, slot, found, limit); },
+      [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
+        return static_cast<RayGuides*>(context)->look(ray, slot, limit);
+      },
+      this};
   if constexpr (Room == 1) {
     mesh_ray(*target_.body.mesh, own_, own_limit_[0], visitor);
   } else {
@@ -249,56 +261,61 @@ void RayGuides<Room>::go_through_field(std::uint32_t i) {
   height_sweep(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
                {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
                   const Way& on = *static_cast<Way*>(context);
-                  return on.guides->show_slots(on.ray, slots, count, limit);
+                  for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) {
+                    limit = on.guides->show(on.ray, slots[k], limit);
+                  }
+                  return limit;
                 },
                 &way});
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot) const {
+double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot, double own_before) {
   double corner[3][3];
-  if (!target_.body.own_corners(slot, corner)) return limit_[i];
-  const SurfaceRay ray = own_[i];
+  if (!target_.body.own_corners(slot, corner)) return own_before;
   SurfaceHit found;
-  switch (cross_triangle(ray, corner, own(i, 0.0), own(i, rays_[number_[i]].max_t), found)) {
+  switch (cross_triangle(own_[i], corner, found)) {
     case Crossing::none:
       break;
     case Crossing::found:
-      return meet(i, slot, found, corner, ray);
+      return meet(i, slot, found, own_before);
     case Crossing::doubtful:
-      return look(i, slot);
+      return look(i, slot, own_before);
   }
-  return limit_[i];
+  return own_before;
 }
 
 template <std::uint32_t Room>
 double RayGuides<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                             const double (&corner)[3][3], const SurfaceRay& ray) const {
+                             double own_before) {
   const PlacedBody& body = target_.body;
   ShapeHit hit;
   hit.hit = true;
   hit.t = own_.shift[i] + found.t * own_.stretch[i];
-  if (!(hit.t <= limit_[i]) || (body.front != 0 && comes_from_behind(ray, corner))) {
-    return limit_[i];
+  if (!(hit.t <= limit_[i])) return own_before;
+  if (body.front != 0) {
+    double corner[3][3];
+    (void)body.own_corners(slot, corner);
+    if (comes_from_behind(own_[i], corner)) return own_before;
   }
-  Vec::Map(hit.normal) = unit_under(body.to_local.transpose(), Vec::Map(found.normal));
-  return visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]);
+  Vec::Map(hit.normal) = unit_under(body.to_local, Vec::Map(found.normal));
+  return after(i,
+               visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]),
+               own_before);
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::look(std::uint32_t i, std::uint32_t slot) const {
+double RayGuides<Room>::look(std::uint32_t i, std::uint32_t slot, double own_before) {
   Primitive primitive;
   const NearBody near(target_.body, target_.about, rays_[number_[i]]);
-  if (!near.body.primitive(slot, primitive)) return limit_[i];
-  return visitor_.look(visitor_.context, number_[i], primitive, limit_[i]);
+  if (!near.body.primitive(slot, primitive)) return own_before;
+  return after(i, visitor_.look(visitor_.context, number_[i], primitive, limit_[i]), own_before);
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::show_slots(std::uint32_t i, const std::uint32_t* slots, std::uint32_t count,
-                                   double own_before) {
-  double& limit = limit_[i];
-  const double before = limit;
-  for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) limit = show(i, slots[k]);
+double RayGuides<Room>::after(std::uint32_t i, double limit, double own_before) noexcept {
+  const double before = limit_[i];
+  limit_[i] = limit;
   if (limit < 0.0) return -1.0;
   return limit < before ? own_limit(i, limit) : own_before;
 }

@@ -54,24 +54,25 @@ class Winding {
     lone.slack[0] = slack_;
     lone.shift[0] = 0.0;
     lone.stretch[0] = 1.0;
+    lone.low[0] = 0.0;
+    lone.high[0] = std::numeric_limits<double>::infinity();
     ray_ = lone[0];
-    mesh_ray(*body_.mesh, lone, std::numeric_limits<double>::infinity(),
-             {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
-                 double most) { return static_cast<Winding*>(context)->cross(slots, count, most); },
-              this});
+    mesh_ray(
+        *body_.mesh, lone, lone.high[0],
+        {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&, double limit) {
+           static_cast<Winding*>(context)->cross(slot);
+           return limit;
+         },
+         [](void* context, std::uint32_t, std::uint32_t, double) {
+           static_cast<Winding*>(context)->in_doubt_ = true;
+           return -1.0;
+         },
+         this});
   }
-  /// Gives back the limit to go on with.
-  double cross(const std::uint32_t* slots, std::uint32_t count, double limit) noexcept {
-    for (std::uint32_t i = 0; i < count && !in_doubt_; ++i) {
-      double corner[3][3];
-      (void)body_.own_corners(slots[i], corner);
-      SurfaceHit hit;
-      const Crossing crossing =
-          cross_triangle(ray_, corner, 0.0, std::numeric_limits<double>::infinity(), hit);
-      in_doubt_ = crossing == Crossing::doubtful;
-      if (crossing == Crossing::found) crossings_ += comes_from_behind(ray_, corner) ? 1 : -1;
-    }
-    return in_doubt_ ? -1.0 : limit;
+  void cross(std::uint32_t slot) noexcept {
+    double corner[3][3];
+    (void)body_.own_corners(slot, corner);
+    crossings_ += comes_from_behind(ray_, corner) ? 1 : -1;
   }
   /// 4 pi times the winding number (van Oosterom, Strackee, "The solid angle of a plane triangle",
   /// 1983). O(n).

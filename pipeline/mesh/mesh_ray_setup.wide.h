@@ -106,7 +106,7 @@ template <typename V>
   spread(of, v);
 }
 [[gnu::always_inline]] inline void spread_stored(const double (&of)[3], Axes& v) {
-  v = join_axes(of);
+  v = join_axes(of[0], of[1], of[2]);
 }
 [[gnu::always_inline]] inline void load(const double (&column)[3][kRaysAtOnce], std::uint32_t first,
                                         Vec3<double>& v) {
@@ -122,7 +122,7 @@ template <typename V>
 }
 [[gnu::always_inline]] inline void load_stored(const double (&column)[4][1], std::uint32_t,
                                                Axes& v) {
-  v = join_axes(column[0]);
+  v = join_axes(column[0][0], column[1][0], column[2][0]);
 }
 template <typename T, std::size_t Stride>
 [[gnu::always_inline]] inline void store(const Vec3<double>& v, T (&column)[3][Stride],
@@ -178,9 +178,9 @@ template <typename OnEntries>
 [[gnu::always_inline]] inline Axes times(const double (&column)[3][3], const Axes& v,
                                          OnEntries&& on_entries) {
   const Components c(v);
-  return on_entries(join_axes(column[0])) * Axes(c.of[0]) +
-         on_entries(join_axes(column[1])) * Axes(c.of[1]) +
-         on_entries(join_axes(column[2])) * Axes(c.of[2]);
+  return on_entries(join_axes(column[0][0], column[0][1], column[0][2])) * Axes(c.of[0]) +
+         on_entries(join_axes(column[1][0], column[1][1], column[1][2])) * Axes(c.of[1]) +
+         on_entries(join_axes(column[2][0], column[2][1], column[2][2])) * Axes(c.of[2]);
 }
 template <typename V>
 [[gnu::always_inline]] inline V times(const double (&column)[3][3], const V& v) {

@@ -304,17 +304,18 @@ class RayWalk {
     Mask16 triangles = asked.triangles;
     if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, *rays_, ray_, asked.entry);
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
-    std::uint32_t slots[kLanes];
-    std::uint32_t count = 0;
     for (; triangles != 0; triangles &= triangles - 1) {
-      slots[count] = first_slot + first(triangles);
-      // Of triangles whose boxes are met few are.
-      count += mesh.box != nullptr && passes_by(*own_, ray_, mesh, slots[count]) ? 0U : 1U;
+      const std::uint32_t slot = first_slot + first(triangles);
+      SurfaceHit hit;
+      const Crossing crossing = cross(crossing_ray(*own_, ray_), load_triangle(mesh, slot), hit);
+      if (crossing == Crossing::none) continue;
+      const double limit = crossing == Crossing::found
+                               ? visitor.meet(visitor.context, ray_, slot, hit, limit_)
+                               : visitor.look(visitor.context, ray_, slot, limit_);
+      if (limit != limit_) set_limit(limit);
+      if (limit < 0.0) return false;
     }
-    if (count == 0) return true;
-    const double limit = visitor.visit(visitor.context, ray_, slots, count, limit_);
-    if (limit != limit_) set_limit(limit);
-    return limit >= 0.0;
+    return true;
   }
 
   const SurfaceRayColumns<kRoom>* own_;

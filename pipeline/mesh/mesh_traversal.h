@@ -135,10 +135,14 @@ struct MeshNearJob {
   double scale[3];
 };
 
-/// Is shown the slots of a leaf that one of several rays may meet; gives back that ray's new limit.
+/// Is shown what each of several rays meets, and gives back that ray's new limit; one below zero
+/// ends its way.
 struct RaySlotVisitor {
-  double (*visit)(void* context, std::uint32_t ray, const std::uint32_t* slots, std::uint32_t count,
-                  double limit) = nullptr;
+  /// A triangle that it meets for certain.
+  double (*meet)(void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
+                 double limit) = nullptr;
+  /// One that it may meet.
+  double (*look)(void* context, std::uint32_t ray, std::uint32_t slot, double limit) = nullptr;
   void* context = nullptr;
 };
 
@@ -158,6 +162,7 @@ struct MeshKernels {
                std::uint32_t count, const RaySlotVisitor& visitor);
   void (*ray)(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
               const RaySlotVisitor& visitor);
+  Crossing (*cross)(const SurfaceRay& ray, const double (&corner)[3][3], SurfaceHit& hit);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

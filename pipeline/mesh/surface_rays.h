@@ -40,6 +40,9 @@ struct SurfaceRay {
   double direction[3];
   /// Wherever it is near the surface, the true ray is no farther from this one.
   double slack;
+  /// Triangles count that it meets at some t in [low, high].
+  double low;
+  double high;
 };
 
 /// The same in columns. The caller's t is shift + own t * stretch.
@@ -49,11 +52,17 @@ struct SurfaceRayColumns {
   alignas(kRayAlignment<Room>) double slack[Room];
   alignas(kRayAlignment<Room>) double shift[Room];
   alignas(kRayAlignment<Room>) double stretch[Room];
+  alignas(kRayAlignment<Room>) double low[Room];
+  alignas(kRayAlignment<Room>) double high[Room];
 
   [[nodiscard]] SurfaceRay operator[](std::uint32_t i) const noexcept {
     const auto& from = ray.origin;
     const auto& way = ray.direction;
-    return {{from[0][i], from[1][i], from[2][i]}, {way[0][i], way[1][i], way[2][i]}, slack[i]};
+    return {{from[0][i], from[1][i], from[2][i]},
+            {way[0][i], way[1][i], way[2][i]},
+            slack[i],
+            low[i],
+            high[i]};
   }
 };
 
@@ -68,6 +77,14 @@ struct SurfaceFrame {
   double to_own[3][3];
   double reach;
   double size;
+};
+
+enum class Crossing : std::uint8_t { none, found, doubtful };
+
+struct SurfaceHit {
+  double t;
+  /// At right angles to the triangle, against the ray, of any length.
+  double normal[3];
 };
 
 }  // namespace winnow

@@ -1,17 +1,10 @@
 #pragma once
 
+#include "pipeline/shapes/difference_of_products.h"
+
 #include <Eigen/Core>
-#include <cmath>
 
 namespace winnow {
-
-/// x * y - z * w to an ulp or two of the result (Kahan; Jeannerod, Louvet and Muller, 2013).
-[[nodiscard]] inline double difference_of_products(double x, double y, double z,
-                                                   double w) noexcept {
-  const double product = z * w;
-  const double error = std::fma(-z, w, product);
-  return std::fma(x, y, -product) + error;
-}
 
 /// The product of two edges: of a sliver, too, a direction at right angles to both.
 [[nodiscard]] inline Eigen::Vector3d accurate_cross(const Eigen::Vector3d& a,

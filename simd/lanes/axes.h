@@ -25,16 +25,34 @@ using Axes = CornerDoubles;
 #endif
   return r;
 }
-/// The same of numbers that were stored by themselves just now: a load of all would have to wait
+/// The same in double; four numbers may be read, the last of which need not be zero.
+[[gnu::always_inline]] inline Axes load_axes(const float* p) {
+  Axes r;
+#if defined(WINNOW_ISA_IS_avx512)
+  r.part[0] = _mm512_zextpd256_pd512(_mm256_cvtps_pd(_mm_loadu_ps(p)));
+#elif defined(WINNOW_ISA_IS_avx2)
+  r.part[0] = _mm256_cvtps_pd(_mm_loadu_ps(p));
+#elif defined(WINNOW_ISA_IS_sse42)
+  const __m128 single = _mm_loadu_ps(p);
+  r.part[0] = _mm_cvtps_pd(single);
+  r.part[1] = _mm_cvtps_pd(_mm_movehl_ps(single, single));
+#else
+  const float32x4_t single = vld1q_f32(p);
+  r.part[0] = vcvt_f64_f32(vget_low_f32(single));
+  r.part[1] = vcvt_high_f64_f32(single);
+#endif
+  return r;
+}
+/// Of three numbers by themselves; if they were stored just now, a load of all would have to wait
 /// until they are in memory.
-[[gnu::always_inline]] inline Axes join_axes(const double* p) {
+[[gnu::always_inline]] inline Axes join_axes(double x, double y, double z) {
   Axes r;
 #if defined(WINNOW_ISA_IS_neon64)
-  r.part[0] = vcombine_f64(vld1_f64(p), vld1_f64(p + 1));
-  r.part[1] = vcombine_f64(vld1_f64(p + 2), vdup_n_f64(0.0));
+  r.part[0] = vcombine_f64(vdup_n_f64(x), vdup_n_f64(y));
+  r.part[1] = vcombine_f64(vdup_n_f64(z), vdup_n_f64(0.0));
 #else
-  const __m128d low = _mm_loadh_pd(_mm_load_sd(p), p + 1);
-  const __m128d high = _mm_load_sd(p + 2);
+  const __m128d low = _mm_set_pd(y, x);
+  const __m128d high = _mm_set_sd(z);
 #if defined(WINNOW_ISA_IS_avx512)
   r.part[0] = _mm512_zextpd256_pd512(_mm256_set_m128d(high, low));
 #elif defined(WINNOW_ISA_IS_avx2)

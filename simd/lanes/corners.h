@@ -42,6 +42,12 @@ inline constexpr Mask16 kThreeCorners = 7U;
 #endif
 }
 
+/// Of the three corners by themselves.
+[[gnu::always_inline]] inline CornerDoubles join_corners(double a, double b, double c) {
+  alignas(64) const double corner[CornerDoubles::kCount] = {a, b, c, a};
+  return CornerDoubles::load(corner);
+}
+
 /// Each lane's number goes to the corner before.
 [[gnu::always_inline]] inline CornerDoubles of_next(const CornerDoubles& v) {
   CornerDoubles r;

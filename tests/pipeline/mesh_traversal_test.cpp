@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "tests/support/config.h"
@@ -405,6 +406,8 @@ LoneSurfaceRay lone(const SurfaceRay& ray) {
     result.ray.direction[axis][0] = ray.direction[axis];
   }
   result.slack[0] = ray.slack;
+  result.low[0] = ray.low;
+  result.high[0] = ray.high;
   return result;
 }
 
@@ -426,11 +429,15 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
       ray.slack = 0x1p-48 * (from.cwiseAbs().maxCoeff() + at.cwiseAbs().maxCoeff() + far);
       const double limit =
           random.chance(0.3) ? std::numeric_limits<double>::infinity() : far * (1.0 + 1e-9);
+      ray.high = limit;
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
         mesh_ray(view_of(mesh), lone(ray), limit,
-                 {[](void* context, std::uint32_t, const std::uint32_t* slots, std::uint32_t count,
-                     double most) { return Seen::visit(context, slots, count, most); },
+                 {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&,
+                     double most) { return Seen::visit(context, &slot, 1, most); },
+                  [](void* context, std::uint32_t, std::uint32_t slot, double most) {
+                    return Seen::visit(context, &slot, 1, most);
+                  },
                   &seen});
         std::sort(seen.slots.begin(), seen.slots.end());
         return std::binary_search(seen.slots.begin(), seen.slots.end(), aim) ? Slots{aim} : Slots{};
@@ -443,7 +450,7 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
         }
       }
       SurfaceHit hit{};
-      const Crossing crossing = cross_triangle(ray, corner, 0.0, limit, hit);
+      const Crossing crossing = cross_triangle(ray, corner, hit);
       EXPECT_NE(crossing, Crossing::none);
       if (crossing != Crossing::found) continue;
       const Point normal = cross(minus(triangles[aim].corner[1], triangles[aim].corner[0]),
@@ -460,14 +467,22 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
   }
 }
 
-/// What each of several rays is shown, in any order.
+/// What each of several rays is shown, in any order: where it meets triangles, or -1 where that is
+/// in doubt.
 struct SeenByRays {
-  std::set<std::uint32_t> slots[kRaysAtOnce];
+  std::map<std::uint32_t, double> slots[kRaysAtOnce];
 
-  static double visit(void* context, std::uint32_t ray, const std::uint32_t* slots,
-                      std::uint32_t count, double limit) {
+  [[nodiscard]] RaySlotVisitor visitor() {
+    return {[](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
+               double limit) { return note(context, ray, slot, hit.t, limit); },
+            [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
+              return note(context, ray, slot, -1.0, limit);
+            },
+            this};
+  }
+  static double note(void* context, std::uint32_t ray, std::uint32_t slot, double t, double limit) {
     auto& seen = static_cast<SeenByRays*>(context)->slots[ray];
-    for (std::uint32_t i = 0; i < count; ++i) EXPECT_TRUE(seen.insert(slots[i]).second);
+    EXPECT_TRUE(seen.emplace(slot, t).second);
     return limit;
   }
 };
@@ -488,15 +503,16 @@ TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
           rays.ray.origin[axis][i] = at[axis] - mesh.radius() * rays.ray.direction[axis][i];
         }
         rays.slack[i] = 0x1p-46 * mesh.radius();
+        rays.high[i] = 4.0 * mesh.radius();
         limits[i] = random.chance(0.2) ? -1.0 : mesh.radius() * random.uniform(0, 3);
       }
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
         SeenByRays together;
-        mesh_rays(view_of(mesh), rays, limits, count, {SeenByRays::visit, &together});
+        mesh_rays(view_of(mesh), rays, limits, count, together.visitor());
         for (std::uint32_t i = 0; i < count; ++i) {
           SeenByRays alone;
-          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], {SeenByRays::visit, &alone});
+          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], alone.visitor());
           EXPECT_EQ(together.slots[i], alone.slots[0]) << "ray " << i << " of " << count;
         }
       }
