@@ -84,7 +84,7 @@ bool SharedMesh::find_corners() noexcept {
     for (std::uint32_t k = 0; k < 3; ++k) {
       // On edge k and on the one before.
       const std::uint32_t both = 1U << k | 1U << (k + 2) % 3;
-      const std::uint32_t vertex = view.corner[k][slot];
+      const std::uint32_t vertex = corner_of(view, k, slot);
       if ((active & both) != 0) active_corners[vertex / 32] |= 1U << vertex % 32;
     }
   }

@@ -160,7 +160,8 @@ bool PlacedBody::own_corners(std::uint32_t number, double (&corner)[3][3]) const
   }
   for (int k = 0; k < 3; ++k) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner[k][axis] = static_cast<double>(coordinate(*mesh, mesh->corner[k][number], axis));
+      corner[k][axis] = static_cast<double>(
+          coordinate(*mesh, corner_of(*mesh, static_cast<std::size_t>(k), number), axis));
     }
   }
   return true;
@@ -206,7 +207,7 @@ std::uint8_t PlacedBody::active(std::uint32_t number) const noexcept {
   if (kind == Kind::mesh) {
     bits = mesh->triangle[number] >> kActiveEdgeShift & 7U;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (shared->is_active(mesh->corner[k][number])) bits |= 8U << k;
+      if (shared->is_active(corner_of(*mesh, k, number))) bits |= 8U << k;
     }
     return static_cast<std::uint8_t>(bits);
   }

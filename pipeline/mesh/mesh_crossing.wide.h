@@ -25,7 +25,7 @@ struct TriangleInLanes {
   TriangleInLanes triangle;
   const float* at[3];
   for (int k = 0; k < 3; ++k) {
-    at[k] = mesh.vertex + std::size_t{3} * mesh.corner[k][slot];
+    at[k] = mesh.vertex + std::size_t{3} * corner_of(mesh, static_cast<std::size_t>(k), slot);
     triangle.corner[k] = load_axes(at[k]);
   }
   load_points(at[0], at[1], at[2], triangle.by_axis);

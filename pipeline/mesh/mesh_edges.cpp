@@ -52,7 +52,7 @@ struct CornerPlaces {
   std::uint32_t at[3];
 
   CornerPlaces(const MeshView& mesh, const Column<std::uint32_t>& place, std::size_t slot) {
-    for (std::size_t k = 0; k < 3; ++k) at[k] = place[mesh.corner[k][slot]];
+    for (std::size_t k = 0; k < 3; ++k) at[k] = place[corner_of(mesh, k, slot)];
   }
   [[nodiscard]] std::uint32_t low(std::size_t edge) const {
     return std::min(at[edge], at[(edge + 1) % 3]);
@@ -152,7 +152,7 @@ namespace {
 constexpr std::uint32_t kEdgeBits = 7U << kActiveEdgeShift;
 
 void read(const MeshView& mesh, std::size_t slot, std::size_t corner, double (&point)[3]) {
-  const std::uint32_t vertex = mesh.corner[corner][slot];
+  const std::uint32_t vertex = corner_of(mesh, corner, slot);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     point[axis] = static_cast<double>(coordinate(mesh, vertex, axis));
   }

@@ -5,6 +5,7 @@
 #include "pipeline/mesh/mesh_view.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
+#include "simd/lanes/places.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
@@ -53,11 +54,60 @@ struct Corners16 {
   Floats at[3][3];
 };
 
-[[gnu::always_inline]] inline Corners16 load_corners(const MeshView& mesh, std::uint32_t leaf) {
-  Corners16 corners;
-  for (int k = 0; k < 3; ++k) {
-    load_points(mesh.vertex, mesh.corner[k] + std::size_t{leaf} * kMeshFanout, corners.at[k]);
+/// How many blocks of sixteen hold the vertices that a leaf lists: one or two, or 0 where leaves
+/// list none or this one more.
+[[gnu::always_inline]] inline int vertex_blocks(const MeshView& mesh, std::uint32_t leaf) {
+  if (mesh.corner[0] != nullptr) return 0;
+  const std::uint8_t* const places = places_of(mesh, leaf, 0);
+  if (are_below<kLanes>(places)) return 1;
+  return are_below<2 * kLanes>(places) ? 2 : 0;
+}
+
+/// Calls look(block, its vertices) for each of them.
+template <int Blocks, typename Look>
+[[gnu::always_inline]] inline void each_vertex_block(const MeshView& mesh, std::uint32_t leaf,
+                                                     Look&& look) {
+  for (int block = 0; block < Blocks; ++block) {
+    const std::size_t at = block == 0 ? leaf : std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
+    Floats vertex[3];
+    load_points(mesh.vertex, mesh.leaf_vertex + at * kMeshFanout, vertex);
+    look(block, vertex);
   }
+}
+
+/// Corners k of a leaf, each from where its vertex is.
+[[gnu::always_inline]] inline void load_corners(const MeshView& mesh, std::uint32_t leaf,
+                                                std::size_t k, Floats (&corner)[3]) {
+  const std::size_t first_slot = std::size_t{leaf} * kMeshFanout;
+  if (mesh.corner[0] != nullptr)
+    return load_points(mesh.vertex, mesh.corner[k] + first_slot, corner);
+  std::uint32_t number[kLanes];
+  for (std::size_t lane = 0; lane < kMeshFanout; ++lane) {
+    number[lane] = corner_of(mesh, k, first_slot + lane);
+  }
+  load_points(mesh.vertex, number, corner);
+}
+
+template <int Blocks>
+[[gnu::always_inline]] inline Corners16 pick_corners(const MeshView& mesh, std::uint32_t leaf) {
+  Floats at[3][Blocks];
+  each_vertex_block<Blocks>(mesh, leaf, [&](int block, const Floats(&vertex)[3]) {
+    for (int axis = 0; axis < 3; ++axis) at[axis][block] = vertex[axis];
+  });
+  Corners16 corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Places places(places_of(mesh, leaf, k));
+    for (int axis = 0; axis < 3; ++axis) corners.at[k][axis] = places.pick(at[axis]);
+  }
+  return corners;
+}
+
+[[gnu::always_inline]] inline Corners16 load_corners(const MeshView& mesh, std::uint32_t leaf) {
+  const int blocks = vertex_blocks(mesh, leaf);
+  if (blocks == 1) return pick_corners<1>(mesh, leaf);
+  if (blocks == 2) return pick_corners<2>(mesh, leaf);
+  Corners16 corners;
+  for (std::size_t k = 0; k < 3; ++k) load_corners(mesh, leaf, k, corners.at[k]);
   return corners;
 }
 

@@ -8,6 +8,8 @@
 // signs of the areas between it and their sides (Woop, Benthin, Wald, "Watertight ray/triangle
 // intersection", JCGT 2013). It starts near the leaf, so that areas lose little.
 
+#include <type_traits>
+
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
@@ -30,23 +32,45 @@ template <std::uint32_t Room>
     from[axis] = Floats(static_cast<float>(rays.origin[axis][ray] +
                                            static_cast<double>(entry) * rays.direction[axis][ray]));
   }
-  Floats x[3];
-  Floats y[3];
-  Floats size(0.0F);
-#pragma GCC unroll 3
-  for (int k = 0; k < 3; ++k) {
-    Floats at[3];
-    load_points(mesh.vertex, mesh.corner[k] + std::size_t{leaf} * kMeshFanout, at);
-    for (int axis = 0; axis < 3; ++axis) {
-      at[axis] = at[axis] - from[axis];
-      size = max(size, abs(at[axis]));
-    }
+  // Across the ray, and the longest coordinate.
+  const auto look_across = [&](const Floats(&point)[3], Floats& x, Floats& y) {
+    const Floats at[3] = {point[0] - from[0], point[1] - from[1], point[2] - from[2]};
     const auto across = [&](const float(&row)[3][ReadyRays<Room>::kFloats]) {
       return multiply_add(at[2], Floats(row[2][ray]),
                           multiply_add(at[1], Floats(row[1][ray]), at[0] * Floats(row[0][ray])));
     };
-    x[k] = across(rays.across[0]);
-    y[k] = across(rays.across[1]);
+    x = across(rays.across[0]);
+    y = across(rays.across[1]);
+    return max(max(abs(at[0]), abs(at[1])), abs(at[2]));
+  };
+  Floats x[3];
+  Floats y[3];
+  Floats size(0.0F);
+  const auto look_at_vertices = [&]<int Blocks>(std::integral_constant<int, Blocks>) {
+    Floats vertex_x[Blocks];
+    Floats vertex_y[Blocks];
+    Floats vertex_size[Blocks];
+    each_vertex_block<Blocks>(mesh, leaf, [&](int block, const Floats(&vertex)[3]) {
+      vertex_size[block] = look_across(vertex, vertex_x[block], vertex_y[block]);
+    });
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Places places(places_of(mesh, leaf, k));
+      x[k] = places.pick(vertex_x);
+      y[k] = places.pick(vertex_y);
+      size = max(size, places.pick(vertex_size));
+    }
+  };
+  const int blocks = vertex_blocks(mesh, leaf);
+  if (blocks == 1) {
+    look_at_vertices(std::integral_constant<int, 1>());
+  } else if (blocks == 2) {
+    look_at_vertices(std::integral_constant<int, 2>());
+  } else {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Floats corner[3];
+      load_corners(mesh, leaf, k, corner);
+      size = max(size, look_across(corner, x[k], y[k]));
+    }
   }
   const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(rays.wrong[ray]));
   const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
@@ -60,8 +84,18 @@ template <std::uint32_t Room>
 }
 
 /// What a ray does next: goes into a node, asks for the vertices of a leaf whose corners are there,
-/// looks at its triangles.
-enum RayStep : std::uint32_t { kEnterInner, kEnterLeaf, kFetchVertices, kLook, kNoStep };
+/// finds out which of its triangles its line may meet, looks whether it does, turns to the nodes
+/// that wait, or has come to its end.
+enum RayStep : std::uint32_t {
+  kEnterInner,
+  kEnterLeaf,
+  kFetchVertices,
+  kFindTriangles,
+  kCrossTriangles,
+  kTakeNext,
+  kEnd,
+  kRaySteps
+};
 
 /// A ray on its way: the nodes that wait for it, of which it goes to the nearest of those that came
 /// last. What is needed soon is asked for before: by a ray that goes alone all that may be needed
@@ -86,34 +120,33 @@ class RayWalk {
     size_ = 0;
     // What is below a top level of few nodes is nearly as soon asked.
     const std::uint32_t top = mesh.levels - 1;
-    if (top == 0 || mesh.count[top] > kFewNodes) return wait(mesh, top, 0);
-    wait(mesh, top - 1, 0);
-    if (mesh.count[top] == kFewNodes) wait(mesh, top - 1, kLanes);
-    if (size_ == kFewNodes && nearest(0) < nearest(1)) exchange();
+    if (top == 0 || mesh.count[top] > 2) return wait(mesh, top, 0);
+    if (mesh.count[top] == 1) return wait(mesh, top - 1, 0);
+    wait_for_two(mesh, top - 1);
   }
 
-  /// The next step, once nodes are dropped that begin behind what was met: into the nearest of
-  /// those that wait, or none.
-  [[gnu::always_inline]] RayStep next() {
-    while (size_ != 0) {
-      const std::uint32_t at = size_ - 1;
-      const std::uint32_t key = nearest(at);
-      if (!aim(key, first_node_[at])) {
-        --size_;
-        continue;
-      }
-      const Mask16 rest = rest_[at] & ~(1U << key % kLanes);
-      gone_to_[at] = __builtin_bit_cast(float, key);
-      rest_[at] = rest;
-      if (rest == 0) --size_;
-      return kind_of_step();
+  /// Turns to the nearest of the nodes that came last; or drops those that are left of them, if it
+  /// begins behind what was met. Which it is, is as hard to foresee as a coin.
+  [[gnu::always_inline]] RayStep take_next() {
+    if (size_ == 0) return kEnd;
+    const std::uint32_t at = size_ - 1;
+    const std::uint32_t key = nearest(at);
+    const bool is_before = aim(key, first_node_[at]);
+    if (Alone && !is_before) {
+      --size_;
+      return kTakeNext;
     }
-    return kNoStep;
+    const bool is_last = (rest_[at] & (rest_[at] - 1)) == 0;
+    gone_to_[at] = __builtin_bit_cast(float, key);
+    rest_[at] &= ~(1U << key % kLanes);
+    size_ -= is_last || !is_before ? 1U : 0U;
+    return is_before ? step_into(first_node_[at]) : kTakeNext;
   }
   /// Goes into that inner node, and gives the step after.
   [[gnu::always_inline]] RayStep enter_inner(const MeshView& mesh) {
-    return meet(mesh, (node_ >> kLevelShift) - 1, (node_ & kNodeMask) * kLanes) ? kind_of_step()
-                                                                                : next();
+    const std::uint32_t level = (node_ >> kLevelShift) - 1;
+    const bool is_met = meet(mesh, level, (node_ & kNodeMask) * kLanes);
+    return is_met ? step_into(level << kLevelShift) : kTakeNext;
   }
   /// Goes to that leaf: false if none of its triangles need be looked at. Before they are, their
   /// vertices are to be fetched.
@@ -127,27 +160,37 @@ class RayWalk {
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
     fetch_vertices(mesh, asked_);
   }
-  /// Looks at them; false if the visitor has seen enough.
-  bool look(const MeshView& mesh, const RaySlotVisitor& visitor) {
-    return look(mesh, asked_, visitor);
+  /// False if its line meets none of them.
+  [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
+    asked_.triangles &= on_line(mesh, asked_.leaf, *rays_, ray_, asked_.entry);
+    return asked_.triangles != 0;
   }
-  /// The whole way of one ray. A leaf is looked at after the next node, while its vertices come.
+  /// False if the visitor has seen enough.
+  bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
+    return cross_triangles(mesh, asked_, visitor);
+  }
+  /// The whole way of one ray. A leaf is looked at after the next nodes, while its vertices come.
   void go(const MeshView& mesh, const RaySlotVisitor& visitor) {
     asked_.triangles = 0;
-    RayStep step = next();
-    for (;;) {
-      while (step == kEnterInner) step = enter_inner(mesh);
-      const Asked asked = asked_;
+    for (RayStep step = kTakeNext;;) {
+      while (step == kEnterInner || step == kTakeNext) {
+        step = step == kEnterInner ? enter_inner(mesh) : take_next();
+      }
+      Asked asked = asked_;
       asked_.triangles = 0;
       if (step == kEnterLeaf && enter_leaf(mesh)) fetch_vertices(mesh);
-      if (asked.triangles != 0 && !look(mesh, asked, visitor)) return;
-      if (step == kNoStep && asked_.triangles == 0) return;
-      step = next();
+      if (asked.triangles != 0 && asked.entry <= last_) {
+        if (mesh.box == nullptr) {
+          asked.triangles &= on_line(mesh, asked.leaf, *rays_, ray_, asked.entry);
+        }
+        if (!cross_triangles(mesh, asked, visitor)) return;
+      }
+      if (step == kEnd && asked_.triangles == 0) return;
+      step = kTakeNext;
     }
   }
 
  private:
-  static constexpr std::uint32_t kFewNodes = 2;
   /// Above the number of a node is its level.
   static constexpr std::uint32_t kLevelShift = 28;
   static constexpr std::uint32_t kNodeMask = (1U << kLevelShift) - 1U;
@@ -207,18 +250,31 @@ class RayWalk {
     }
     return hits;
   }
-  void put(const Floats& key, std::uint32_t first_node, Mask16 rest, float gone_to) {
+  /// Where nodes are to wait: whether some are left is as hard to foresee as a coin.
+  [[gnu::always_inline]] void put(const Floats& key, std::uint32_t first_node, Mask16 rest,
+                                  float gone_to) {
     key.store(key_[size_]);
     gone_to_[size_] = gone_to;
     rest_[size_] = rest;
     first_node_[size_] = first_node;
-    ++size_;
   }
   /// Lets those of sixteen nodes wait that the ray meets.
   void wait(const MeshView& mesh, std::uint32_t level, std::uint32_t first_node) {
     Floats key;
     const Mask16 hits = find(mesh, level, first_node, key);
-    if (hits != 0) put(key, level << kLevelShift | first_node, hits, 0.0F);
+    put(key, level << kLevelShift | first_node, hits, 0.0F);
+    size_ += hits != 0 ? 1U : 0U;
+  }
+  /// The same of a level of two blocks, of which the nearer one comes last.
+  void wait_for_two(const MeshView& mesh, std::uint32_t level) {
+    Floats key[2];
+    const Mask16 hits[2] = {find(mesh, level, 0, key[0]), find(mesh, level, kLanes, key[1])};
+    const bool is_first_nearer = reduce_min_positive(key[0]) < reduce_min_positive(key[1]);
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      size_ = (k == 0) == is_first_nearer ? 1U : 0U;
+      put(key[k], level << kLevelShift | k * kLanes, hits[k], 0.0F);
+    }
+    size_ = 2;
   }
   /// The same, but aims at the nearest of them: false if there is none.
   [[gnu::always_inline]] bool meet(const MeshView& mesh, std::uint32_t level,
@@ -228,8 +284,8 @@ class RayWalk {
     if (hits == 0) return false;
     const std::uint32_t nearest = reduce_min_positive(key);
     const std::uint32_t named = level << kLevelShift | first_node;
-    const Mask16 rest = hits & ~(1U << nearest % kLanes);
-    if (rest != 0) put(key, named, rest, __builtin_bit_cast(float, nearest));
+    put(key, named, hits & ~(1U << nearest % kLanes), __builtin_bit_cast(float, nearest));
+    size_ += (hits & (hits - 1)) != 0 ? 1U : 0U;
     return aim(nearest, named);
   }
   /// At the node with that key; false if it begins behind what was met.
@@ -239,8 +295,9 @@ class RayWalk {
     entry_ = __builtin_bit_cast(float, key - lane);
     return entry_ <= last_;
   }
-  [[nodiscard]] RayStep kind_of_step() const {
-    return node_ >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
+  /// Into nodes of the level of this one.
+  [[nodiscard]] static RayStep step_into(std::uint32_t node) {
+    return node >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
   }
 
   /// The least key of those that still wait: they are gone to by their order.
@@ -248,20 +305,13 @@ class RayWalk {
     const Floats key = Floats::load(key_[at]);
     return reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
   }
-  /// The first two blocks that wait, of which nothing was gone to.
-  void exchange() {
-    const Floats key = Floats::load(key_[0]);
-    Floats::load(key_[1]).store(key_[0]);
-    key.store(key_[1]);
-    const Mask16 rest = rest_[0];
-    rest_[0] = rest_[1];
-    rest_[1] = rest;
-    const std::uint32_t first_node = first_node_[0];
-    first_node_[0] = first_node_[1];
-    first_node_[1] = first_node;
-  }
-
   static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
+    if (mesh.corner[0] == nullptr) {
+      __builtin_prefetch(mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout);
+      __builtin_prefetch(places_of(mesh, leaf, 0));
+      __builtin_prefetch(places_of(mesh, leaf, 2));
+      return;
+    }
     for (const std::uint32_t* const corner : mesh.corner) {
       __builtin_prefetch(corner + std::size_t{leaf} * kMeshFanout);
     }
@@ -291,18 +341,16 @@ class RayWalk {
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     Mask16 rest = mesh.box != nullptr ? asked.triangles : 1U;
     for (; rest != 0; rest &= rest - 1) {
-      for (const std::uint32_t* const corner : mesh.corner) {
-        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner[first_slot + first(rest)]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t corner = corner_of(mesh, k, first_slot + first(rest));
+        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner);
       }
     }
     __builtin_prefetch(mesh.triangle + first_slot);
   }
 
-  /// False if the visitor has seen enough.
-  bool look(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
-    if (!(asked.entry <= last_)) return true;
+  bool cross_triangles(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
     Mask16 triangles = asked.triangles;
-    if (mesh.box == nullptr) triangles &= on_line(mesh, asked.leaf, *rays_, ray_, asked.entry);
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     for (; triangles != 0; triangles &= triangles - 1) {
       const std::uint32_t slot = first_slot + first(triangles);
@@ -331,8 +379,8 @@ class RayWalk {
   float entry_;
   Asked asked_;
   /// Nodes that wait, in blocks of sixteen or fewer that follow each other: no more than one for
-  /// each level but the top one, of which there may be two.
-  static constexpr std::uint32_t kMostWaiting = kMaxMeshLevels + 1;
+  /// each level but the top one, of which there may be two; and one more, of which none is left.
+  static constexpr std::uint32_t kMostWaiting = kMaxMeshLevels + 2;
   std::uint32_t size_;
   Mask16 rest_[kMostWaiting];
   std::uint32_t first_node_[kMostWaiting];
@@ -380,23 +428,33 @@ class RaysSideBySide {
       : mesh_(mesh), visitor_(visitor), waiting_(waiting) {}
 
   void run() {
-    std::uint32_t begun = 0;
-    while (begun < kWalks && waiting_.start(walk_[begun])) sort_in(walk_[begun++]);
-    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : kLook;
-    while (waits()) {
-      each(kLook, [&](Walk& walk) {
-        if (walk.look(mesh_, visitor_) || waiting_.start(walk)) sort_in(walk);
+    for (Walk& walk : walk_) begin(walk);
+    const RayStep look = mesh_.box != nullptr ? kCrossTriangles : kFindTriangles;
+    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : look;
+    while (going_ != 0) {
+      // Asked for before other rays take their steps.
+      for (Walk* const walk : steps_[kEnterLeaf]) walk->fetch_leaf(mesh_);
+      each(kFindTriangles, [&](Walk& walk) {
+        put(walk, walk.find_triangles(mesh_) ? kCrossTriangles : kTakeNext);
+      });
+      each(kCrossTriangles, [&](Walk& walk) {
+        put(walk, walk.cross_triangles(mesh_, visitor_) ? kTakeNext : kEnd);
       });
       each(kFetchVertices, [&](Walk& walk) {
         walk.fetch_vertices(mesh_);
-        waits_[kLook].put(walk);
+        put(walk, look);
       });
       each(kEnterLeaf, [&](Walk& walk) {
-        if (!walk.enter_leaf(mesh_)) return sort_in(walk);
-        if (first_step == kLook) walk.fetch_vertices(mesh_);
-        waits_[first_step].put(walk);
+        const bool is_met = walk.enter_leaf(mesh_);
+        if (first_step == look) walk.fetch_vertices(mesh_);
+        put(walk, is_met ? first_step : kTakeNext);
       });
-      each(kEnterInner, [&](Walk& walk) { sort_in(walk, walk.enter_inner(mesh_)); });
+      each(kEnterInner, [&](Walk& walk) { put(walk, walk.enter_inner(mesh_)); });
+      each(kTakeNext, [&](Walk& walk) { put(walk, walk.take_next()); });
+      each(kEnd, [&](Walk& walk) {
+        --going_;
+        begin(walk);
+      });
     }
   }
 
@@ -404,41 +462,37 @@ class RaysSideBySide {
   static constexpr std::uint32_t kWalks = 32;
   using Walk = RayWalk<false>;
   /// Rays that wait for the same kind of step.
-  struct Waits {
+  struct Waiting {
     std::uint32_t count = 0;
     Walk* walk[kWalks] = {};
 
-    [[gnu::always_inline]] void put(Walk& one) { walk[count++] = &one; }
+    [[nodiscard]] Walk* const* begin() const { return walk; }
+    [[nodiscard]] Walk* const* end() const { return walk + count; }
   };
 
-  [[nodiscard]] bool waits() const {
-    std::uint32_t sum = 0;
-    for (const Waits& one : waits_) sum += one.count;
-    return sum != 0;
+  /// Lets the next ray go whose turn it is, if there is one.
+  void begin(Walk& walk) {
+    if (!waiting_.start(walk)) return;
+    ++going_;
+    put(walk, kTakeNext);
   }
-  /// Lets a ray wait for its next step; or the one after it that has not begun, if it has come to
-  /// its end.
-  [[gnu::always_inline]] void sort_in(Walk& walk) { sort_in(walk, walk.next()); }
-  [[gnu::always_inline]] void sort_in(Walk& walk, RayStep next) {
-    while (next == kNoStep) {
-      if (!waiting_.start(walk)) return;
-      next = walk.next();
-    }
-    if (next == kEnterLeaf) walk.fetch_leaf(mesh_);
-    waits_[next].put(walk);
+  [[gnu::always_inline]] void put(Walk& walk, RayStep step) {
+    Waiting& waiting = steps_[step];
+    waiting.walk[waiting.count++] = &walk;
   }
   /// Takes all that wait for this kind of step now.
   template <typename Step>
   [[gnu::always_inline]] void each(RayStep kind, Step&& step) {
-    const Waits now = waits_[kind];
-    waits_[kind].count = 0;
-    for (std::uint32_t k = 0; k < now.count; ++k) step(*now.walk[k]);
+    const Waiting now = steps_[kind];
+    steps_[kind].count = 0;
+    for (Walk* const walk : now) step(*walk);
   }
 
   const MeshView& mesh_;
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
-  Waits waits_[kNoStep];
+  std::uint32_t going_ = 0;
+  Waiting steps_[kRaySteps];
   Walk walk_[kWalks];
 };
 

@@ -42,27 +42,52 @@ bool has_boxes(const MeshView& view) {
   return view.vertex_count > view.triangle_count;
 }
 
-/// The float box of slots [first, first + count).
-struct SlotBox {
+/// Calls look(number) for the vertices of a leaf: for shared ones once, where leaves list theirs.
+template <typename Look>
+void each_vertex(const MeshView& view, std::size_t leaf, Look&& look) {
+  const auto each = [&](const std::uint32_t* numbers, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) look(numbers[i]);
+  };
+  if (view.corner[0] != nullptr) {
+    for (const std::uint32_t* const column : view.corner) {
+      each(column + leaf * kMeshFanout, kMeshFanout);
+    }
+    return;
+  }
+  each(view.leaf_vertex + leaf * kMeshFanout, kMeshFanout);
+  if (view.leaf_more == nullptr) return;
+  const std::size_t first = std::size_t{view.count[0]} + view.leaf_more[leaf];
+  const std::size_t blocks = view.leaf_more[leaf + 1] - view.leaf_more[leaf];
+  each(view.leaf_vertex + first * kMeshFanout, blocks * kMeshFanout);
+}
+
+struct FloatBox {
   float low[3];
   float high[3];
 
-  SlotBox(const MeshView& view, std::size_t first, std::size_t count) {
+  FloatBox() {
+    std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+    std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  }
+  void add(const MeshView& view, std::uint32_t vertex) {
+    const float* const at = view.vertex + std::size_t{3} * vertex;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = coordinate(view, view.corner[0][first], axis);
-      high[axis] = low[axis];
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = first; i < first + count; ++i) {
-        const float* const vertex = view.vertex + std::size_t{3} * view.corner[k][i];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], vertex[axis]);
-          high[axis] = std::max(high[axis], vertex[axis]);
-        }
-      }
+      low[axis] = std::min(low[axis], at[axis]);
+      high[axis] = std::max(high[axis], at[axis]);
     }
   }
 };
+
+FloatBox box_of_leaf(const MeshView& view, std::size_t leaf) {
+  FloatBox box;
+  each_vertex(view, leaf, [&](std::uint32_t vertex) { box.add(view, vertex); });
+  return box;
+}
+FloatBox box_of_slot(const MeshView& view, std::size_t slot) {
+  FloatBox box;
+  for (std::size_t k = 0; k < 3; ++k) box.add(view, corner_of(view, k, slot));
+  return box;
+}
 
 /// Maps the mesh's box to 0..65534: one number is left for rounding up.
 void choose_scale(MeshView& view, const float low[3], const float high[3]) {
@@ -119,7 +144,7 @@ std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
 }
 
 /// Writes the bounds of a box to where those of number `i` lie in a level.
-void write_box(const MeshView& view, const SlotBox& box, std::uint16_t* level, std::size_t i) {
+void write_box(const MeshView& view, const FloatBox& box, std::uint16_t* level, std::size_t i) {
   const auto place = static_cast<std::uint32_t>(i);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     level[place_of_bound(place, axis)] =
@@ -150,11 +175,11 @@ void fit_leaves(const MeshView& view, std::uint16_t* words, std::size_t first, s
   for (std::size_t i = first; i < end; ++i) {
     const std::size_t slot = i * kMeshFanout;
     if (boxes == nullptr) {
-      write_box(view, SlotBox(view, slot, kMeshFanout), leaves, i);
+      write_box(view, box_of_leaf(view, i), leaves, i);
       continue;
     }
     for (std::size_t k = slot; k < slot + kMeshFanout; ++k) {
-      write_box(view, SlotBox(view, k, 1), boxes, k);
+      write_box(view, box_of_slot(view, k), boxes, k);
     }
     join_boxes(boxes, kMeshFanout, leaves, static_cast<std::uint32_t>(i));
   }
@@ -227,17 +252,12 @@ void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
 
 void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float high[3],
                      const Execution& execution) noexcept {
-  std::fill_n(low, 3, std::numeric_limits<float>::infinity());
-  std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < view.triangle_count; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float x = coordinate(view, view.corner[k][i], axis);
-        low[axis] = std::min(low[axis], x);
-        high[axis] = std::max(high[axis], x);
-      }
-    }
+  FloatBox all;
+  for (std::size_t leaf = 0; leaf < view.count[0]; ++leaf) {
+    each_vertex(view, leaf, [&](std::uint32_t vertex) { all.add(view, vertex); });
   }
+  std::copy_n(all.low, 3, low);
+  std::copy_n(all.high, 3, high);
   choose_scale(view, low, high);
   view.span = span_of(view);
   const std::size_t leaves = view.count[0];

@@ -45,8 +45,15 @@ struct MeshView {
   /// read four numbers at a time.
   const float* vertex = nullptr;
   std::uint32_t vertex_count = 0;
-  /// Numbers of the corners, by slot.
+  /// Numbers of the corners, by slot; null where leaves list their vertices.
   const std::uint32_t* corner[3] = {};
+  /// The vertices of leaf i, each once, from 16 i on; if there are more than sixteen, the others
+  /// from 16 (leaves + leaf_more[i]) to 16 (leaves + leaf_more[i + 1]); null if no leaf has. Each
+  /// sixteen are filled up by the last.
+  const std::uint32_t* leaf_vertex = nullptr;
+  const std::uint32_t* leaf_more = nullptr;
+  /// Which of them corner k of slot 16 i + l is, at 48 i + 16 k + l.
+  const std::uint8_t* leaf_place = nullptr;
   /// The caller's number of the triangle in the low 28 bits, and its active edges.
   const std::uint32_t* triangle = nullptr;
   std::uint32_t triangle_count = 0;
@@ -75,6 +82,24 @@ struct MeshView {
 [[nodiscard]] inline std::uint16_t bound_of(const MeshView& mesh, std::uint32_t level,
                                             std::uint32_t node, std::size_t bound) {
   return mesh.node[level][place_of_bound(node, bound)];
+}
+
+/// The places of the corners k of a leaf.
+[[nodiscard, gnu::always_inline]] inline const std::uint8_t* places_of(const MeshView& mesh,
+                                                                       std::size_t leaf,
+                                                                       std::size_t k) {
+  return mesh.leaf_place + kMeshFanout * (3 * leaf + k);
+}
+
+/// The number of corner k of a slot.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t corner_of(const MeshView& mesh,
+                                                                 std::size_t k, std::size_t slot) {
+  if (mesh.corner[0] != nullptr) return mesh.corner[k][slot];
+  const std::size_t leaf = slot / kMeshFanout;
+  const std::size_t place = places_of(mesh, leaf, k)[slot % kMeshFanout];
+  if (place < kMeshFanout) return mesh.leaf_vertex[leaf * kMeshFanout + place];
+  const std::size_t block = std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
+  return mesh.leaf_vertex[(block - 1) * kMeshFanout + place];
 }
 
 [[nodiscard]] inline float coordinate(const MeshView& mesh, std::uint32_t vertex,

@@ -2,6 +2,7 @@
 
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"
+#include "pipeline/mesh/leaf_corners.h"
 #include "pipeline/mesh/mesh_edges.h"
 #include "pipeline/mesh/mesh_tree.h"
 
@@ -69,10 +70,13 @@ struct TriangleMesh::State {
   [[nodiscard]] Status check_read() noexcept;
   void place_vertices(const PointView& vertices) noexcept;
   void link() noexcept;
+  [[nodiscard]] bool list_corners() noexcept;
   void fit(const Execution& execution) noexcept;
 
   Column<float> vertex;
+  /// By slot, unless leaves list them.
   Column<std::uint32_t> corner[3];
+  LeafCorners leaf_corners;
   Column<std::uint32_t> triangle;
   Column<std::uint16_t> nodes;
   /// See find_neighbours; kept by meshes that are refitted.
@@ -87,6 +91,7 @@ TriangleMesh::State::State(std::pmr::memory_resource* memory) noexcept
     : vertex(memory),
       corner{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
              Column<std::uint32_t>(memory)},
+      leaf_corners(memory),
       triangle(memory),
       nodes(memory),
       neighbours(memory) {}
@@ -140,7 +145,7 @@ Status TriangleMesh::State::take(const PointView& vertices, const IndexView& tri
     triangle[slot] = number;
     for (std::size_t k = 0; k < 3; ++k) corner[k][slot] = columns[k][number];
   }
-  if (!find_neighbours(view, neighbours)) return Status::out_of_memory;
+  if (!find_neighbours(view, neighbours) || !list_corners()) return Status::out_of_memory;
   fit(execution);
   neighbours.release();
   return Status::ok;
@@ -168,7 +173,12 @@ void TriangleMesh::State::put(ByteWriter& out) const noexcept {
   };
   out.put(options.active_edge_angle);
   out.put_array(std::span(vertex.data(), std::size_t{3} * view.vertex_count));
-  for (const auto& column : corner) out.put_array(slots(column));
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.put(std::uint64_t{view.triangle_count});
+    for (std::size_t slot = 0; slot < view.triangle_count; ++slot) {
+      out.put(corner_of(view, k, slot));
+    }
+  }
   out.put_array(slots(triangle));
   out.put_array(std::span(neighbours.data(), neighbours.size()));
 }
@@ -201,6 +211,7 @@ Status TriangleMesh::State::read(ByteReader& in, const Execution& execution) noe
   }
   place_vertices(PointView({first, first + 1, first + 2}, view.vertex_count, 3 * sizeof(float)));
   link();
+  if (!list_corners()) return Status::out_of_memory;
   fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
   return Status::ok;
 }
@@ -282,6 +293,15 @@ void TriangleMesh::State::link() noexcept {
   link_mesh_levels(view, nodes.data());
 }
 
+/// False if memory is refused.
+bool TriangleMesh::State::list_corners() noexcept {
+  if (!leaf_corners.take(view)) return false;
+  if (leaf_corners.empty()) return true;
+  leaf_corners.link(view);
+  for (auto& column : corner) column.release();
+  return true;
+}
+
 void TriangleMesh::State::fit(const Execution& execution) noexcept {
   fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
   mark_active_edges(view, neighbours, options.active_edge_angle, triangle.data());
@@ -314,6 +334,7 @@ Footprint TriangleMesh::footprint() const noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     result.keys += state_->corner[k].bytes();
   }
+  result.keys += state_->leaf_corners.bytes();
   result.bounds += state_->vertex.bytes();
   result.keys += state_->triangle.bytes();
   result.structure += {sizeof(State), sizeof(State)};

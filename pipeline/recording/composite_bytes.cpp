@@ -17,15 +17,27 @@ std::span<const float> values_of(const CompositePool& pool, ShapeId id) noexcept
   return {};
 }
 
+namespace {
+
+/// As a column of them.
+void add_corners(Digest& digest, const MeshView& view, std::size_t k) noexcept {
+  const std::uint32_t count = view.triangle_count;
+  for (std::uint32_t slot = 0; slot + 2 <= count; slot += 2) {
+    digest.add(corner_of(view, k, slot) | std::uint64_t{corner_of(view, k, slot + 1)} << 32U);
+  }
+  digest.add(std::uint64_t{count % 2 != 0 ? corner_of(view, k, count - 1) : 0U});
+  digest.add(std::uint64_t{count} * sizeof(std::uint32_t));
+}
+
+}  // namespace
+
 // Which edges of a mesh are active follows from the rest.
 CompositeDigests digests_of(const CompositePool& pool, ShapeId id) noexcept {
   Digest digest;
   digest.add(std::uint64_t{id.kind_index()});
   if (const TriangleMesh* const mesh = pool.mesh(id)) {
     const MeshView& view = view_of(*mesh);
-    for (const std::uint32_t* const column : view.corner) {
-      digest.add_array(std::span<const std::uint32_t>(column, view.triangle_count));
-    }
+    for (std::size_t k = 0; k < 3; ++k) add_corners(digest, view, k);
     for (const double factor : pool.scale(id)) digest.add(factor);
   }
   if (const HeightField* const field = pool.height_field(id)) {

@@ -57,8 +57,8 @@ struct HullOnMesh {
     const MeshView& view = view_of(mesh);
     Vector3d at;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      at[static_cast<Eigen::Index>(axis)] =
-          static_cast<double>(coordinate(view, view.corner[k][slot], axis));
+      at[static_cast<Eigen::Index>(axis)] = static_cast<double>(
+          coordinate(view, corner_of(view, static_cast<std::size_t>(k), slot), axis));
     }
     return at;
   }

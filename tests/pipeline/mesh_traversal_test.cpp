@@ -40,7 +40,7 @@ std::vector<TwinTriangle> twin(const MeshView& mesh, const MeshPlacement& placem
         Real x = static_cast<Real>(placement.offset[row]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           x += static_cast<Real>(placement.matrix[row][axis]) *
-               static_cast<Real>(coordinate(mesh, mesh.corner[k][slot], axis));
+               static_cast<Real>(coordinate(mesh, corner_of(mesh, k, slot), axis));
         }
         result[slot].corner[k][row] = x;
       }

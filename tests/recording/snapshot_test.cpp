@@ -150,13 +150,18 @@ bool same_view(const MeshView& a, const MeshView& b) {
     return std::memcmp(x, y, count * sizeof *x) == 0;
   };
   bool all = a.vertex_count == b.vertex_count && a.triangle_count == b.triangle_count &&
-             a.levels == b.levels && (a.box == nullptr) == (b.box == nullptr);
+             a.levels == b.levels && (a.box == nullptr) == (b.box == nullptr) &&
+             (a.corner[0] == nullptr) == (b.corner[0] == nullptr);
   if (!all) return false;
   const std::size_t slots = whole_leaves(a.triangle_count);
   all = same(a.vertex, b.vertex, 3 * std::size_t{a.vertex_count} + 1) &&
         same(a.triangle, b.triangle, slots) && same(a.origin, b.origin, 3) &&
         same(a.step, b.step, 3) && same(a.count, b.count, a.levels);
-  for (int k = 0; k < 3; ++k) all = all && same(a.corner[k], b.corner[k], slots);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      all = all && corner_of(a, k, slot) == corner_of(b, k, slot);
+    }
+  }
   for (std::uint32_t level = 0; level < a.levels; ++level) {
     all = all && same(a.node[level], b.node[level], 6 * whole_leaves(a.count[level]));
   }

@@ -118,8 +118,25 @@ MeshData degenerate_soup(std::uint32_t triangles, std::uint64_t stream) {
   return mesh;
 }
 
+MeshData littered_terrain(std::uint32_t cells) {
+  MeshData mesh = terrain(cells);
+  mesh.name = "littered terrain";
+  const std::size_t step = mesh.vertices.size() / 5;
+  for (std::size_t i = step / 2; i < 5 * step; i += step) {
+    const Eigen::Vector3f at = mesh.vertices[i] + Eigen::Vector3f(0.3F, 0.3F, 0.1F);
+    for (const Eigen::Vector3f& corner :
+         {Eigen::Vector3f(0.0F, 0.0F, 0.0F), Eigen::Vector3f(0.2F, 0.0F, 0.1F),
+          Eigen::Vector3f(0.0F, 0.2F, 0.0F)}) {
+      mesh.corners.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.emplace_back(at + corner);
+    }
+  }
+  return mesh;
+}
+
 std::vector<MeshData> sample_meshes() {
-  return {torus(24, 12), terrain(16), gear(9), thin_sheets(10), degenerate_soup(300, 5)};
+  return {torus(24, 12),   terrain(16),          gear(9),
+          thin_sheets(10), littered_terrain(16), degenerate_soup(300, 5)};
 }
 
 }  // namespace winnow::test

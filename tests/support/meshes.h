@@ -32,6 +32,9 @@ struct MeshData {
 [[nodiscard]] MeshData gear(std::uint32_t teeth);
 /// Two waving sheets a thousandth apart, whose triangles share no vertex by number.
 [[nodiscard]] MeshData thin_sheets(std::uint32_t cells);
+/// The same hills, and a few triangles by themselves among them: where these are, leaves have more
+/// than sixteen vertices.
+[[nodiscard]] MeshData littered_terrain(std::uint32_t cells);
 /// Triangles of any size anywhere: points, segments, duplicates, edges of many triangles among
 /// them.
 [[nodiscard]] MeshData degenerate_soup(std::uint32_t triangles, std::uint64_t stream);
