@@ -1,6 +1,7 @@
 #pragma once
 
-// Every operation of simd/lanes/lanes.h, boxes.h and compress.h behind plain pointers, so that an
+// Every operation of simd/lanes/lanes.h, boxes.h, compress.h, places.h and positive.h behind plain
+// pointers, so that an
 // ordinary test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless
 // said.
 
@@ -46,6 +47,15 @@ struct LanesOps {
                          std::uint32_t* out);
   unsigned (*emit_sorted_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                                 std::uint32_t* out);
+  /// Of 16 and of 32 floats.
+  void (*pick_of_16)(const float* from, const std::uint8_t* place, float* out);
+  void (*pick_of_32)(const float* from, const std::uint8_t* place, float* out);
+  /// Of 48 numbers.
+  bool (*are_below_16)(const std::uint8_t* place);
+  bool (*are_below_32)(const std::uint8_t* place);
+  void (*larger_positive)(const float* a, const float* b, float* out);
+  void (*smaller_positive)(const float* a, const float* b, float* out);
+  std::uint32_t (*reduce_min_positive)(const float* in);
   const char* isa_name;
 };
 

@@ -1,6 +1,8 @@
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/lanes.h"
+#include "simd/lanes/places.h"
+#include "simd/lanes/positive.h"
 #include "simd/lanes/rows.h"
 
 #include "tests/simd/lanes_ops.h"
@@ -96,6 +98,26 @@ unsigned emit_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q
   return emit_pairs<Sorted>(mask, Uints::load_unaligned(in), q, out);
 }
 
+template <int Blocks>
+void pick_lanes(const float* from, const std::uint8_t* place, float* out) {
+  Floats block[Blocks];
+  for (int k = 0; k < Blocks; ++k) block[k] = Floats::load_unaligned(from + k * kLanes);
+  Places(place).pick(block).store_unaligned(out);
+}
+template <unsigned Limit>
+bool are_below_limit(const std::uint8_t* place) {
+  return are_below<Limit>(place);
+}
+void larger_positive_lanes(const float* a, const float* b, float* out) {
+  larger_positive(Floats::load_unaligned(a), Floats::load_unaligned(b)).store_unaligned(out);
+}
+void smaller_positive_lanes(const float* a, const float* b, float* out) {
+  smaller_positive(Floats::load_unaligned(a), Floats::load_unaligned(b)).store_unaligned(out);
+}
+std::uint32_t reduce_min_positive_lanes(const float* in) {
+  return reduce_min_positive(Floats::load_unaligned(in));
+}
+
 }  // namespace
 }  // namespace winnow::WINNOW_ISA_NAME
 
@@ -132,6 +154,13 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .compress_store_floats = isa::compress_float_lanes,
     .emit_pairs = isa::emit_lanes<false>,
     .emit_sorted_pairs = isa::emit_lanes<true>,
+    .pick_of_16 = isa::pick_lanes<1>,
+    .pick_of_32 = isa::pick_lanes<2>,
+    .are_below_16 = isa::are_below_limit<16>,
+    .are_below_32 = isa::are_below_limit<32>,
+    .larger_positive = isa::larger_positive_lanes,
+    .smaller_positive = isa::smaller_positive_lanes,
+    .reduce_min_positive = isa::reduce_min_positive_lanes,
     .isa_name = WINNOW_TEXT(WINNOW_ISA_NAME),
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
@@ -192,6 +193,53 @@ TEST_P(LaneOps, reductions_find_the_extreme_lane_wherever_it_is) {
     const Floats in = lanes();
     ASSERT_EQ(ops().reduce_min(in.data()), *std::min_element(in.begin(), in.end()));
     ASSERT_EQ(ops().reduce_max(in.data()), *std::max_element(in.begin(), in.end()));
+  }
+}
+
+TEST_P(LaneOps, picked_lanes_are_those_that_the_places_say) {
+  std::array<float, 32> from;
+  for (std::size_t i = 0; i < 32; ++i) from[i] = static_cast<float>(i);
+  for (int round = 0; round < 1000; ++round) {
+    std::array<std::uint8_t, 16> place;
+    Floats out;
+    for (auto& p : place) p = static_cast<std::uint8_t>(random_.below(16));
+    ops().pick_of_16(from.data(), place.data(), out.data());
+    for (std::size_t i = 0; i < 16; ++i) ASSERT_EQ(out[i], from[place[i]]);
+    for (auto& p : place) p = static_cast<std::uint8_t>(random_.below(32));
+    ops().pick_of_32(from.data(), place.data(), out.data());
+    for (std::size_t i = 0; i < 16; ++i) ASSERT_EQ(out[i], from[place[i]]);
+  }
+}
+
+TEST_P(LaneOps, one_place_of_many_is_found_beyond_a_limit) {
+  for (std::size_t at = 0; at < 48; ++at) {
+    std::array<std::uint8_t, 48> place;
+    place.fill(15);
+    EXPECT_TRUE(ops().are_below_16(place.data()));
+    place[at] = 16;
+    EXPECT_FALSE(ops().are_below_16(place.data()));
+    place[at] = 31;
+    EXPECT_TRUE(ops().are_below_32(place.data()));
+    place[at] = 32;
+    EXPECT_FALSE(ops().are_below_32(place.data()));
+  }
+}
+
+TEST_P(LaneOps, positive_floats_are_ordered_by_their_bits) {
+  for (int round = 0; round < 5000; ++round) {
+    const Floats a = lanes();
+    Floats b = lanes();
+    for (float& f : b) f = f == 0.0F ? 1.0F : std::abs(f);
+    Floats larger;
+    Floats smaller;
+    ops().larger_positive(a.data(), b.data(), larger.data());
+    ops().smaller_positive(a.data(), b.data(), smaller.data());
+    for (std::size_t i = 0; i < 16; ++i) {
+      ASSERT_EQ(larger[i], std::max(a[i], b[i]));
+      ASSERT_EQ(smaller[i], std::min(a[i], b[i]));
+    }
+    const std::uint32_t least = ops().reduce_min_positive(b.data());
+    ASSERT_EQ(std::bit_cast<float>(least), *std::min_element(b.begin(), b.end()));
   }
 }
 
