@@ -185,24 +185,34 @@ bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
                      [&](std::uint32_t body) { return scene.shape[body].is_composite(); });
 }
 
-bool has_crowd(const SceneState& scene) noexcept {
-  return std::any_of(std::begin(scene.sets), std::end(scene.sets), [&](const SceneSet& set) {
-    return set.partition.has_value() && !is_few(scene, set);
-  });
-}
-
-/// Calls look(body) for all bodies of such sets that the filter lets pass.
+/// Calls look(body) for all bodies of such sets that the filter lets pass. Gives back whether there
+/// are other sets, whose partitions are to be asked.
 template <typename Look>
-void look_at_few(const SceneState& scene, const Filter& filter, Look& look) {
+[[nodiscard]] bool look_at_few(const SceneState& scene, const Filter& filter, Look& look) {
   const LookingFilter looking(scene, filter, look);
+  bool has_crowd = false;
   for (const SceneSet& set : scene.sets) {
-    if (!is_few(scene, set)) continue;
+    if (!is_few(scene, set)) {
+      has_crowd = has_crowd || set.partition.has_value();
+      continue;
+    }
     for (std::size_t id = 0; id < set.body_of.size(); ++id) {
       // Places of bodies that have gone keep their names.
       const std::uint32_t body = set.body_of[id];
       if (scene.place[body].id == id) looking.show(*set.partition, body);
     }
   }
+  return has_crowd;
+}
+
+/// Brings hits from `before` on into their order, each body once: one whose box reaches from one
+/// piece of the path into the next was met in both.
+void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
+  SceneHit* const own = hits.begin() + before;
+  std::sort(own, hits.end(), is_before);
+  const SceneHit* const end = std::unique(
+      own, hits.end(), [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
+  hits.set_size(static_cast<std::size_t>(end - hits.begin()));
 }
 
 /// One question: something moves through the scene.
@@ -334,8 +344,8 @@ Status CastQuestion::closest_in_crowds() {
 
 Status CastQuestion::closest(SceneHit& hit) {
   auto look = [&](std::uint32_t body) { return improves(body); };
-  look_at_few(state_.scene, filter_, look);
-  const Status status = has_crowd(state_.scene) ? closest_in_crowds() : Status::ok;
+  const bool has_crowd = look_at_few(state_.scene, filter_, look);
+  const Status status = has_crowd ? closest_in_crowds() : Status::ok;
   if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
   return status;
 }
@@ -378,8 +388,11 @@ Status CastQuestion::all() {
     has_room = adds(body) && has_room;
     return false;
   };
-  look_at_few(state_.scene, filter_, look);
-  return has_room ? all_in_crowds(before) : Status::out_of_memory;
+  const bool has_crowd = look_at_few(state_.scene, filter_, look);
+  if (!has_room) return Status::out_of_memory;
+  if (has_crowd) return all_in_crowds(before);
+  order_hits(state_.hits, before);
+  return Status::ok;
 }
 
 bool CastQuestion::adds(std::uint32_t body) {
@@ -396,25 +409,17 @@ Status CastQuestion::all_in_crowds(std::size_t before) {
     has_room = adds(body) && has_room;
     return false;
   };
-  Status status = Status::ok;
-  if (has_crowd(state_.scene)) {
-    SweptBox path = swept_box();
-    LookingFilter looking(state_.scene, filter_, look);
-    while (status == Status::ok && path.next()) {
-      status = each_crowd([&](const Partition& partition) {
-        if (path.is_rest()) return look_at_rest(partition, path, look);
-        return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
-      });
-    }
+  SweptBox path = swept_box();
+  LookingFilter looking(state_.scene, filter_, look);
+  while (path.next()) {
+    const Status status = each_crowd([&](const Partition& partition) {
+      if (path.is_rest()) return look_at_rest(partition, path, look);
+      return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
+    });
+    if (status != Status::ok) return status;
   }
-  if (status != Status::ok || !has_room) return has_room ? status : Status::out_of_memory;
-  Column<SceneHit>& hits = state_.hits;
-  SceneHit* const own = hits.begin() + before;
-  std::sort(own, hits.end(), is_before);
-  // A body whose box reaches from one piece of the path into the next was met in both.
-  const SceneHit* const end = std::unique(
-      own, hits.end(), [](const SceneHit& a, const SceneHit& b) { return a.key == b.key; });
-  hits.set_size(static_cast<std::size_t>(end - hits.begin()));
+  if (!has_room) return Status::out_of_memory;
+  order_hits(state_.hits, before);
   return Status::ok;
 }
 
@@ -427,8 +432,9 @@ class RaysTogether {
 
   /// Of rays [first, first + count) of a batch, the first hits, or `any`. They must be valid.
   Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
-  /// Lists each ray's first hits of all that `look_at_few` shows, by ray, in the state's `few`.
-  Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count);
+  /// Lists each ray's first hits of all that `look_at_few` shows, by ray, in the state's `few`, and
+  /// says whether there are crowds besides.
+  Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool& has_crowd);
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
 
  private:
@@ -537,9 +543,9 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
     meet_few(body);
     return false;
   };
-  look_at_few(state_.scene, filter_, look);
+  const bool has_crowd = look_at_few(state_.scene, filter_, look);
   for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i);
-  if (!has_crowd(state_.scene)) return Status::ok;
+  if (!has_crowd) return Status::ok;
   for (std::size_t i = 0; i < count; ++i) {
     if (const Status status = ask_crowds(i); status != Status::ok) return status;
   }
@@ -547,8 +553,8 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
 }
 
 template <std::size_t Room>
-Status RaysTogether<Room>::list_few(const ShapeRayBatch& rays, std::size_t first,
-                                    std::size_t count) {
+Status RaysTogether<Room>::list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                                    bool& has_crowd) {
   Column<RayHit>& few = state_.few;
   few.clear();
   bool has_room = true;
@@ -560,8 +566,11 @@ Status RaysTogether<Room>::list_few(const ShapeRayBatch& rays, std::size_t first
     }
     return false;
   };
-  look_at_few(state_.scene, filter_, look);
-  std::sort(few.begin(), few.end(), [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; });
+  has_crowd = look_at_few(state_.scene, filter_, look);
+  const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
+  // Those of one body are.
+  const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
+  if (!is_ordered) std::sort(few.begin(), few.end(), is_earlier);
   return has_room ? Status::ok : Status::out_of_memory;
 }
 
@@ -638,16 +647,22 @@ Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filte
   RaysTogether<Room> group(state, filter);
   for (std::size_t i = 0; i < rays.count; i += Room) {
     const std::size_t end = std::min(rays.count, i + Room);
-    if (const Status status = group.list_few(rays, i, end - i); status != Status::ok) return status;
+    bool has_crowd = false;
+    Status status = group.list_few(rays, i, end - i, has_crowd);
+    if (status != Status::ok) return status;
     const RayHit* next = state.few.begin();
     for (std::size_t k = i; k < end; ++k) {
       for (; next != state.few.end() && next->ray == k; ++next) {
         if (!state.hits.push_back(next->hit)) return Status::out_of_memory;
       }
-      const ShapeRay ray = rays[k];
-      const RaySweep swept(state.scene.shapes, ray);
-      const Status status = CastQuestion(state, swept, filter).all_in_crowds(first[k]);
-      if (status != Status::ok) return status;
+      if (has_crowd) {
+        const ShapeRay ray = rays[k];
+        const RaySweep swept(state.scene.shapes, ray);
+        status = CastQuestion(state, swept, filter).all_in_crowds(first[k]);
+        if (status != Status::ok) return status;
+      } else {
+        order_hits(state.hits, first[k]);
+      }
       first[k + 1] = state.hits.size();
     }
   }
