@@ -51,7 +51,7 @@ struct BodyBall {
 [[nodiscard]] inline bool are_apart(const BodyBall& a, const BodyBall& b) noexcept {
   // More than a sum of three squares of float differences is off by: as a share, and where squares
   // are too small for floats.
-  constexpr float kSlack = 1.0F + 0x1p-20F;
+  constexpr float kSlack = 1.0F + 0x1p-19F;
   constexpr float kLeast = 1e-36F;
   const float x = a.center[0] - b.center[0];
   const float y = a.center[1] - b.center[1];

@@ -61,7 +61,9 @@ class Collision {
   [[nodiscard]] bool keep_places() noexcept;
   void note_poses() noexcept;
 
-  // Answers (collide.cpp).
+  // Batches and answers (collide.cpp).
+  [[nodiscard]] Status show();
+  [[nodiscard]] Status answer();
   [[nodiscard]] bool list_pairs();
   [[nodiscard]] Status answer_convex();
   [[nodiscard]] Status answer_composite();
@@ -97,11 +99,9 @@ class Collision {
   void drop(const FloorContact& seam) noexcept;
   void close_regions() noexcept;
 
-  // The frame (collide.cpp).
+  // The frame (show_contacts.cpp).
   [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || remembers_places_; }
   [[nodiscard]] bool open_frame();
-  [[nodiscard]] Status show();
-  [[nodiscard]] Status answer();
   [[nodiscard]] bool close(const Place& end);
   [[nodiscard]] bool show_batch(Place& end);
   [[nodiscard]] bool grow_frame(const Place& end);

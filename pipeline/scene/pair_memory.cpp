@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace winnow {
@@ -233,6 +234,28 @@ void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&t
     }
   }
   std::copy_n(to, 4, carried.turn);
+}
+
+// How much farther than the margin a pair that does not touch is at least; of composite shapes that
+// of what the mid phase found near.
+double Collision::clearance(std::uint32_t pair) const noexcept {
+  const auto of = [&](const NarrowResult& answers, std::size_t at) {
+    // At level manifold the distance of what is farther than the margin may be a lower bound
+    // already, its error on the other side; half of it is one where the error is a rounding's.
+    const double beyond = answers.distance()[at] - limit_;
+    return std::max(beyond - answers.error_bound()[at],
+                    level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  if (origin_of(pair) == Origin::convex) {
+    least = of(scene_.answers, source_of(pair));
+  } else {
+    const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
+    for (std::uint32_t i = first[0]; i < first[1]; ++i) {
+      least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
+    }
+  }
+  return least;
 }
 
 // Notes what a pair was found to be, to be carried over. Room was made.
