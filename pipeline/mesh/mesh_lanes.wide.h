@@ -96,7 +96,7 @@ template <int Blocks>
   });
   Corners16 corners;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Places places(places_of(mesh, leaf, k));
+    const LanePlaces places(places_of(mesh, leaf, k));
     for (int axis = 0; axis < 3; ++axis) corners.at[k][axis] = places.pick(at[axis]);
   }
   return corners;

@@ -8,8 +8,6 @@
 // signs of the areas between it and their sides (Woop, Benthin, Wald, "Watertight ray/triangle
 // intersection", JCGT 2013). It starts near the leaf, so that areas lose little.
 
-#include <type_traits>
-
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
@@ -17,70 +15,107 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Which triangles of a leaf the line of the ray may meet, which enters the leaf at `entry`.
+/// Where the corners of the triangles of a leaf are across a ray, and the longest coordinate of
+/// each triangle. All are measured from a place near the leaf.
+struct CornersAcross {
+  Floats x[3];
+  Floats y[3];
+  Floats size{0.0F};
+};
+
+/// Takes points across a ray.
+template <std::uint32_t Room>
+class AcrossRay {
+ public:
+  /// The places are measured from where the ray is at tau = `entry`.
+  [[gnu::always_inline]] AcrossRay(const ReadyRays<Room>& rays, std::uint32_t ray, float entry)
+      : rays_(rays), ray_(ray) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = static_cast<double>(entry) * rays.direction[axis][ray];
+      from_[axis] = Floats(static_cast<float>(rays.origin[axis][ray] + way));
+    }
+  }
+
+  /// Gives back their longest coordinates.
+  [[gnu::always_inline]] Floats operator()(const Floats (&point)[3], Floats& x, Floats& y) const {
+    const Floats at[3] = {point[0] - from_[0], point[1] - from_[1], point[2] - from_[2]};
+    x = along(at, rays_.across[0]);
+    y = along(at, rays_.across[1]);
+    return max(max(abs(at[0]), abs(at[1])), abs(at[2]));
+  }
+
+  /// Of corners, each by itself.
+  [[gnu::always_inline]] CornersAcross corners(const MeshView& mesh, std::uint32_t leaf) const {
+    CornersAcross r;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Floats corner[3];
+      load_corners(mesh, leaf, k, corner);
+      r.size = max(r.size, (*this)(corner, r.x[k], r.y[k]));
+    }
+    return r;
+  }
+  /// The same by way of the vertices that the leaf lists.
+  template <int Blocks>
+  [[gnu::always_inline]] CornersAcross listed(const MeshView& mesh, std::uint32_t leaf) const {
+    Floats x[Blocks];
+    Floats y[Blocks];
+    Floats size[Blocks];
+    each_vertex_block<Blocks>(mesh, leaf, [&](int block, const Floats(&vertex)[3]) {
+      size[block] = (*this)(vertex, x[block], y[block]);
+    });
+    CornersAcross r;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LanePlaces places(places_of(mesh, leaf, k));
+      r.x[k] = places.pick(x);
+      r.y[k] = places.pick(y);
+      r.size = max(r.size, places.pick(size));
+    }
+    return r;
+  }
+
+ private:
+  [[gnu::always_inline]] Floats along(const Floats (&at)[3],
+                                      const float (&row)[3][ReadyRays<Room>::kFloats]) const {
+    const Floats first = at[0] * Floats(row[0][ray_]);
+    return multiply_add(at[2], Floats(row[2][ray_]),
+                        multiply_add(at[1], Floats(row[1][ray_]), first));
+  }
+
+  const ReadyRays<Room>& rays_;
+  const std::uint32_t ray_;
+  Floats from_[3];
+};
+
+/// Which of those triangles the line of the ray may meet, which may be wrong by `ray_wrong`.
 ///
-/// Coordinates of corners from there, no longer than `size`, are wrong by u of themselves, and in
-/// the sheared frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size`
-/// and by what the ray is. The area of two such corners is wrong by less than `doubt`.
+/// Coordinates of corners, no longer than `size`, are wrong by u of themselves, and in the sheared
+/// frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size` and by what
+/// the ray is. The area of two such corners is wrong by less than `doubt`.
+[[gnu::always_inline]] inline Mask16 around_line(const CornersAcross& at, float ray_wrong) {
+  constexpr float kUnit = 0x1p-24F;
+  const Floats& size = at.size;
+  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(ray_wrong));
+  const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
+  const Floats doubt =
+      multiply_add(size, rounded, multiply_add(wrong * Floats(2.5F), wrong, Floats(1e-36F)));
+  const Floats a = at.x[2] * at.y[1] - at.y[2] * at.x[1];
+  const Floats b = at.x[0] * at.y[2] - at.y[0] * at.x[2];
+  const Floats c = at.x[1] * at.y[0] - at.y[1] * at.x[0];
+  const LaneMask<float> misses = (max(max(a, b), c) > doubt) & (min(min(a, b), c) < -doubt);
+  return ~bits(misses) & 0xFFFFU;
+}
+
+/// Which triangles of a leaf the line of the ray may meet, which enters the leaf at `entry`.
 template <std::uint32_t Room>
 [[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
                                              const ReadyRays<Room>& rays, std::uint32_t ray,
                                              float entry) {
-  constexpr float kUnit = 0x1p-24F;
-  Floats from[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    from[axis] = Floats(static_cast<float>(rays.origin[axis][ray] +
-                                           static_cast<double>(entry) * rays.direction[axis][ray]));
-  }
-  // Across the ray, and the longest coordinate.
-  const auto look_across = [&](const Floats(&point)[3], Floats& x, Floats& y) {
-    const Floats at[3] = {point[0] - from[0], point[1] - from[1], point[2] - from[2]};
-    const auto across = [&](const float(&row)[3][ReadyRays<Room>::kFloats]) {
-      return multiply_add(at[2], Floats(row[2][ray]),
-                          multiply_add(at[1], Floats(row[1][ray]), at[0] * Floats(row[0][ray])));
-    };
-    x = across(rays.across[0]);
-    y = across(rays.across[1]);
-    return max(max(abs(at[0]), abs(at[1])), abs(at[2]));
-  };
-  Floats x[3];
-  Floats y[3];
-  Floats size(0.0F);
-  const auto look_at_vertices = [&]<int Blocks>(std::integral_constant<int, Blocks>) {
-    Floats vertex_x[Blocks];
-    Floats vertex_y[Blocks];
-    Floats vertex_size[Blocks];
-    each_vertex_block<Blocks>(mesh, leaf, [&](int block, const Floats(&vertex)[3]) {
-      vertex_size[block] = look_across(vertex, vertex_x[block], vertex_y[block]);
-    });
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Places places(places_of(mesh, leaf, k));
-      x[k] = places.pick(vertex_x);
-      y[k] = places.pick(vertex_y);
-      size = max(size, places.pick(vertex_size));
-    }
-  };
+  const AcrossRay<Room> across(rays, ray, entry);
+  const float wrong = rays.wrong[ray];
   const int blocks = vertex_blocks(mesh, leaf);
-  if (blocks == 1) {
-    look_at_vertices(std::integral_constant<int, 1>());
-  } else if (blocks == 2) {
-    look_at_vertices(std::integral_constant<int, 2>());
-  } else {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Floats corner[3];
-      load_corners(mesh, leaf, k, corner);
-      size = max(size, look_across(corner, x[k], y[k]));
-    }
-  }
-  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(rays.wrong[ray]));
-  const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
-  const Floats doubt =
-      multiply_add(size, rounded, multiply_add(wrong * Floats(2.5F), wrong, Floats(1e-36F)));
-  const Floats a = x[2] * y[1] - y[2] * x[1];
-  const Floats b = x[0] * y[2] - y[0] * x[2];
-  const Floats c = x[1] * y[0] - y[1] * x[0];
-  const LaneMask<float> misses = (max(max(a, b), c) > doubt) & (min(min(a, b), c) < -doubt);
-  return ~bits(misses) & 0xFFFFU;
+  if (blocks == 1) return around_line(across.template listed<1>(mesh, leaf), wrong);
+  if (blocks == 2) return around_line(across.template listed<2>(mesh, leaf), wrong);
+  return around_line(across.corners(mesh, leaf), wrong);
 }
 
 /// What a ray does next: goes into a node, asks for the vertices of a leaf whose corners are there,

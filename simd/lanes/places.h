@@ -7,9 +7,9 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// Sixteen numbers, each below 16, or 32.
-class Places {
+class LanePlaces {
  public:
-  [[gnu::always_inline]] explicit Places(const std::uint8_t* p) {
+  [[gnu::always_inline]] explicit LanePlaces(const std::uint8_t* p) {
 #if defined(WINNOW_ISA_IS_avx512)
     place_ = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
 #elif defined(WINNOW_ISA_IS_avx2)

@@ -102,7 +102,7 @@ template <int Blocks>
 void pick_lanes(const float* from, const std::uint8_t* place, float* out) {
   Floats block[Blocks];
   for (int k = 0; k < Blocks; ++k) block[k] = Floats::load_unaligned(from + k * kLanes);
-  Places(place).pick(block).store_unaligned(out);
+  LanePlaces(place).pick(block).store_unaligned(out);
 }
 template <unsigned Limit>
 bool are_below_limit(const std::uint8_t* place) {
