@@ -8,6 +8,13 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
+constexpr ObjectFilter kNoFilter{.layers = 0, .mask = 0, .environment = 0};
+
+// Words and floats have one size: the spare column's bytes serve both.
+std::uint32_t* words_of(Column<float>& spare) noexcept {
+  static_assert(sizeof(float) == sizeof(std::uint32_t));
+  return reinterpret_cast<std::uint32_t*>(spare.data());
+}
 
 // Eight at a time, which mostly are all there.
 template <typename T>
@@ -36,6 +43,16 @@ void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missin
   });
 }
 
+// The same in place.
+void reorder_words(std::uint32_t* words, std::span<const std::uint32_t> order, Column<float>& spare,
+                   std::uint32_t missing, const Execution& execution) {
+  const std::uint32_t* const sorted = words_of(spare);
+  gather(words, order, words_of(spare), missing, execution);
+  for_stretches(execution, order.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::copy(sorted + begin, sorted + end, words + begin);
+  });
+}
+
 }  // namespace
 
 bool BoundsPool::reserve(std::size_t rows) noexcept {
@@ -52,10 +69,32 @@ bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
     grown = columns_[c].reserve(padded);
   }
   ids_.set_size(rows_);
+  for (std::size_t c = 0; c < kFilterColumns && has_filters_ && grown; ++c) {
+    filters_[c].set_size(rows_);
+    grown = filters_[c].reserve(padded);
+  }
   grown = grown && ids_.reserve(padded);
   // Columns that moved have left their padding behind.
   pad();
   return grown;
+}
+
+bool BoundsPool::reserve_filters() noexcept {
+  if (has_filters_) return true;
+  for (Column<std::uint32_t>& column : filters_) {
+    column.clear();
+    if (!column.reserve(ids_.capacity())) return false;
+  }
+  return true;
+}
+
+void BoundsPool::begin_filters() noexcept {
+  if (has_filters_) return;
+  has_filters_ = true;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    set_filter(row, ids_[row] == kNoObject ? kNoFilter : ObjectFilter{});
+  }
+  pad();
 }
 
 void BoundsPool::touch() noexcept {
@@ -65,12 +104,25 @@ void BoundsPool::touch() noexcept {
   }
   ids_.set_size(rows_);
   ids_.touch();
+  for (std::size_t c = 0; c < kFilterColumns && has_filters_; ++c) {
+    filters_[c].set_size(rows_);
+    filters_[c].touch();
+  }
   pad();
+}
+
+void BoundsPool::copy_row(std::size_t from, std::size_t to) noexcept {
+  for (std::size_t c = 0; c < columns(); ++c) columns_[c][to] = columns_[c][from];
+  ids_[to] = ids_[from];
+  for (std::size_t c = 0; c < kFilterColumns && has_filters_; ++c) {
+    filters_[c][to] = filters_[c][from];
+  }
 }
 
 void BoundsPool::blank(std::size_t row) noexcept {
   for (std::size_t c = 0; c < columns(); ++c) columns_[c].data()[row] = empty_value(volume_, c);
   ids_.data()[row] = kNoObject;
+  if (has_filters_) set_filter(row, kNoFilter);
 }
 
 void BoundsPool::pad() noexcept {
@@ -80,6 +132,7 @@ void BoundsPool::pad() noexcept {
     std::fill(columns_[c].data() + rows_, columns_[c].data() + end, empty_value(volume_, c));
   }
   std::fill(ids_.data() + rows_, ids_.data() + end, kNoObject);
+  for (std::size_t row = rows_; row < end && has_filters_; ++row) set_filter(row, kNoFilter);
 }
 
 void BoundsPool::reorder(std::span<const std::uint32_t> order, Column<float>& spare,
@@ -89,36 +142,27 @@ void BoundsPool::reorder(std::span<const std::uint32_t> order, Column<float>& sp
     columns_[c].swap(spare);
   }
   reorder_ids(order, spare, execution);
+  for (std::size_t c = 0; c < kFilterColumns && has_filters_; ++c) {
+    reorder_words(filters_[c].data(), order, spare, 0, execution);
+  }
   rows_ = order.size();
   pad();
 }
 
 void BoundsPool::reorder_ids(std::span<const std::uint32_t> order, Column<float>& spare,
                              const Execution& execution) noexcept {
-  // Ids and floats have one size: the spare column's bytes serve both.
-  static_assert(sizeof(float) == sizeof(ObjectId));
-  auto* const ids = reinterpret_cast<ObjectId*>(spare.data());
   std::uint32_t apart = 0;
   for (std::size_t row = 0; row < rows_; ++row) {
     apart |= ids_[row] ^ (ids_[0] + static_cast<std::uint32_t>(row));
   }
   const bool ascend = apart == 0 && rows_ != 0;
-  const auto for_rows = [&](auto&& work) {
-    for_stretches(execution, order.size(), kRowsPerTask, work);
-  };
-  if (ascend) {
-    // Those of rows in the order of ids need no look.
-    const ObjectId first = ids_[0];
-    for_rows([&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        ids_[i] = order[i] == kNoObject ? kNoObject : first + order[i];
-      }
-    });
-    return;
-  }
-  gather(ids_.data(), order, ids, kNoObject, execution);
-  for_rows([&](std::size_t begin, std::size_t end) {
-    std::copy(ids + begin, ids + end, ids_.data() + begin);
+  if (!ascend) return reorder_words(ids_.data(), order, spare, kNoObject, execution);
+  // Those of rows in the order of ids need no look.
+  const ObjectId first = ids_[0];
+  for_stretches(execution, order.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ids_[i] = order[i] == kNoObject ? kNoObject : first + order[i];
+    }
   });
 }
 
@@ -129,8 +173,14 @@ void BoundsPool::reorder_tail(std::size_t begin, std::span<const std::uint32_t> 
     gather(columns_[c].data(), order, spare.data(), empty_value(volume_, c), here);
     std::copy_n(spare.data(), order.size(), columns_[c].data() + begin);
   }
-  gather(ids_.data(), order, reinterpret_cast<ObjectId*>(spare.data()), kNoObject, here);
-  std::copy_n(reinterpret_cast<const ObjectId*>(spare.data()), order.size(), ids_.data() + begin);
+  const auto move_words = [&](std::uint32_t* words, std::uint32_t missing) {
+    gather(words, order, words_of(spare), missing, here);
+    std::copy_n(words_of(spare), order.size(), words + begin);
+  };
+  move_words(ids_.data(), kNoObject);
+  for (std::size_t c = 0; c < kFilterColumns && has_filters_; ++c) {
+    move_words(filters_[c].data(), 0);
+  }
   rows_ = begin + order.size();
   pad();
 }
@@ -138,7 +188,9 @@ void BoundsPool::reorder_tail(std::size_t begin, std::span<const std::uint32_t> 
 void BoundsPool::release() noexcept {
   for (Column<float>& column : columns_) column.release();
   ids_.release();
+  for (Column<std::uint32_t>& column : filters_) column.release();
   rows_ = 0;
+  has_filters_ = false;
 }
 
 Bytes BoundsPool::bytes() const noexcept {
@@ -147,6 +199,14 @@ Bytes BoundsPool::bytes() const noexcept {
     sum += {rows_ * sizeof(float), columns_[c].bytes().reserved};
   }
   sum += {rows_ * sizeof(ObjectId), ids_.bytes().reserved};
+  return sum;
+}
+
+Bytes BoundsPool::filter_bytes() const noexcept {
+  Bytes sum;
+  for (const Column<std::uint32_t>& column : filters_) {
+    sum += {has_filters_ ? rows_ * sizeof(std::uint32_t) : 0, column.bytes().reserved};
+  }
   return sum;
 }
 

@@ -3,7 +3,9 @@
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
+#include <winnow/core/object_filter.h>
 #include <winnow/core/volume.h>
+#include "core/memory/filter_columns.h"
 
 #include <array>
 #include <cstddef>
@@ -26,6 +28,9 @@ inline constexpr std::size_t kBlockRows = 16;
 /// leaves; a hole and the padding behind the last row hold an empty volume, which overlaps nothing,
 /// and `kNoObject`. Stored ends are finite (an infinite one becomes +-FLT_MAX, which no comparison
 /// can tell from infinity), so that the padding's infinities touch nothing.
+///
+/// Filters are three further columns, which hold nothing until they come into use. A hole and the
+/// padding then are in no layer and want none.
 class BoundsPool {
  public:
   BoundsPool(std::pmr::memory_resource* memory, Volume volume) noexcept
@@ -44,6 +49,24 @@ class BoundsPool {
   [[nodiscard]] ObjectId* ids() noexcept { return ids_.data(); }
   [[nodiscard]] const ObjectId* ids() const noexcept { return ids_.data(); }
 
+  [[nodiscard]] bool has_filters() const noexcept { return has_filters_; }
+  /// By row.
+  [[nodiscard]] FilterColumns filters() const noexcept {
+    if (!has_filters_) return {};
+    return {filters_[kLayers].data(), filters_[kMask].data(), filters_[kEnvironment].data()};
+  }
+  /// Room for filters of as many rows as there is room for. False, and unchanged, if memory is
+  /// refused.
+  [[nodiscard]] bool reserve_filters() noexcept;
+  /// Filters come into use, with the default in every row. Room was made. O(rows).
+  void begin_filters() noexcept;
+  /// Filters must be in use.
+  void set_filter(std::size_t row, const ObjectFilter& filter) noexcept {
+    filters_[kLayers][row] = filter.layers;
+    filters_[kMask][row] = filter.mask;
+    filters_[kEnvironment][row] = filter.environment;
+  }
+
   /// Room for `rows` rows and their padding. Exact on the first call, growing by half afterwards.
   [[nodiscard]] bool reserve(std::size_t rows) noexcept;
   /// Room for `rows` rows and their padding, no more.
@@ -56,6 +79,9 @@ class BoundsPool {
 
   /// Takes the last row away.
   void drop_last() noexcept { --rows_; }
+
+  /// Row `to` becomes what row `from` is.
+  void copy_row(std::size_t from, std::size_t to) noexcept;
 
   /// Empties one row.
   void blank(std::size_t row) noexcept;
@@ -72,21 +98,34 @@ class BoundsPool {
   void reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
                     Column<float>& spare) noexcept;
 
+  /// No rows are left; memory is kept.
   void clear() noexcept { rows_ = 0; }
+  /// Filters are in use no more; memory is kept.
+  void end_filters() noexcept { has_filters_ = false; }
   void release() noexcept;
+  /// Of volumes and ids.
   [[nodiscard]] Bytes bytes() const noexcept;
+  [[nodiscard]] Bytes filter_bytes() const noexcept;
 
  private:
+  enum FilterColumn : std::size_t { kLayers, kMask, kEnvironment, kFilterColumns };
+
   void reorder_ids(std::span<const std::uint32_t> order, Column<float>& spare,
                    const Execution& execution) noexcept;
 
   template <std::size_t... I>
   BoundsPool(std::pmr::memory_resource* memory, Volume volume, std::index_sequence<I...>) noexcept
-      : columns_{((void)I, Column<float>(memory))...}, ids_(memory), volume_(volume) {}
+      : columns_{((void)I, Column<float>(memory))...},
+        ids_(memory),
+        filters_{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory),
+                 Column<std::uint32_t>(memory)},
+        volume_(volume) {}
 
   std::array<Column<float>, kMaxColumns> columns_;
   Column<ObjectId> ids_;
+  std::array<Column<std::uint32_t>, kFilterColumns> filters_;
   std::size_t rows_ = 0;
+  bool has_filters_ = false;
   Volume volume_;
 };
 

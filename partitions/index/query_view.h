@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/object_filter.h>
+#include "core/memory/filter_columns.h"
 #include "partitions/rows/filter_span.h"
 #include "partitions/tree/block_tree.kernel.h"
 
@@ -15,8 +16,8 @@ struct QueryView {
   /// Of the boxes: lower ends, then upper ends.
   const float* column[6] = {};
   const std::uint32_t* id = nullptr;
-  const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
-  FilterSpan span;                       ///< of all objects' filters
+  FilterColumns filter;  ///< by row
+  FilterSpan span;       ///< of all objects' filters
   const TreeShape* tree[2] = {};
   std::uint32_t trees = 0;
   std::uint32_t flat_blocks = 0;

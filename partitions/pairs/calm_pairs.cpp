@@ -40,6 +40,9 @@ double finite(float end) noexcept {
 struct NearBatch {
   alignas(64) float ends[6][kNearQueriesPerTask + kBlockRows];
   std::uint32_t ids[kNearQueriesPerTask + kBlockRows];
+  std::uint32_t layers[kNearQueriesPerTask + kBlockRows];
+  std::uint32_t masks[kNearQueriesPerTask + kBlockRows];
+  std::uint32_t environments[kNearQueriesPerTask + kBlockRows];
   std::uint32_t size = 0;
 
   void add(const RowView& view, std::size_t row, double reach) noexcept {
@@ -49,6 +52,11 @@ struct NearBatch {
       ends[c][size] = std::max(round_down(add_down(low, -reach)), -FLT_MAX);
       ends[3 + c][size] = std::min(round_up(add_up(high, reach)), FLT_MAX);
     }
+    if (view.filter.layers != nullptr) {
+      layers[size] = view.filter.layers[row];
+      masks[size] = view.filter.mask[row];
+      environments[size] = view.filter.environment[row];
+    }
     ids[size++] = view.id[row];
   }
   [[nodiscard]] QueryBatch batch(const RowView& view) const noexcept {
@@ -57,7 +65,8 @@ struct NearBatch {
     batch.id = ids;
     batch.end = size;
     batch.mode = HitMode::query_first;
-    batch.filter = view.filter;
+    if (view.filter.layers != nullptr) batch.filter = {layers, masks, environments};
+    batch.environments = view.environments;
     batch.meets_all = view.all_meet;
     return batch;
   }

@@ -33,6 +33,7 @@ QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) no
   batch.is_box = rows.pool().volume() == Volume::aabb;
   batch.id = view.id;
   batch.filter = view.filter;
+  batch.environments = view.environments;
   batch.meets_all = view.all_meet;
   batch.begin = static_cast<std::uint32_t>(begin);
   batch.end = static_cast<std::uint32_t>(end);
@@ -368,6 +369,7 @@ Status PartitionState::ask(const PartitionState& other, HitMode mode,
     QueryBatch batch;
     std::copy_n(view.column, 6, batch.column);
     batch.filter = view.filter;
+    batch.environments = view.environments;
     batch.meets_all = meets_all;
     batch.id = view.id;
     batch.begin = static_cast<std::uint32_t>(begin);

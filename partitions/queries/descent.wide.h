@@ -28,18 +28,12 @@ class Wanted {
 
   [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
-    if (!filter_.by_object || candidates == 0) return candidates;
+    if (!filter_.by_object) return candidates;
     return passing_nodes(tree, level, first_node, candidates, range_of(filter_.object));
   }
   [[nodiscard]] Mask16 rows(std::uint32_t first_row, Mask16 candidates) const {
-    if (!filter_.by_object || candidates == 0) return candidates;
-    return passing_rows(rows_, first_row, candidates, filter_.object);
-  }
-  /// The same of those of a block of a tree.
-  [[nodiscard]] Mask16 rows(const TreeShape& tree, std::uint32_t block, Mask16 candidates) const {
-    const bool any = !filter_.by_object || candidates == 0;
-    if (any || surely_meets(tree, block, range_of(filter_.object))) return candidates;
-    return passing_rows(rows_, (tree.first_block + block) * kLanes, candidates, filter_.object);
+    if (!filter_.by_object) return candidates;
+    return passing_rows(rows_, first_row, candidates, range_of(filter_.object));
   }
   /// The caller's last word.
   [[nodiscard]] bool accepts(std::uint32_t id) const {

@@ -158,7 +158,9 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     QueryBatch& batch = columns.batch();
     if (index.structure().is_flat())
       return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
-    batch.filter = &asking;
+    batch.filter = {&asking.layers, &asking.mask, &asking.environment};
+    // Telling it apart from the others costs one look.
+    batch.environments = true;
     batch.one_filter = true;
     batch.meets_all = !wanted.wanted().by_object;
     return index.query(batch, sink);

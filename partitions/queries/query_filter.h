@@ -16,8 +16,9 @@ class KernelFilter {
     asking.add(wanted_.object);
     // Without filters in the partition every object has the default one: one answer for all.
     const bool meets_all = surely_meet(asking, view.span);
-    wanted_.by_object = view.filter != nullptr && !meets_all;
-    meets_nothing_ = view.filter == nullptr && !meets_all;
+    const bool filtered = view.filter.layers != nullptr;
+    wanted_.by_object = filtered && !meets_all;
+    meets_nothing_ = !filtered && !meets_all;
     if (predicate_.accept == nullptr) return;
     wanted_.context = this;
     wanted_.accept = [](const void* context, std::uint32_t id) noexcept {

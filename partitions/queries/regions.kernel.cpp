@@ -326,7 +326,7 @@ class RegionTraversal {
             return take_all(tree, level, node) ? Next::past : Next::stop;
           }
           if (level != 0) return Next::below;
-          return test_block(tree, node) ? Next::past : Next::stop;
+          return test_rows((tree.first_block + node) * kLanes) ? Next::past : Next::stop;
         });
   }
 
@@ -338,8 +338,7 @@ class RegionTraversal {
     for (std::uint64_t block = begin; block < end; ++block) {
       const auto row = static_cast<std::uint32_t>((tree.first_block + block) * kLanes);
       const Mask16 live = bits(Floats::load(view_.column[0] + row) <= kLargest<float>);
-      const Mask16 wanted = wanted_.rows(tree, static_cast<std::uint32_t>(block), live);
-      if (!write(sinks_.inside, view_.id + row, wanted)) return false;
+      if (!write(sinks_.inside, view_.id + row, wanted_.rows(row, live))) return false;
     }
     return true;
   }
@@ -347,13 +346,6 @@ class RegionTraversal {
   [[gnu::always_inline]] bool test_rows(std::uint32_t first_row) {
     Met found = probe_.test(view_.column, first_row);
     found.met = wanted_.rows(first_row, found.met);
-    return take_met(found, view_.id + first_row, view_.column, first_row);
-  }
-
-  [[gnu::always_inline]] bool test_block(const TreeShape& tree, std::uint32_t block) {
-    const std::uint32_t first_row = (tree.first_block + block) * kLanes;
-    Met found = probe_.test(view_.column, first_row);
-    found.met = wanted_.rows(tree, block, found.met);
     return take_met(found, view_.id + first_row, view_.column, first_row);
   }
 
@@ -409,8 +401,9 @@ bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilte
     const Uints ids = Uints::load_unaligned(view.id + b * kLanes);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const QueryBox q(batch.column, k);
-      const Mask16 hits = wanted.rows(b * kLanes, overlap(rows, q.low, q.high));
-      if (hits == 0) continue;
+      const Mask16 met = overlap(rows, q.low, q.high);
+      if (met == 0) continue;
+      const Mask16 hits = wanted.rows(b * kLanes, met);
       if (!has_room(sink)) return false;
       sink.cursor += 2 * emit_pairs<false>(hits, ids, batch.id[k], sink.cursor);
     }

@@ -179,7 +179,7 @@ class SweepRounds {
       if (rows_.full() && !touch_rows()) return false;
       __builtin_prefetch(view_.id + first_row);
       const Mask16 mask = touching(ways, blocks.question[k], first_row);
-      rows_.add(blocks.question[k], first_row, wanted_.rows(*tree_, blocks.at[k], mask));
+      rows_.add(blocks.question[k], first_row, wanted_.rows(first_row, mask));
     }
     return true;
   }
@@ -187,7 +187,7 @@ class SweepRounds {
   bool test_flat(std::uint32_t s, std::uint32_t first_row) {
     if (rows_.full() && !touch_rows()) return false;
     const Mask16 mask = touching(Ways(sweeps_[s], view_.column), s, first_row);
-    rows_.add(s, first_row, wanted_.rows(first_row, mask));
+    if (mask != 0) rows_.add(s, first_row, wanted_.rows(first_row, mask));
     return true;
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/object_filter.h>
+#include "core/memory/filter_columns.h"
 #include "partitions/rows/filter_span.h"
 
 #include <cstddef>
@@ -29,10 +29,10 @@ struct RowView {
   std::uint32_t further_slabs = 0;
   bool spheres = false;
   const std::uint32_t* id = nullptr;
-  const ObjectFilter* filter = nullptr;  ///< by id; null if every object has the default one
-  bool environments = false;             ///< or false if all share one
-  FilterSpan span;                       ///< of all objects' filters
-  bool all_meet = false;                 ///< all objects are known to meet each other
+  FilterColumns filter;       ///< by row; in no layer where there is no object
+  bool environments = false;  ///< or false if all share one
+  FilterSpan span;            ///< of all objects' filters
+  bool all_meet = false;      ///< all objects are known to meet each other
   /// Another number than before once a row has got another object, or an object another filter.
   std::uint64_t arrangement = 0;
 };
@@ -57,10 +57,10 @@ struct QueryBatch {
   std::uint32_t end = 0;
   HitMode mode = HitMode::unordered;
   const std::uint64_t* moved = nullptr;  ///< bit per row, for HitMode::moved
-  /// Filters of those who ask, by `id`, or one for all; null if all have the default one.
-  const ObjectFilter* filter = nullptr;
+  FilterColumns filter;                  ///< of those who ask, by row, or in entry 0 one for all
   bool one_filter = false;
-  bool meets_all = false;  ///< whoever asks is known to meet every object that is asked about
+  bool environments = false;  ///< or false if all who ask share one
+  bool meets_all = false;     ///< whoever asks is known to meet every object that is asked about
 };
 
 }  // namespace winnow

@@ -156,6 +156,9 @@ void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_
                      std::size_t begin, std::size_t end) {
   const PoolColumns columns(pool_);
   for (std::size_t i = begin; i < end; ++i) pool_.ids()[first + i] = keys[i].id;
+  for (std::size_t i = begin; i < end && pool_.has_filters(); ++i) {
+    pool_.set_filter(first + i, filters_.of(keys[i].id));
+  }
   if constexpr (requires { source.write_in_order(begin, end, columns.pointers, first); }) {
     if (source.packed()) return source.write_in_order(begin, end, columns.pointers, first + begin);
   }
@@ -462,15 +465,11 @@ bool Rows::make_room(std::size_t objects) noexcept {
 
 void Rows::compact() noexcept {
   ++arrangement_;
-  const PoolColumns columns(pool_);
   std::size_t to = 0;
   for (std::size_t from = 0; from < pool_.rows(); ++from) {
     const ObjectId id = pool_.ids()[from];
     if (id == kNoObject) continue;
-    for (std::size_t c = 0; c < pool_.columns(); ++c) {
-      columns.pointers[c][to] = columns.pointers[c][from];
-    }
-    pool_.ids()[to] = id;
+    pool_.copy_row(from, to);
     keys_.set_row(id, static_cast<std::uint32_t>(to++));
   }
   pool_.clear();
@@ -529,6 +528,7 @@ void Rows::clear() noexcept {
   keys_.clear();
   filters_.clear();
   pool_.clear();
+  pool_.end_filters();
   stale_.clear();
   moved_.clear();
   disorder();
@@ -559,18 +559,26 @@ void Rows::release_memory() noexcept {
   clear();
 }
 
+/// From here on objects may have filters. False, and unchanged, if memory is refused.
+bool Rows::begin_filters() noexcept {
+  if (!pool_.reserve_filters() || !filters_.begin_use()) return false;
+  pool_.begin_filters();
+  return true;
+}
+
 Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
   if (keys.size() != filters.size()) return Status::size_mismatch;
   if (!std::ranges::all_of(keys, [&](Key key) { return keys_.is_valid(key); })) {
     return Status::invalid_key;
   }
   const bool any = std::ranges::any_of(filters, [](const auto& f) { return f != ObjectFilter{}; });
-  if (any && !filters_.begin_use()) return Status::out_of_memory;
+  if (any && !begin_filters()) return Status::out_of_memory;
   ++arrangement_;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const ObjectId id = keys[i].id;
     if (filters_.of(id) == filters[i]) continue;
     filters_.set(id, filters[i]);
+    pool_.set_filter(keys_.row_of(id), filters[i]);
     stale_.add(id);
     changed_ = true;
   }
@@ -608,7 +616,7 @@ Status Rows::restore(const SavedRows& saved, Rows& other) {
   Column<std::uint8_t> seen(keys_.key_memory());
   if (!seen.resize(slots) || !make_room(slots)) return Status::out_of_memory;
   if (!KeyTable::are_slots(saved.keys, seen)) return Status::invalid_argument;
-  if (!saved.filters.empty() && !filters_.begin_use()) return Status::out_of_memory;
+  if (!saved.filters.empty() && !begin_filters()) return Status::out_of_memory;
   keys_.restore(saved.keys, other.keys_);
   pool_.append(live);
   for (std::size_t c = 0; c < pool_.columns(); ++c) {
@@ -619,7 +627,9 @@ Status Rows::restore(const SavedRows& saved, Rows& other) {
     if (!keys_.is_live(id)) continue;
     const std::size_t row = keys_.row_of(id);
     pool_.ids()[row] = id;
-    if (!saved.filters.empty()) filters_.set(id, saved.filters[row]);
+    if (saved.filters.empty()) continue;
+    filters_.set(id, saved.filters[row]);
+    pool_.set_filter(row, saved.filters[row]);
   }
   stale_.add_all();
   changed_ = true;
@@ -659,7 +669,7 @@ RowView Rows::view() const noexcept {
   view.further_slabs = static_cast<std::uint32_t>(slab_count(pool_.volume())) - 3;
   view.spheres = pool_.volume() == Volume::sphere;
   view.id = pool_.ids();
-  view.filter = filters_.data();
+  view.filter = pool_.filters();
   view.environments = filters_.has_environments();
   view.span = filters_.span();
   view.all_meet = surely_meet(view.span, view.span);
@@ -672,6 +682,7 @@ void Rows::add_bytes(Footprint& footprint) const noexcept {
   footprint.keys += keys_.key_bytes();
   footprint.client_data += keys_.client_data_bytes();
   footprint.structure += filters_.bytes();
+  footprint.structure += pool_.filter_bytes();
   footprint.structure += stale_.bytes();
   footprint.structure += moved_.bytes();
   footprint.scratch += selection_.bytes();
@@ -714,16 +725,11 @@ void Rows::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
 
 void Rows::move_to_end(std::span<const std::uint32_t> rows) noexcept {
   ++arrangement_;
-  const PoolColumns columns(pool_);
   for (const std::uint32_t row : rows) {
     const std::size_t to = pool_.rows();
-    const ObjectId id = pool_.ids()[row];
     pool_.append(1);
-    for (std::size_t c = 0; c < pool_.columns(); ++c) {
-      columns.pointers[c][to] = columns.pointers[c][row];
-    }
-    pool_.ids()[to] = id;
-    keys_.set_row(id, static_cast<std::uint32_t>(to));
+    pool_.copy_row(row, to);
+    keys_.set_row(pool_.ids()[to], static_cast<std::uint32_t>(to));
     pool_.blank(row);
   }
   pool_.pad();

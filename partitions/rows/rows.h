@@ -142,6 +142,7 @@ class Rows {
 
  private:
   [[nodiscard]] bool make_room(std::size_t objects) noexcept;
+  [[nodiscard]] bool begin_filters() noexcept;
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 

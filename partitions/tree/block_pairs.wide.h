@@ -17,8 +17,8 @@ class BlockPairs {
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
   /// Begins with rows [begin, end), which may meet each other unless `apart`. False if they are all
-  /// holes. `meets_all`: filters are known to let them meet everything.
-  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false, bool meets_all = false) {
+  /// holes. `filtered`: filters are not known to let them all meet each other.
+  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false, bool filtered = true) {
     at_ = begin;
     behind_ = end;
     next_ = end / kLanes;
@@ -27,8 +27,7 @@ class BlockPairs {
       const float empty = s < 3 ? __builtin_inff() : -__builtin_inff();
       for (std::uint32_t i = end - begin; i < kLanes; ++i) own_[s][i] = empty;
     }
-    filtered_ = Filtered && !meets_all;
-    if (filtered_) note_filters(end - begin);
+    filtered_ = Filtered && filtered;
     for (int a = 0; a < 3; ++a) {
       low_[a] = reduce_min(Floats::load(own_[a]));
       high_[a] = reduce_max(Floats::load(own_[3 + a]));
@@ -64,6 +63,9 @@ class BlockPairs {
     return true;
   }
 
+  /// What is added from here on may hold what filters do not let meet all of the block.
+  void use_filters() { filtered_ = Filtered; }
+
   /// Tests the block. False if the sink is full.
   bool finish() { return test_blocks() && test_rows(); }
 
@@ -73,23 +75,6 @@ class BlockPairs {
   // Blocks of neighbouring lines lie in six columns each, anywhere: they are fetched so many tests
   // before their turn.
   static constexpr unsigned kAhead = 6;
-
-  /// What the block's objects have in their filters.
-  void note_filters(std::uint32_t rows) {
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      const std::uint32_t id = i < rows ? rows_.id[at_ + i] : ~0U;
-      own_layers_[i] = id == ~0U ? 0 : rows_.filter[id].layers;
-      own_masks_[i] = id == ~0U ? 0 : rows_.filter[id].mask;
-    }
-  }
-
-  /// Those of the own rows in `mask` that an object's filter lets meet it.
-  [[nodiscard]] Mask16 passing_own_rows(Mask16 mask, std::uint32_t id) const {
-    const FilterRange q = filters_.of(id);
-    if (rows_.environments) return passing_rows(rows_, at_, mask, q);
-    return mask & sharing(Uints::load(own_layers_), q.mask) &
-           sharing(Uints::load(own_masks_), q.layers);
-  }
 
   /// Of two rows of the block the one in front asks.
   void test_self() {
@@ -164,7 +149,7 @@ class BlockPairs {
       }
       const std::uint32_t id = row_id[hit_row_[k]];
       Mask16 mask = hit_mask_[k];
-      if (filtered) mask = passing_own_rows(mask, id);
+      if (filtered) mask = passing_rows(rows_, at_, mask, filters_.of(hit_row_[k]));
       cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
     }
     sink_.cursor = cursor;
@@ -191,8 +176,6 @@ class BlockPairs {
   PairSink& sink_;
   const AskingFilters filters_;
   alignas(64) float own_[6][kLanes];
-  alignas(64) std::uint32_t own_layers_[kLanes];
-  alignas(64) std::uint32_t own_masks_[kLanes];
   bool filtered_ = false;
   std::uint32_t at_ = 0;
   std::uint32_t behind_ = 0;

@@ -192,6 +192,16 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
+/// Those of 16 nodes from `first_node` of a level on below which everything surely meets everything
+/// in a leaf: all that is in one of them has a layer in common that all in the other want.
+Mask16 surely_meeting(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
+                      std::uint32_t leaf) {
+  const NodeFilters& nodes = tree.filters[level];
+  const NodeFilters& leaves = tree.filters[0];
+  return sharing(Uints::load(nodes.every_layers + first_node), leaves.every_mask[leaf]) &
+         sharing(Uints::load(nodes.every_mask + first_node), leaves.every_layers[leaf]);
+}
+
 /// Pairs of rows without filters, or of one environment, leaf by leaf.
 template <bool Filtered>
 bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
@@ -203,15 +213,23 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
     const FilterRange own = range_of(tree.filters[0], leaf);
     const bool meets_all = !Filtered || surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
     const bool apart = !meets_all && !may_meet(own, own);
-    if (!pairs.start(row, row + kLanes, apart, meets_all)) continue;
+    const bool alike =
+        meets_all || (tree.filters[0].every_layers[leaf] & tree.filters[0].every_mask[leaf]) != 0;
+    if (!pairs.start(row, row + kLanes, apart, !alike)) continue;
+    // Groups of leaves of which filters keep nothing from this one.
+    Mask16 sure = meets_all ? kAllRows : Mask16{0};
+    const auto is_sure = [&](std::uint32_t group) { return (sure >> group % kLanes & 1U) != 0; };
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
       const Mask16 met =
           overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
-      return meets_all ? met : passing_nodes(tree, level, first_node, met, own);
+      if (meets_all || (level == 0 && is_sure(first_node / kLanes))) return met;
+      if (level == 1) sure = surely_meeting(tree, 1, first_node, leaf);
+      return passing_nodes(tree, level, first_node, met, own);
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
+      if (!is_sure(group)) pairs.use_filters();
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
@@ -255,7 +273,7 @@ class BoxQuestions {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
     if (Filtered && mask != 0) {
-      mask = passing_nodes(tree_, level, first_node, mask, filters_.of(batch_.id[row]));
+      mask = passing_nodes(tree_, level, first_node, mask, filters_.of(row));
     }
     ++sink_.tests;
     return mask;
@@ -267,8 +285,7 @@ class BoxQuestions {
       const std::uint32_t at = (tree_.first_block + blocks.at[k]) * kLanes;
       const QueryBox q(batch_.column, row);
       if (!hits_.make_room()) return false;
-      const bool sure = Filtered && surely_meets(tree_, blocks.at[k], filters_.of(batch_.id[row]));
-      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high), sure);
+      hits_.add(row, at, overlap(load_slabs<3>(tree_.rows.column, at), q.low, q.high));
       ++sink_.tests;
     }
     return true;

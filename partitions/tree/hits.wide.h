@@ -1,7 +1,8 @@
 #pragma once
 
 // What kernels do with a mask of hits: which rows the filters let pass, which volumes meet inside
-// of boxes that do, and how pairs get to the sink.
+// of boxes that do, and how pairs get to the sink. What is small is inlined by force: compilers
+// stop to do so in files that instantiate a kernel many times.
 
 #include "partitions/rows/row_view.h"
 #include "partitions/tree/block_tree.kernel.h"
@@ -20,35 +21,24 @@ struct FilterRange {
   std::uint32_t last_environment;
 };
 
-static inline FilterRange range_of(const ObjectFilter& f) {
+[[gnu::always_inline]] inline FilterRange range_of(const ObjectFilter& f) {
   const std::uint32_t first = f.environment == kEveryEnvironment ? 0U : f.environment;
   return {f.layers, f.mask, first, f.environment};
 }
 
 /// The range of node i; that of the default filter if no filters are kept.
-static inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
+[[gnu::always_inline]] inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
   if (nodes.layers == nullptr) return range_of(ObjectFilter{});
   return {nodes.layers[i], nodes.mask[i], nodes.first_environment[i], nodes.last_environment[i]};
 }
 
 /// True if something in one range may meet something in the other; exact for two objects.
-static inline bool may_meet(const FilterRange& a, const FilterRange& b) {
+[[gnu::always_inline]] inline bool may_meet(const FilterRange& a, const FilterRange& b) {
   // Without branches: layers are coin tosses.
   return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
                            static_cast<unsigned>((b.layers & a.mask) != 0) &
                            static_cast<unsigned>(a.first_environment <= b.last_environment) &
                            static_cast<unsigned>(b.first_environment <= a.last_environment));
-}
-
-/// What has the same filter throughout, as a span.
-static inline FilterSpan span_of(const FilterRange& q) {
-  FilterSpan span;
-  span.any_layers = span.every_layers = q.layers;
-  span.any_mask = span.every_mask = q.mask;
-  span.mute = q.layers == 0 || q.mask == 0;
-  span.everywhere = q.first_environment == 0 && q.last_environment == kEveryEnvironment;
-  span.apart = q.last_environment != 0 && !span.everywhere;
-  return span;
 }
 
 /// What is below node i of a level of a tree without environments, as a span.
@@ -63,45 +53,43 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   return span;
 }
 
+/// The lanes from `at` on of columns of filters whose layers and masks let them meet `q`.
+[[gnu::always_inline]] inline Mask16 matching_lanes(const std::uint32_t* layers,
+                                                    const std::uint32_t* mask, std::size_t at,
+                                                    const FilterRange& q) {
+  return sharing(Uints::load_unaligned(layers + at), q.mask) &
+         sharing(Uints::load_unaligned(mask + at), q.layers);
+}
+
 /// Those of the candidate rows from `first_row` on, none of them empty, that `q` may meet.
-static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
-                                  const FilterRange& q) {
-  const std::uint32_t* const id = rows.id + first_row;
-  Mask16 passed = 0;
-  if (rows.filter == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+[[gnu::always_inline]] inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row,
+                                                  Mask16 candidates, const FilterRange& q) {
+  const FilterColumns& own = rows.filter;
+  if (own.layers == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+  const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
   // Without environments of their own objects are of the first one, or of all.
-  if (!rows.environments && q.first_environment == 0) {
-    for (Mask16 left = candidates; left != 0; left &= left - 1) {
-      const ObjectFilter& own = rows.filter[id[first(left)]];
-      const auto wanted = static_cast<Mask16>((own.layers & q.mask) != 0);
-      const auto wants = static_cast<Mask16>((own.mask & q.layers) != 0);
-      passed |= (wanted & wants) << first(left);
-    }
-    return passed;
-  }
-  for (Mask16 left = candidates; left != 0; left &= left - 1) {
-    const bool both = may_meet(range_of(rows.filter[id[first(left)]]), q);
-    passed |= static_cast<Mask16>(both) << first(left);
+  if (!rows.environments && q.first_environment == 0) return met;
+  Mask16 passed = 0;
+  for (Mask16 left = met; left != 0; left &= left - 1) {
+    const std::uint32_t last = own.environment[first_row + first(left)];
+    const std::uint32_t begin = last == kEveryEnvironment ? 0U : last;
+    const auto both = static_cast<Mask16>(begin <= q.last_environment) &
+                      static_cast<Mask16>(q.first_environment <= last);
+    passed |= both << first(left);
   }
   return passed;
-}
-static inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row, Mask16 candidates,
-                                  const ObjectFilter& q) {
-  return passing_rows(rows, first_row, candidates, range_of(q));
 }
 
 /// Those of the candidates among 16 nodes from `first_node` of a level on that may hold something
 /// that `q` may meet.
-static inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
-                                   std::uint32_t first_node, Mask16 candidates,
-                                   const FilterRange& q) {
+[[gnu::always_inline]] inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
+                                                   std::uint32_t first_node, Mask16 candidates,
+                                                   const FilterRange& q) {
   const NodeFilters& nodes = tree.filters[level];
   if (nodes.layers == nullptr) {
     return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   }
-  const Mask16 met = candidates &
-                     sharing(Uints::load_unaligned(nodes.layers + first_node), q.mask) &
-                     sharing(Uints::load_unaligned(nodes.mask + first_node), q.layers);
+  const Mask16 met = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
   // Without environments of their own objects are of the first one, or of all.
   if (!tree.environments && q.first_environment == 0) return met;
   Mask16 passed = 0;
@@ -110,24 +98,6 @@ static inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
     passed |= static_cast<Mask16>(both) << first(left);
   }
   return passed;
-}
-
-/// True if every object below node i of level 0 surely meets `q`, the filter of one that asks.
-static inline bool surely_meets(const TreeShape& tree, std::uint32_t i, const FilterRange& q) {
-  const NodeFilters& nodes = tree.filters[0];
-  if (nodes.layers == nullptr) return false;
-  const bool everywhere =
-      q.first_environment == 0 && (!tree.environments || q.last_environment == kEveryEnvironment);
-  if (!everywhere && (q.first_environment != q.last_environment ||
-                      nodes.first_environment[i] != q.first_environment ||
-                      nodes.last_environment[i] != q.first_environment)) {
-    return false;
-  }
-  const std::uint32_t every_mask = nodes.every_mask[i];
-  // Of nodes with one that never meets anything, what every object has is nothing.
-  return ((nodes.layers[i] & ~q.mask) == 0 || (nodes.every_layers[i] & q.mask) != 0) &&
-         ((every_mask & q.layers) != 0 ||
-          ((nodes.mask[i] & ~q.layers) == 0 && (nodes.every_layers[i] | every_mask) != 0));
 }
 
 // Columns of a sphere's centre and radius.
@@ -181,7 +151,7 @@ inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float
 
 /// True if rows that ask about each other have to be told apart by their filters.
 inline bool are_filtered(const RowView& rows) {
-  return rows.filter != nullptr && !rows.all_meet;
+  return rows.filter.layers != nullptr && !rows.all_meet;
 }
 
 /// False if the sink is full and cannot grow.
@@ -193,7 +163,7 @@ inline bool has_room(PairSink& sink) {
 struct QueryBox {
   float low[3];
   float high[3];
-  QueryBox(const float* const* column, std::size_t r)
+  [[gnu::always_inline]] QueryBox(const float* const* column, std::size_t r)
       : low{column[0][r], column[1][r], column[2][r]},
         high{column[3][r], column[4][r], column[5][r]} {}
 };
@@ -208,19 +178,19 @@ inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::u
   return ~(bits & up_to_r);
 }
 
-/// Filters of those who ask, by their id.
+/// Filters of those who ask, by their row.
 struct AskingFilters {
-  const ObjectFilter* filter;
-  bool one_for_all;
+  FilterColumns filter;
+  std::uint32_t step = 1;  // 0: one for all
 
-  explicit AskingFilters(const RowView& rows) : filter(rows.filter), one_for_all(false) {}
+  explicit AskingFilters(const RowView& rows) : filter(rows.filter) {}
   explicit AskingFilters(const QueryBatch& batch)
-      : filter(batch.filter), one_for_all(batch.one_filter) {}
+      : filter(batch.filter), step(batch.one_filter ? 0U : 1U) {}
 
-  /// `id` is not that of an empty row.
-  [[nodiscard]] FilterRange of(std::uint32_t id) const {
-    if (filter == nullptr) return range_of(ObjectFilter{});
-    return range_of(filter[one_for_all ? 0 : id]);
+  [[nodiscard, gnu::always_inline]] FilterRange of(std::uint32_t row) const {
+    if (filter.layers == nullptr) return range_of(ObjectFilter{});
+    const std::size_t i = std::size_t{row} * step;
+    return range_of({filter.layers[i], filter.mask[i], filter.environment[i]});
   }
 };
 
@@ -257,18 +227,30 @@ inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink)
   return true;
 }
 
+/// The lanes whose sets of bits, if they are not empty, surely share one with each of some others
+/// (see surely_share).
+inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t every) {
+  const Mask16 lack_one = sharing(Uints(any) - (sets & Uints(any)), ~0U);
+  return sharing(sets, every) | ((~lack_one | ~sharing(sets, ~every)) & sharing(sets, ~0U));
+}
+
 /// Those of a batch's rows that ask, apart by whether they surely meet everything.
 class SplitBatch {
  public:
   SplitBatch(const RowView& asked, const QueryBatch& batch, std::uint32_t begin) {
-    const AskingFilters filters(batch);
+    const FilterSpan& all = asked.span;
     const std::uint32_t left = batch.end - begin;
-    for (std::uint32_t k = begin; k < begin + (left < kRoom ? left : kRoom); ++k) {
-      const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
-      const std::uint32_t id = batch.id[row];
-      if (id == ~0U) continue;
-      const bool all = surely_meet(asked.span, span_of(filters.of(id)));
-      row_[all ? 1 : 0][count_[all ? 1 : 0]++] = row;
+    const std::uint32_t end = begin + (left < kRoom ? left : kRoom);
+    for (std::uint32_t k = begin; k < end; k += kLanes) {
+      const SomeFilters some(batch, k, end);
+      Mask16 sure = 0;
+      if (!all.mute) {
+        sure = surely_sharing(some.masks, all.any_layers, all.every_layers) &
+               surely_sharing(some.layers, all.any_mask, all.every_mask);
+      }
+      if (!all.everywhere && (all.apart || batch.environments)) sure &= some.everywhere(all.apart);
+      add(some.lanes & sure, some.rows, 1);
+      add(some.lanes & ~sure, some.rows, 0);
     }
   }
 
@@ -284,14 +266,65 @@ class SplitBatch {
   static constexpr std::uint32_t kRoom = 256;
 
  private:
-  std::uint32_t row_[2][kRoom];
+  /// Sixteen that ask.
+  struct SomeFilters {
+    Uints rows;
+    Uints layers;
+    Uints masks;
+    Mask16 lanes;
+    std::uint32_t environment[kLanes];
+
+    SomeFilters(const QueryBatch& batch, std::uint32_t begin, std::uint32_t end) {
+      lanes = lanes_below(end - begin < kLanes ? end - begin : kLanes);
+      if (batch.rows == nullptr && batch.filter.layers != nullptr) {
+        rows = count_from(begin);
+        layers = Uints::load_unaligned(batch.filter.layers + begin);
+        masks = Uints::load_unaligned(batch.filter.mask + begin);
+        Uints::load_unaligned(batch.filter.environment + begin).store_unaligned(environment);
+        return;
+      }
+      const AskingFilters filters(batch);
+      std::uint32_t row[kLanes] = {};
+      std::uint32_t layer[kLanes] = {};
+      std::uint32_t mask[kLanes] = {};
+      for (Mask16 left = lanes; left != 0; left &= left - 1) {
+        const unsigned i = first(left);
+        row[i] = batch.rows != nullptr ? batch.rows[begin + i] : begin + i;
+        const FilterRange q = filters.of(row[i]);
+        layer[i] = q.layers;
+        mask[i] = q.mask;
+        environment[i] = q.last_environment;
+      }
+      rows = Uints::load_unaligned(row);
+      layers = Uints::load_unaligned(layer);
+      masks = Uints::load_unaligned(mask);
+    }
+
+    /// Those of every environment, or of the first one if no object is `apart` in another.
+    [[nodiscard]] Mask16 everywhere(bool apart) const {
+      Mask16 found = 0;
+      for (Mask16 left = lanes; left != 0; left &= left - 1) {
+        const std::uint32_t own = environment[first(left)];
+        const bool meets_all = own == kEveryEnvironment || (own == 0 && !apart);
+        found |= static_cast<Mask16>(meets_all) << first(left);
+      }
+      return found;
+    }
+  };
+
+  void add(Mask16 lanes, const Uints& rows, unsigned part) {
+    count_[part] += compress_store(lanes, rows, row_[part] + count_[part]);
+  }
+
+  std::uint32_t row_[2][kRoom + kLanes];
   std::uint32_t count_[2] = {0, 0};
 };
 
 template <typename Kernel, typename View>
 inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
-  const bool filtered = view.rows.filter != nullptr || batch.filter != nullptr;
+  const bool filtered = view.rows.filter.layers != nullptr || batch.filter.layers != nullptr;
   if (!filtered || batch.meets_all) return with_mode<Kernel, false>(view, batch, sink);
+  if (batch.one_filter) return with_mode<Kernel, true>(view, batch, sink);
   for (std::uint32_t k = batch.begin; k < batch.end; k += SplitBatch::kRoom) {
     const SplitBatch split(view.rows, batch, k);
     if (!with_mode<Kernel, false>(view, split.part(batch, true), sink) ||
@@ -349,12 +382,12 @@ class HitList {
         sink_(sink) {}
 
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
-  /// There must be room. `sure`: filters are known to let it meet them all.
-  void add(std::uint32_t r, std::uint32_t at, Mask16 mask, bool sure = false) {
+  /// There must be room.
+  void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
     if constexpr (Mode == HitMode::moved) mask &= reported_lanes(moved_, r, at);
     row_[size_] = r;
     at_[size_] = at;
-    mask_[size_] = mask | (sure ? kSure : 0U);
+    mask_[size_] = mask;
     size_ += mask != 0 ? 1U : 0U;
   }
 
@@ -365,11 +398,10 @@ class HitList {
   [[gnu::noinline]] bool flush() {
     if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
     for (unsigned i = 0; i < size_; ++i) {
-      Mask16 mask = mask_[i] & kAllRows;
+      Mask16 mask = mask_[i];
       const std::uint32_t q = query_id_[row_[i]];
       if constexpr (Filtered) {
-        if ((mask_[i] & kSure) == 0) mask = passing_rows(rows_, at_[i], mask, filters_.of(q));
-        if (mask == 0) continue;
+        mask = passing_rows(rows_, at_[i], mask, filters_.of(row_[i]));
       }
       if (!has_room(sink_)) return false;
       report<Mode>(mask, rows_.id + at_[i], q, sink_);
@@ -380,7 +412,6 @@ class HitList {
 
  private:
   static constexpr unsigned kRoom = 512;
-  static constexpr Mask16 kSure = 1U << kLanes;
 
   const RowView& rows_;
   const float* const* query_;

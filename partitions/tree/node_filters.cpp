@@ -90,11 +90,12 @@ void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t 
 
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept {
   for (std::uint32_t leaf = begin; leaf < end; ++leaf) {
-    const std::uint32_t* const ids =
-        tree.rows.id + (std::size_t{tree.first_block} + leaf) * kChildren;
+    const std::size_t row = (std::size_t{tree.first_block} + leaf) * kChildren;
+    const FilterColumns& filter = tree.rows.filter;
     Joined joined;
-    for (std::uint32_t i = 0; i < kChildren; ++i) {
-      if (ids[i] != kNoObject) joined.add(tree.rows.filter[ids[i]]);
+    for (std::size_t r = row; r < row + kChildren; ++r) {
+      if (tree.rows.id[r] == kNoObject) continue;
+      joined.add({filter.layers[r], filter.mask[r], filter.environment[r]});
     }
     joined.store(tree.filters[0], leaf);
   }

@@ -11,20 +11,25 @@ namespace {
 // The id of an empty row, which is never asked about.
 constexpr std::uint32_t kNoId = ~0U;
 
+/// The rows from `at` on that hold an object.
+Mask16 live_rows(const RowView& rows, std::size_t at) {
+  Mask16 live = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    live |= static_cast<Mask16>(rows.id[at + i] != kNoId) << i;
+  }
+  return live;
+}
+
 /// Reports everything but holes.
 struct Untested {
   struct Block {
     Mask16 live;
   };
   struct Query {};
-  static Block load(const RowView& rows, std::size_t row) {
-    Mask16 live = 0;
-    for (unsigned i = 0; i < kLanes; ++i) {
-      live |= static_cast<Mask16>(rows.id[row + i] != kNoId) << i;
-    }
-    return {live};
+  [[gnu::always_inline]] static Block load(const RowView& rows, std::size_t row) {
+    return {live_rows(rows, row)};
   }
-  static Query query(const float* const*, std::size_t) { return {}; }
+  [[gnu::always_inline]] static Query query(const float* const*, std::size_t) { return {}; }
   static Mask16 test(const Block& block, const Query&) { return block.live; }
 };
 
@@ -36,7 +41,7 @@ struct SlabTest {
     float low[Slabs];
     float high[Slabs];
   };
-  static Block load(const RowView& rows, std::size_t row) {
+  [[gnu::always_inline]] static Block load(const RowView& rows, std::size_t row) {
     Block block;
     for (int s = 0; s < Slabs; ++s) {
       block.low[s] = Floats::load(rows.column[low_end(s)] + row);
@@ -44,7 +49,7 @@ struct SlabTest {
     }
     return block;
   }
-  static Query query(const float* const* column, std::size_t r) {
+  [[gnu::always_inline]] static Query query(const float* const* column, std::size_t r) {
     Query q;
     for (int s = 0; s < Slabs; ++s) {
       q.low[s] = column[low_end(s)][r];
@@ -52,7 +57,9 @@ struct SlabTest {
     }
     return q;
   }
-  static Mask16 test(const Block& block, const Query& q) { return overlap(block, q.low, q.high); }
+  [[gnu::always_inline]] static Mask16 test(const Block& block, const Query& q) {
+    return overlap(block, q.low, q.high);
+  }
 
  private:
   static constexpr int low_end(int s) { return s < 3 ? s : s + 3; }
@@ -69,7 +76,7 @@ struct SphereTest {
     float center[3];
     float radius;
   };
-  static Block load(const RowView& rows, std::size_t row) {
+  [[gnu::always_inline]] static Block load(const RowView& rows, std::size_t row) {
     Block b;
     for (int axis = 0; axis < 3; ++axis) {
       b.center[axis] = Floats::load(rows.column[kBallCenter + axis] + row);
@@ -77,37 +84,69 @@ struct SphereTest {
     b.radius = Floats::load(rows.column[kBallRadius] + row);
     return b;
   }
-  static Query query(const float* const* column, std::size_t r) {
+  [[gnu::always_inline]] static Query query(const float* const* column, std::size_t r) {
     Query q;
     for (int axis = 0; axis < 3; ++axis) q.center[axis] = column[kBallCenter + axis][r];
     q.radius = column[kBallRadius][r];
     return q;
   }
-  // Called, it would have the block's registers written to memory and read again.
   [[gnu::always_inline]] static Mask16 test(const Block& b, const Query& q) {
     return balls_meet(b.center, b.radius, q.center, q.radius);
   }
 };
 
-/// Calls visit(block) for every block from `from` on that may hold something that `range` may meet.
+/// Calls visit(begin, end) for runs of blocks from `from` on, among which are all that may hold
+/// something that `range` may meet. What lies between two runs is at least `gap` blocks.
 template <bool Filtered, typename Visit>
-bool visit_blocks(const FlatView& view, std::uint32_t from, const FilterRange& range,
-                  Visit&& visit) {
+bool visit_runs(const FlatView& view, std::uint32_t from, const FilterRange& range,
+                std::uint32_t gap, Visit&& visit) {
   if (!Filtered || view.blocks.levels == 0) {
-    const std::uint32_t blocks = (view.row_count + kLanes - 1) / kLanes;
-    for (std::uint32_t b = from; b < blocks; ++b) {
-      if (!visit(b)) return false;
-    }
-    return true;
+    return visit(from, (view.row_count + kLanes - 1) / kLanes);
   }
+  std::uint32_t begin = from;
+  std::uint32_t end = from;
   const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
     return passing_nodes(view.blocks, level, first_node, kAllRows, range);
   };
-  return traverse_from(view.blocks, 0, from, test, visit);
+  const auto visit_group = [&](std::uint32_t group) {
+    Mask16 open = test(0, group * kLanes);
+    if (group == from / kLanes) open &= ~lanes_below(from % kLanes);
+    while (open != 0) {
+      const unsigned at = first(open);
+      const unsigned behind = first(~open & ~lanes_below(at));
+      const std::uint32_t next = group * kLanes + at;
+      if (next >= end + gap) {
+        if (!visit(begin, end)) return false;
+        begin = next;
+      }
+      end = group * kLanes + behind;
+      open &= ~lanes_below(behind);
+    }
+    return true;
+  };
+  const bool whole = view.blocks.levels == 1
+                         ? visit_group(0)
+                         : traverse_from(view.blocks, 1, from / kLanes, test, visit_group);
+  return whole && visit(begin, end);
 }
 
+/// Hits on their way to the filters, which would keep a loop of tests from its registers.
+struct NotedHits {
+  static constexpr std::uint32_t kRoom = 64;
+
+  std::uint32_t size = 0;
+  std::uint32_t place[kRoom];
+  std::uint32_t mask[kRoom];
+
+  void add(std::uint32_t at, Mask16 hits) {
+    place[size] = at;
+    mask[size] = hits;
+    size += hits != 0 ? 1U : 0U;
+  }
+};
+
 /// All pairs of rows of block a with rows of block b >= a.
-template <typename Test, bool Filtered>
+template <typename Test>
 bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink& sink) {
   if (!has_room(sink)) return false;
   const std::uint32_t first_row = a * kLanes;
@@ -115,24 +154,50 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
       view.row_count - first_row < kLanes ? view.row_count - first_row : kLanes;
   const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
   const Uints ids = Uints::load_unaligned(view.rows.id + std::size_t{b} * kLanes);
-  FilterRange b_range{};
-  if constexpr (Filtered) b_range = range_of(view.blocks.filters[0], b);
-  std::uint32_t left_out = 0;
   for (std::uint32_t i = 0; i < rows; ++i) {
     const std::uint32_t id = view.rows.id[first_row + i];
     if (id == kNoId) continue;
-    if (Filtered && !may_meet(range_of(view.rows.filter[id]), b_range)) {
-      ++left_out;
-      continue;
-    }
     Mask16 hits = Test::test(block, Test::query(view.rows.column, first_row + i));
     if (a == b) hits &= ~lanes_below(i + 1);
-    if constexpr (Filtered) {
-      hits = passing_rows(view.rows, b * kLanes, hits, view.rows.filter[id]);
-    }
     if (hits != 0) sink.cursor += 2 * emit_pairs<true>(hits, ids, id, sink.cursor);
   }
-  sink.tests += rows - left_out;
+  sink.tests += rows;
+  return true;
+}
+
+/// The same for rows with filters, of which those of block a ask that `asking` names. Filters are
+/// looked at behind the loop of tests, whose registers they would take.
+template <typename Test>
+bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, std::uint32_t b,
+                         PairSink& sink) {
+  if (!has_room(sink)) return false;
+  const std::uint32_t a_row = a * kLanes;
+  const std::uint32_t b_row = b * kLanes;
+  const auto block = Test::load(view.rows, b_row);
+  Mask16 found[kLanes];
+  Mask16 any = 0;
+  const auto ask = [&](std::uint32_t i) {
+    found[i] = Test::test(block, Test::query(view.rows.column, a_row + i));
+    any |= found[i];
+  };
+  if (view.rows.environments) {
+    asking = passing_rows(view.rows, a_row, asking, range_of(view.blocks.filters[0], b));
+    for (Mask16 left = asking; left != 0; left &= left - 1) ask(first(left));
+  } else {
+    // Of one environment few rows are left out: telling which costs more than testing them.
+    for (std::uint32_t i = 0; i < kLanes; ++i) ask(i);
+  }
+  sink.tests += count(asking);
+  if (any == 0) return true;
+  const AskingFilters filters(view.rows);
+  const Uints ids = Uints::load_unaligned(view.rows.id + b_row);
+  for (Mask16 left = asking; left != 0; left &= left - 1) {
+    const unsigned i = first(left);
+    const Mask16 met = a == b ? found[i] & ~lanes_below(i + 1) : found[i];
+    if (met == 0) continue;
+    const Mask16 hits = passing_rows(view.rows, b_row, met, filters.of(a_row + i));
+    sink.cursor += 2 * emit_pairs<true>(hits, ids, view.rows.id[a_row + i], sink.cursor);
+  }
   return true;
 }
 
@@ -140,10 +205,16 @@ template <typename Test, bool Filtered>
 bool find_self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
   for (std::uint32_t a = begin; a < end; ++a) {
     const FilterRange range = Filtered ? range_of(view.blocks.filters[0], a) : FilterRange{};
-    const bool done = visit_blocks<Filtered>(view, a, range, [&](std::uint32_t b) {
-      return block_pair<Test, Filtered>(view, a, b, sink);
-    });
-    if (!done) return false;
+    const Mask16 live = Filtered ? live_rows(view.rows, a * kLanes) : kAllRows;
+    const auto visit = [&](std::uint32_t first_block, std::uint32_t behind) {
+      for (std::uint32_t b = first_block; b < behind; ++b) {
+        const bool done = Filtered ? filtered_block_pair<Test>(view, a, live, b, sink)
+                                   : block_pair<Test>(view, a, b, sink);
+        if (!done) return false;
+      }
+      return true;
+    };
+    if (!visit_runs<Filtered>(view, a, range, 1, visit)) return false;
   }
   return true;
 }
@@ -154,8 +225,25 @@ bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, Pa
                                  : find_self_pairs<Test, false>(view, begin, end, sink);
 }
 
+/// Writes the hits of a row of a batch that filters let pass.
+template <HitMode Mode, bool Filtered>
+bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t row,
+                  const NotedHits& noted, const FilterRange& range, PairSink& sink) {
+  for (std::uint32_t k = 0; k < noted.size; ++k) {
+    const std::uint32_t at = noted.place[k];
+    Mask16 hits = noted.mask[k];
+    if constexpr (Filtered) hits = passing_rows(view.rows, at, hits, range);
+    if (!has_room(sink)) return false;
+    report<Mode>(hits, view.rows.id + at, batch.id[row], sink);
+  }
+  return true;
+}
+
 template <typename Test>
 struct FlatQuery {
+  /// A few blocks are tested sooner than a run is ended.
+  static constexpr std::uint32_t kGap = 8;
+
   template <HitMode Mode, bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
     const AskingFilters filters(batch);
@@ -163,23 +251,26 @@ struct FlatQuery {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       if (batch.id[row] == kNoId) continue;
       const auto q = Test::query(batch.column, row);
-      const FilterRange range = Filtered ? filters.of(batch.id[row]) : FilterRange{};
-      std::uint32_t tests = 0;
-      const bool done = visit_blocks<Filtered>(view, 0, range, [&](std::uint32_t b) {
-        const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-        ++tests;
-        Mask16 hits = Test::test(block, q);
-        if constexpr (Mode == HitMode::moved) {
-          hits &= reported_lanes(batch.moved, row, b * kLanes);
+      const FilterRange range = Filtered ? filters.of(row) : FilterRange{};
+      const auto visit = [&](std::uint32_t begin, std::uint32_t end) {
+        sink.tests += end - begin;
+        while (begin < end) {
+          const std::uint32_t some =
+              end - begin < NotedHits::kRoom ? end : begin + NotedHits::kRoom;
+          NotedHits noted;
+          for (std::uint32_t b = begin; b < some; ++b) {
+            const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
+            const Mask16 hits = Test::test(block, q);
+            const bool moved = Mode == HitMode::moved;
+            noted.add(b * kLanes,
+                      moved ? hits & reported_lanes(batch.moved, row, b * kLanes) : hits);
+          }
+          if (!report_noted<Mode, Filtered>(view, batch, row, noted, range, sink)) return false;
+          begin = some;
         }
-        if constexpr (Filtered) hits = passing_rows(view.rows, b * kLanes, hits, range);
-        if (hits == 0) return true;
-        if (!has_room(sink)) return false;
-        report<Mode>(hits, view.rows.id + std::size_t{b} * kLanes, batch.id[row], sink);
         return true;
-      });
-      sink.tests += tests;
-      if (!done) return false;
+      };
+      if (!visit_runs<Filtered>(view, 0, range, kGap, visit)) return false;
     }
     return true;
   }

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+namespace winnow {
+
+/// Filters as columns; all null if every object has the default one. A plain struct of pointers,
+/// because kernel files may not use the standard library.
+struct FilterColumns {
+  const std::uint32_t* layers = nullptr;
+  const std::uint32_t* mask = nullptr;
+  const std::uint32_t* environment = nullptr;
+};
+
+}  // namespace winnow
