@@ -136,7 +136,30 @@ class BlockPairs {
 
   bool report_hits() {
     if (has_more_to_test(rows_)) drop_boxes();
-    const bool filtered = Filtered && filtered_;
+    if constexpr (Filtered) {
+      if (filtered_) return report_filtered_hits();
+    }
+    return write_hits([](Mask16 mask, std::uint32_t) { return mask; });
+  }
+
+  bool report_filtered_hits() {
+    if (rows_.environments) {
+      return write_hits([&](Mask16 mask, std::uint32_t row) {
+        return passing_rows(rows_, at_, mask, filters_.of(row));
+      });
+    }
+    const std::uint32_t* const layers = rows_.filter.layers;
+    const std::uint32_t* const masks = rows_.filter.mask;
+    const Uints own_layers = Uints::load_unaligned(layers + at_);
+    const Uints own_masks = Uints::load_unaligned(masks + at_);
+    return write_hits([&](Mask16 mask, std::uint32_t row) {
+      return mask & sharing(own_layers, masks[row]) & sharing(own_masks, layers[row]);
+    });
+  }
+
+  /// Writes those of the own rows that passing(hits, partner) gives back.
+  template <typename Passing>
+  [[gnu::always_inline]] bool write_hits(Passing&& passing) {
     const Uints ids = Uints::load_unaligned(rows_.id + at_);
     const std::uint32_t* const row_id = rows_.id;
     // Not the sink's own, which each pair that is written might be.
@@ -148,8 +171,7 @@ class BlockPairs {
         cursor = sink_.cursor;
       }
       const std::uint32_t id = row_id[hit_row_[k]];
-      Mask16 mask = hit_mask_[k];
-      if (filtered) mask = passing_rows(rows_, at_, mask, filters_.of(hit_row_[k]));
+      const Mask16 mask = passing(hit_mask_[k], hit_row_[k]);
       cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
     }
     sink_.cursor = cursor;

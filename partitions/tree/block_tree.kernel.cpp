@@ -192,15 +192,56 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
-/// Those of 16 nodes from `first_node` of a level on below which everything surely meets everything
-/// in a leaf: all that is in one of them has a layer in common that all in the other want.
-Mask16 surely_meeting(const TreeView& tree, std::uint32_t level, std::uint32_t first_node,
-                      std::uint32_t leaf) {
-  const NodeFilters& nodes = tree.filters[level];
-  const NodeFilters& leaves = tree.filters[0];
-  return sharing(Uints::load(nodes.every_layers + first_node), leaves.every_mask[leaf]) &
-         sharing(Uints::load(nodes.every_mask + first_node), leaves.every_layers[leaf]);
-}
+/// What filters say of a leaf in a tree of one environment and the nodes that it meets.
+template <bool Filtered>
+class LeafFilter {
+ public:
+  LeafFilter(const TreeView& tree, std::uint32_t leaf) : tree_(tree) {
+    if constexpr (!Filtered) return;
+    const NodeFilters& leaves = tree.filters[0];
+    own_ = range_of(leaves, leaf);
+    every_layers_ = leaves.every_layers[leaf];
+    every_mask_ = leaves.every_mask[leaf];
+    meets_all_ = surely_meet(span_of(leaves, leaf), tree.rows.span);
+    decides_ = !meets_all_ && (every_layers_ & every_mask_) == 0;
+  }
+
+  /// No row of the leaf may meet another of it.
+  [[nodiscard]] bool apart() const { return Filtered && !meets_all_ && !may_meet(own_, own_); }
+
+  /// Hits among the rows of the leaf and of what was let through have to be looked at.
+  [[nodiscard]] bool decides() const { return Filtered && decides_; }
+
+  /// Those of the nodes `met` among 16 that may hold something to meet.
+  Mask16 let_through(std::uint32_t level, std::uint32_t first_node, Mask16 met) {
+    // What lies above the groups is told apart by place: looking at each costs more.
+    if (!Filtered || meets_all_ || level > 1) return met;
+    if (level == 0 && (sure_groups_ >> first_node / kLanes % kLanes & 1U) != 0) return met;
+    const Mask16 sure = decides_ ? Mask16{0} : surely_meeting(level, first_node);
+    if (level == 1) sure_groups_ = sure;
+    if ((met & ~sure) == 0) return met;
+    const Mask16 passed = passing_nodes(tree_, level, first_node, met, own_);
+    if (level == 0) decides_ = decides_ || (passed & ~sure) != 0;
+    return passed;
+  }
+
+ private:
+  /// The nodes of which all that is in one has a layer in common that all of the leaf want, and the
+  /// other way round.
+  [[nodiscard]] Mask16 surely_meeting(std::uint32_t level, std::uint32_t first_node) const {
+    const NodeFilters& nodes = tree_.filters[level];
+    return sharing(Uints::load(nodes.every_layers + first_node), every_mask_) &
+           sharing(Uints::load(nodes.every_mask + first_node), every_layers_);
+  }
+
+  const TreeView& tree_;
+  FilterRange own_{};
+  std::uint32_t every_layers_ = 0;
+  std::uint32_t every_mask_ = 0;
+  bool meets_all_ = false;
+  bool decides_ = false;
+  Mask16 sure_groups_ = 0;  // of those looked at last, in all of which everything meets the leaf
+};
 
 /// Pairs of rows without filters, or of one environment, leaf by leaf.
 template <bool Filtered>
@@ -210,26 +251,16 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
-    const FilterRange own = range_of(tree.filters[0], leaf);
-    const bool meets_all = !Filtered || surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
-    const bool apart = !meets_all && !may_meet(own, own);
-    const bool alike =
-        meets_all || (tree.filters[0].every_layers[leaf] & tree.filters[0].every_mask[leaf]) != 0;
-    if (!pairs.start(row, row + kLanes, apart, !alike)) continue;
-    // Groups of leaves of which filters keep nothing from this one.
-    Mask16 sure = meets_all ? kAllRows : Mask16{0};
-    const auto is_sure = [&](std::uint32_t group) { return (sure >> group % kLanes & 1U) != 0; };
+    LeafFilter<Filtered> filter(tree, leaf);
+    if (!pairs.start(row, row + kLanes, filter.apart(), filter.decides())) continue;
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
-      const Mask16 met =
-          overlap(load_slabs<3>(tree.node[level], first_node), pairs.low(), pairs.high());
-      if (meets_all || (level == 0 && is_sure(first_node / kLanes))) return met;
-      if (level == 1) sure = surely_meeting(tree, 1, first_node, leaf);
-      return passing_nodes(tree, level, first_node, met, own);
+      const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
+      return filter.let_through(level, first_node, overlap(nodes, pairs.low(), pairs.high()));
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
-      if (!is_sure(group)) pairs.use_filters();
+      if (filter.decides()) pairs.use_filters();
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
@@ -251,7 +282,12 @@ template <HitMode Mode, bool Filtered>
 class BoxQuestions {
  public:
   BoxQuestions(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
-      : tree_(tree), batch_(batch), sink_(sink), filters_(batch), hits_(tree.rows, batch, sink) {}
+      : tree_(tree),
+        batch_(batch),
+        sink_(sink),
+        filters_(batch),
+        apart_(tree.environments),
+        hits_(tree.rows, batch, sink) {}
 
   bool run() {
     const auto row_of = [&](std::uint32_t k) {
@@ -272,7 +308,7 @@ class BoxQuestions {
   Mask16 test(Nothing, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
-    if (Filtered && mask != 0) {
+    if (Filtered && (level <= 1 || apart_)) {
       mask = passing_nodes(tree_, level, first_node, mask, filters_.of(row));
     }
     ++sink_.tests;
@@ -295,6 +331,8 @@ class BoxQuestions {
   const QueryBatch& batch_;
   PairSink& sink_;
   const AskingFilters filters_;
+  // Worlds lie on each other; of one, what lies above groups of leaves is told apart by place.
+  const bool apart_;
   HitList<Mode, Filtered> hits_;
   JointTraversal<BoxQuestions> traversal_{*this};
 };

@@ -53,6 +53,14 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   return span;
 }
 
+/// The lanes below or above a number.
+[[gnu::always_inline]] inline Mask16 below(const Uints& v, std::uint32_t number) {
+  return sharing(Uints(number) - min(v, Uints(number)), ~0U);
+}
+[[gnu::always_inline]] inline Mask16 above(const Uints& v, std::uint32_t number) {
+  return sharing(v - min(v, Uints(number)), ~0U);
+}
+
 /// The lanes from `at` on of columns of filters whose layers and masks let them meet `q`.
 [[gnu::always_inline]] inline Mask16 matching_lanes(const std::uint32_t* layers,
                                                     const std::uint32_t* mask, std::size_t at,
@@ -69,15 +77,10 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
   // Without environments of their own objects are of the first one, or of all.
   if (!rows.environments && q.first_environment == 0) return met;
-  Mask16 passed = 0;
-  for (Mask16 left = met; left != 0; left &= left - 1) {
-    const std::uint32_t last = own.environment[first_row + first(left)];
-    const std::uint32_t begin = last == kEveryEnvironment ? 0U : last;
-    const auto both = static_cast<Mask16>(begin <= q.last_environment) &
-                      static_cast<Mask16>(q.first_environment <= last);
-    passed |= both << first(left);
-  }
-  return passed;
+  const Uints last = Uints::load_unaligned(own.environment + first_row);
+  const Mask16 of_one = sharing(Uints(kEveryEnvironment) - last, ~0U);
+  const Mask16 behind = above(last, q.last_environment) & of_one;
+  return met & ~behind & ~below(last, q.first_environment);
 }
 
 /// Those of the candidates among 16 nodes from `first_node` of a level on that may hold something
@@ -92,12 +95,9 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   const Mask16 met = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
   // Without environments of their own objects are of the first one, or of all.
   if (!tree.environments && q.first_environment == 0) return met;
-  Mask16 passed = 0;
-  for (Mask16 left = met; left != 0; left &= left - 1) {
-    const bool both = may_meet(range_of(nodes, first_node + first(left)), q);
-    passed |= static_cast<Mask16>(both) << first(left);
-  }
-  return passed;
+  const Uints begin = Uints::load_unaligned(nodes.first_environment + first_node);
+  const Uints last = Uints::load_unaligned(nodes.last_environment + first_node);
+  return met & ~above(begin, q.last_environment) & ~below(last, q.first_environment);
 }
 
 // Columns of a sphere's centre and radius.

@@ -21,18 +21,6 @@ struct Joined {
   std::uint32_t every_layers = kLast;
   std::uint32_t every_mask = kLast;
 
-  void add(const ObjectFilter& f) noexcept {
-    // Joined ones that are alike have what the first one has.
-    const bool some = first <= last;
-    if (some && (layers != f.layers || mask != f.mask || last != f.environment)) alike = 0;
-    layers |= f.layers;
-    mask |= f.mask;
-    const bool mute = f.layers == 0 || f.mask == 0;
-    every_layers &= mute ? 0 : f.layers;
-    every_mask &= mute ? 0 : f.mask;
-    first = std::min(first, f.environment == kEveryEnvironment ? 0 : f.environment);
-    last = std::max(last, f.environment);
-  }
   void add(const NodeFilters& nodes, std::uint32_t i) noexcept {
     if (nodes.first_environment[i] > nodes.last_environment[i]) return;
     const bool some = first <= last;
@@ -57,6 +45,35 @@ struct Joined {
     nodes.every_mask[i] = every_mask;
   }
 };
+
+/// Of a block of rows. Without branches, so that compilers take many rows at once.
+Joined join_rows(const RowView& rows, std::size_t begin) noexcept {
+  const std::uint32_t* const id = rows.id + begin;
+  const std::uint32_t* const layers = rows.filter.layers + begin;
+  const std::uint32_t* const mask = rows.filter.mask + begin;
+  const std::uint32_t* const environment = rows.filter.environment + begin;
+  std::uint32_t lead = 0;
+  while (lead < kChildren && id[lead] == kNoObject) ++lead;
+  Joined joined;
+  if (lead == kChildren) return joined;
+  std::uint32_t differ = 0;
+  for (std::uint32_t i = 0; i < kChildren; ++i) {
+    const std::uint32_t hole = id[i] == kNoObject ? kLast : 0;
+    // A hole is in no layer.
+    joined.layers |= layers[i];
+    joined.mask |= mask[i];
+    const std::uint32_t mute = layers[i] == 0 || mask[i] == 0 ? kLast : 0;
+    joined.every_layers &= hole | (layers[i] & ~mute);
+    joined.every_mask &= hole | (mask[i] & ~mute);
+    const std::uint32_t from = environment[i] == kEveryEnvironment ? 0 : environment[i];
+    joined.first = std::min(joined.first, hole | from);
+    joined.last = std::max(joined.last, environment[i] & ~hole);
+    differ |= ~hole & ((layers[i] ^ layers[lead]) | (mask[i] ^ mask[lead]) |
+                       (environment[i] ^ environment[lead]));
+  }
+  joined.alike = differ == 0 ? 1 : 0;
+  return joined;
+}
 
 }  // namespace
 
@@ -91,13 +108,7 @@ void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t 
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept {
   for (std::uint32_t leaf = begin; leaf < end; ++leaf) {
     const std::size_t row = (std::size_t{tree.first_block} + leaf) * kChildren;
-    const FilterColumns& filter = tree.rows.filter;
-    Joined joined;
-    for (std::size_t r = row; r < row + kChildren; ++r) {
-      if (tree.rows.id[r] == kNoObject) continue;
-      joined.add({filter.layers[r], filter.mask[r], filter.environment[r]});
-    }
-    joined.store(tree.filters[0], leaf);
+    join_rows(tree.rows, row).store(tree.filters[0], leaf);
   }
 }
 
