@@ -22,8 +22,9 @@ inline Floats reach_of(const Box16& box) {
   return max(high, 0.0F - low);
 }
 
-/// Blocks of rows in no order that are scanned together.
-constexpr std::uint32_t kScanned = 256;
+/// Blocks of rows in no order that are scanned together: what is collected of them is still in the
+/// nearest cache when it is gathered.
+constexpr std::uint32_t kScanned = 64;
 
 /// The rows of some blocks that meet the box of a region.
 class RowsInBox {
