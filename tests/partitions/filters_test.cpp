@@ -246,6 +246,59 @@ TEST_P(Filters, allocate_nothing_in_steady_frames) {
 INSTANTIATE_TEST_SUITE_P(All, Filters, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
+class FiltersOfVolumes : public Conformance {
+ protected:
+  /// A partition of volumes around boxes, some of which move from question to question.
+  struct Volumes {
+    Partition partition;
+    std::vector<Key> keys;
+    PairBuffer pairs;
+
+    Volumes(const Config& config, Volume volume, std::span<const Aabb> boxes)
+        : partition(make(config, volume)), keys(boxes.size()) {
+      EXPECT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    }
+    static Partition make(const Config& config, Volume volume) {
+      PartitionOptions options;
+      options.volume = volume;
+      options.execution = config.execution();
+      return Partition(structure_named(config.partition), options);
+    }
+    void ask(std::span<const Aabb> boxes) {
+      ASSERT_EQ(partition.update(keys, boxes), Status::ok);
+      PairOptions options;
+      options.order = Order::canonical;
+      ASSERT_EQ(partition.self_pairs(pairs, options), Status::ok);
+    }
+  };
+};
+
+TEST_P(FiltersOfVolumes, leave_the_pairs_of_those_that_may_meet) {
+  const Config all_with_all{"BoundsNSquared", config().isa, 1};
+  for (const Volume volume : {Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
+    SCOPED_TRACE(static_cast<int>(volume));
+    Random random(7);
+    std::vector<Aabb> boxes = uniform_boxes(scaled(1200));
+    Volumes plain(all_with_all, volume, boxes);
+    Volumes filtered(config(), volume, boxes);
+    const std::vector<ObjectFilter> filters = any_filters(boxes.size(), random);
+    ASSERT_EQ(filtered.partition.set_filter(filtered.keys, filters), Status::ok);
+    for (const Motion motion : {Motion::still, Motion::little, Motion::few, Motion::teleport}) {
+      move(motion, boxes, random);
+      ASSERT_NO_FATAL_FAILURE(plain.ask(boxes));
+      ASSERT_NO_FATAL_FAILURE(filtered.ask(boxes));
+      std::vector<Pair> expected;
+      for (const Pair& pair : plain.pairs) {
+        if (may_meet(filters[pair.first], filters[pair.second])) expected.push_back(pair);
+      }
+      ASSERT_TRUE(std::ranges::equal(filtered.pairs, expected));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FiltersOfVolumes, testing::ValuesIn(exact_configs()),
+                         testing::PrintToStringParamName());
+
 // Counted in tests of 16 boxes: one instruction set and one thread say what all do.
 class FilterWork : public Conformance {};
 
