@@ -334,7 +334,7 @@ TEST_P(CalmScenes, are_right_whatever_memory_is_refused) {
   for (std::size_t granted = 0; granted < 12; ++granted) {
     start(uniform_boxes(300));
     PairBuffer buffer(&results_);
-    for (int frame = 0; frame < 12; ++frame) {
+    for (std::size_t frame = 0; frame < 12; ++frame) {
       shake(1e-5F);
       if (frame % 4 == 2) {
         rest_[5] = shaken(rest_[frame], 0.5F, random_);

@@ -6,6 +6,7 @@
 
 #include "tests/partitions/snapshot.h"
 #include "tests/support/hostile_scenes.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
 namespace winnow::test {

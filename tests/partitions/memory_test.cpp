@@ -210,7 +210,7 @@ TEST_P(Memory, that_is_reserved_moves_what_there_is_as_it_was) {
     std::vector<Aabb> boxes = mixed_boxes(333);
     const std::vector<Key> keys = world.insert(boxes);
     ASSERT_TRUE(world.agrees());
-    for (const std::size_t objects : {0, 100, 400, 5000, 5000}) {
+    for (const std::size_t objects : {0U, 100U, 400U, 5000U, 5000U}) {
       ASSERT_EQ(world.partition().reserve(objects, pages), Status::ok);
       EXPECT_TRUE(footprint_is_exact(world));
       EXPECT_TRUE(world.holds_its_objects());

@@ -74,10 +74,10 @@ FlatTwin::FlatTwin(const TriangleShape& triangle, const Pose& pose, const double
   for (const auto& v : triangle.vertex) {
     vertices.emplace_back(center + turn * LongVector(v[0], v[1], v[2]));
   }
-  for (int i = 0; i < 3; ++i) edges.emplace_back(vertices[(i + 1) % 3] - vertices[i]);
+  for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(vertices[(i + 1) % 3] - vertices[i]);
   const LongVector normal = product(edges[0], edges[1]);
   normals.push_back(normal);
-  for (int i = 0; i < 3; ++i) normals.emplace_back(normal.cross(edges[i]));
+  for (std::size_t i = 0; i < 3; ++i) normals.emplace_back(normal.cross(edges[i]));
 }
 
 long double separation(const FlatTwin& a, const FlatTwin& b, const LongVector& axis) {
