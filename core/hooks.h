@@ -10,7 +10,8 @@
 namespace winnow {
 
 /// What winnow is at work on, for who wants to see where a frame's time goes. Stages nest: a query
-/// for pairs may refresh, and a refresh build.
+/// for pairs may refresh, and a refresh build. A scene of many pairs goes through the last three
+/// more than once in a frame.
 enum class WorkStage : std::uint8_t {
   refresh,       ///< structures follow what changed
   build,         ///< a structure is made anew
