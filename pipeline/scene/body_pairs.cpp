@@ -37,6 +37,19 @@ struct Packing {
   }
 };
 
+/// A bit for each of at most 64 pairs, set where is(body a, body b). Without a branch: whether it
+/// is cannot be foreseen.
+template <typename Is>
+[[nodiscard]] std::uint64_t bits_where(const BodyPairs::Source& source, std::size_t first,
+                                       std::size_t count, Is&& is) noexcept {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const BodyPair bodies = source.bodies(first + i);
+    bits |= std::uint64_t{is(bodies.a, bodies.b)} << i;
+  }
+  return bits;
+}
+
 /// Stretches of the pairs of all sources, one source after the other.
 template <typename Body>
 void for_source_stretches(std::span<const BodyPairs::Source> sources, const Execution& execution,
@@ -79,28 +92,6 @@ Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
   return Status::ok;
 }
 
-// A bit for each of at most 64 pairs, set where their balls are apart. Without a branch: whether
-// they are is what cannot be foreseen.
-std::uint64_t BodyPairs::bits_apart(const Source& source, const BodyBall* balls, std::size_t first,
-                                    std::size_t count) noexcept {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [a, b] = source.bodies(first + i);
-    bits |= std::uint64_t{are_apart(balls[a], balls[b])} << i;
-  }
-  return bits;
-}
-
-std::uint64_t BodyPairs::bits_wanted(const Source& source, const PairSelection& selection,
-                                     std::size_t first, std::size_t count) noexcept {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [a, b] = source.bodies(first + i);
-    bits |= std::uint64_t{selection.wants(selection.context, a, b)} << i;
-  }
-  return bits;
-}
-
 // Which pairs are taken, and where those of each stretch are put.
 void BodyPairs::choose(std::span<const Source> sources, const Known& known,
                        const Execution& execution) noexcept {
@@ -112,10 +103,15 @@ void BodyPairs::choose(std::span<const Source> sources, const Known& known,
         for (; first < end; first += kBits) {
           const std::size_t count = std::min(end - first, kBits);
           const std::uint64_t apart =
-              known.balls != nullptr ? bits_apart(source, known.balls, first, count) : 0;
+              known.balls == nullptr ? 0 : bits_where(source, first, count, [&](auto a, auto b) {
+                return are_apart(known.balls[a], known.balls[b]);
+              });
           std::uint64_t wanted = ~std::uint64_t{0} >> (kBits - count) & ~apart;
           if (known.selection != nullptr) {
-            wanted &= bits_wanted(source, *known.selection, first, count);
+            const PairSelection& selection = *known.selection;
+            wanted &= bits_where(source, first, count, [&](auto a, auto b) {
+              return selection.wants(selection.context, a, b);
+            });
           }
           sum.apart += static_cast<std::uint32_t>(std::popcount(apart));
           sum.taken += static_cast<std::uint32_t>(std::popcount(wanted));

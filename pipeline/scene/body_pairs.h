@@ -137,11 +137,6 @@ class BodyPairs {
 
  private:
   [[nodiscard]] bool reserve_choice(std::size_t count, Pages pages) noexcept;
-  [[nodiscard]] static std::uint64_t bits_apart(const Source& source, const BodyBall* balls,
-                                                std::size_t first, std::size_t count) noexcept;
-  [[nodiscard]] static std::uint64_t bits_wanted(const Source& source,
-                                                 const PairSelection& selection, std::size_t first,
-                                                 std::size_t count) noexcept;
   void choose(std::span<const Source> sources, const Known& known,
               const Execution& execution) noexcept;
   void pack(std::span<const Source> sources, const Known& known,

@@ -115,11 +115,11 @@ bool Collision::list_pairs() {
   scene_.convex.clear();
   scene_.composite.clear();
   if (level_ == ContactLevel::pairs) return true;
-  if (!resize_for_batch(contacts_.source) || !resize_for_batch(scene_.convex) ||
+  if (!resize_for_batch(contacts_.source) ||
+      !scene_.convex.grow(batch_room(scene_.options, pair_count())) ||
       (!carries_ && !resize_for_batch(contacts_.origin))) {
     return false;
   }
-  scene_.convex.clear();
   for (std::uint32_t i = batch_first_; i < batch_end_; ++i) {
     const BodyPair pair = scene_.pairs[i];
     if (!carries_) {
