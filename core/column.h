@@ -110,6 +110,19 @@ class Column {
     return (count < half_more && reserve(half_more)) || reserve(count);
   }
 
+  /// Room for `count` elements but not for fewer than are in use, and no more than the next full
+  /// line. False, and unchanged, if the resource refuses.
+  [[nodiscard]] bool shrink(std::size_t count) noexcept {
+    Column less(memory_);
+    const std::size_t kept = count < size_ ? size_ : count;
+    if (kept >= capacity_) return true;
+    if (!less.reserve(kept)) return false;
+    if (size_ != 0) std::memcpy(static_cast<void*>(less.data_), data_, size_ * sizeof(T));
+    less.size_ = size_;
+    swap(less);
+    return true;
+  }
+
   /// Sets the size; the room must have been reserved. New elements are uninitialised.
   void set_size(std::size_t count) noexcept { size_ = count; }
 

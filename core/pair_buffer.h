@@ -79,6 +79,12 @@ class WINNOW_API PairBuffer {
     return pairs_.reserve(count, pages);
   }
 
+  /// Pairs that there is room for.
+  [[nodiscard]] std::size_t capacity() const noexcept { return pairs_.capacity(); }
+  /// Gives back the room for more than `count` pairs, or than it holds. False, and unchanged, if
+  /// memory is refused. O(pairs).
+  [[nodiscard]] bool shrink(std::size_t count) noexcept { return pairs_.shrink(count); }
+
   /// Takes the pairs of another buffer over as they are, so that the next query may go on from
   /// either. False, and unchanged, if memory is refused. O(pairs).
   [[nodiscard]] bool assign(const PairBuffer& other) noexcept;

@@ -127,6 +127,8 @@ class BodyPairs {
   [[nodiscard]] PairOrder order(std::size_t i) const noexcept {
     return PairOrder::of(static_cast<std::uint32_t>(items_[sorted_][i] >> 2 * bits_), (*this)[i]);
   }
+  /// The room in which they were sorted, for anything until pairs are taken anew.
+  [[nodiscard]] Column<std::uint64_t>& spare() noexcept { return items_[1 - sorted_]; }
   /// Grows with every `assign`.
   [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
   /// What the partitions had gone through when the pairs were taken.

@@ -48,8 +48,40 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
       same_scene_(contacts.scene == scene.serial),
       same_level_(same_scene_ && contacts.level == level) {}
 
+namespace {
+
+/// A column that lies in the room of another one of the same memory as long as this lives.
+template <typename T>
+class Lodger {
+ public:
+  /// Not if it must not, or holds anything.
+  Lodger(Column<T>& column, Column<T>& room, bool may) noexcept
+      : column_(column),
+        room_(room),
+        lodges_(may && column.empty() && column.memory() == room.memory()) {
+    if (!lodges_) return;
+    room_.clear();
+    column_.swap(room_);
+  }
+  Lodger(const Lodger&) = delete;
+  Lodger& operator=(const Lodger&) = delete;
+  ~Lodger() {
+    if (lodges_) column_.swap(room_);
+  }
+
+ private:
+  Column<T>& column_;
+  Column<T>& room_;
+  bool lodges_;
+};
+
+}  // namespace
+
 Status Collision::run() {
   if (!same_scene_) contacts_.clear();
+  // Records of a call alone; those of pairs that sleep are merged with others that stay.
+  const Lodger records(contacts_.records.bits, scene_.pairs.spare(),
+                       !carries_ && contacts_.dormant_records.size() == 0);
   contacts_.scene = scene_.serial;
   contacts_.level = level_;
   contacts_.carried_count = 0;

@@ -84,34 +84,36 @@ struct ContactFrame {
 /// What is remembered of pairs from one `collide` to the next, in their order: of those that touch,
 /// and with carry-over of all.
 struct PairRecords {
-  explicit PairRecords(std::pmr::memory_resource* memory) noexcept : order(memory), shown(memory) {}
+  explicit PairRecords(std::pmr::memory_resource* memory) noexcept : bits(memory), shown(memory) {}
 
-  Column<PairOrder> order;
+  /// PairOrder::bits.
+  Column<std::uint64_t> bits;
   /// Its place in the ContactFrame, kNoEntry if it does not touch. Empty where record i is that of
   /// pair i of the frame.
   Column<std::uint32_t> shown;
 
-  [[nodiscard]] std::size_t size() const noexcept { return order.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return bits.size(); }
+  [[nodiscard]] PairOrder order_of(std::size_t record) const noexcept { return {bits[record]}; }
   [[nodiscard]] std::uint32_t shown_of(std::size_t record) const noexcept {
     return shown.empty() ? static_cast<std::uint32_t>(record) : shown[record];
   }
   void push_back_within_room(PairOrder of, std::uint32_t at) noexcept {
-    (void)order.push_back(of);
+    (void)bits.push_back(of.bits);
     (void)shown.push_back(at);
   }
   [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
-    return order.reserve(count, pages) && shown.reserve(count, pages);
+    return bits.reserve(count, pages) && shown.reserve(count, pages);
   }
   void clear() noexcept {
-    order.clear();
+    bits.clear();
     shown.clear();
   }
   void swap(PairRecords& other) noexcept {
-    order.swap(other.order);
+    bits.swap(other.bits);
     shown.swap(other.shown);
   }
   [[nodiscard]] Bytes bytes() const noexcept {
-    Bytes sum = order.bytes();
+    Bytes sum = bits.bytes();
     sum += shown.bytes();
     return sum;
   }

@@ -115,7 +115,7 @@ class ContactsWriter {
     const bool are_kept = records.size() != 0;
     out_.put(std::uint64_t{are_kept ? records.size() : frame.pairs()});
     for (std::size_t r = 0; r < records.size(); ++r) {
-      put_record(records.order[r].bodies(), records.order[r].code(), records.shown_of(r));
+      put_record(records.order_of(r).bodies(), records.order_of(r).code(), records.shown_of(r));
     }
     for (const ContactRun& run : std::span(frame.runs.data(), are_kept ? 0 : frame.runs.size())) {
       const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);

@@ -56,14 +56,14 @@ bool Collision::list_records() {
   ContactsState& c = contacts_;
   known_last_ = shown_last_ = static_cast<std::uint32_t>(c.frame.pairs());
   if (shown_last_ == 0 || c.records.size() != 0) return true;
-  if (!resize_steadily(c.records.order, shown_last_)) return false;
+  if (!resize_steadily(c.records.bits, shown_last_)) return false;
   for (const ContactRun& run : c.frame.runs) {
     const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
     for_stretches(scene_.options.execution, run.count, kPairsPerListing,
                   [&](std::size_t first, std::size_t end) {
                     for (std::size_t i = run.first + first; i < run.first + end; ++i) {
                       const BodyPair bodies{c.frame.key[0][i].id, c.frame.key[1][i].id};
-                      c.records.order[i] = PairOrder::of(code, bodies);
+                      c.records.bits[i] = PairOrder::of(code, bodies).bits;
                     }
                   });
   }
@@ -110,11 +110,11 @@ void Collision::merge_dormant() noexcept {
   std::size_t other = 0;
   for (std::size_t i = 0; i < c.records.size() + slept.size(); ++i) {
     const bool first = other == slept.size() ||
-                       (one < c.records.size() && c.records.order[one] < slept.order[other]);
+                       (one < c.records.size() && c.records.bits[one] < slept.bits[other]);
     if (carries_) c.carried_before[i] = first ? c.carried[one] : c.dormant_carried[other];
     const PairRecords& from = first ? c.records : slept;
     const std::size_t at = first ? one++ : other++;
-    c.records_before.push_back_within_room(from.order[at], from.shown_of(at));
+    c.records_before.push_back_within_room(from.order_of(at), from.shown_of(at));
   }
   c.records.swap(c.records_before);
   c.carried.swap(c.carried_before);
@@ -124,12 +124,12 @@ void Collision::merge_dormant() noexcept {
 
 // Which record each pair of the batch had. Both are sorted alike. Room was made.
 void Collision::match(const PairRecords& records) noexcept {
-  const PairOrder* const begin = records.order.begin();
-  const PairOrder* const none = records.order.end();
+  const std::uint64_t* const begin = records.bits.begin();
+  const std::uint64_t* const none = records.bits.end();
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
-    const PairOrder* record = std::lower_bound(begin, none, scene_.pairs.order(first));
+    const std::uint64_t* record = std::lower_bound(begin, none, scene_.pairs.order(first).bits);
     for (std::uint32_t i = first; i < end; ++i) {
-      const PairOrder order = scene_.pairs.order(i);
+      const std::uint64_t order = scene_.pairs.order(i).bits;
       while (record != none && *record < order) ++record;
       const bool found = record != none && *record == order;
       contacts_.old_record[i - known_from_] =
@@ -262,7 +262,7 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
-  c.records.order[pair] = scene_.pairs.order(pair);
+  c.records.bits[pair] = scene_.pairs.order(pair).bits;
   c.records.shown[pair] = shown;
   if (origin_of(pair) == Origin::carried) {
     if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
@@ -315,7 +315,7 @@ bool Collision::put_to_sleep() {
   }
   Place room;
   for (std::size_t r = 0; r < c.records_before.size(); ++r) {
-    const PairOrder order = c.records_before.order[r];
+    const PairOrder order = c.records_before.order_of(r);
     const std::uint32_t shown = c.records_before.shown_of(r);
     if (shown == kNoEntry || c.shown_again[shown] != 0 || !sleeps(order.bodies())) continue;
     c.shown_again[shown] = 1;
@@ -327,7 +327,7 @@ bool Collision::put_to_sleep() {
   if (!c.dormant.resize(level_, room.pair, room.manifold, room.point)) return false;
   Place at;
   for (std::size_t i = 0; i < slept.size(); ++i) {
-    const BodyPair bodies = slept.order[i].bodies();
+    const BodyPair bodies = slept.order_of(i).bodies();
     const std::uint32_t ids[2] = {bodies.a, bodies.b};
     for (int side = 0; side < 2; ++side) {
       c.dormant.key[side][at.pair] = c.known.key(ids[side]);
@@ -353,7 +353,7 @@ bool Collision::list_ended() {
       if (shown == kNoEntry || (shown >= shown_last_) != slept || c.shown_again[shown] != 0) {
         continue;
       }
-      const auto [a, b] = known.order[r].bodies();
+      const auto [a, b] = known.order_of(r).bodies();
       const EndedContact ended{c.known.key(a), c.known.key(b), c.known.data[a], c.known.data[b]};
       if (!c.ended.push_back(ended)) return false;
     }

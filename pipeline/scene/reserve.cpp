@@ -72,11 +72,10 @@ bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
   // One call is about the bodies of one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
-  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body)) return false;
+  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body, chosen, left)) return false;
   if (pages == Pages::touched) {
     keys.touch();
-    touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale, chosen,
-                  left);
+    touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale);
     anchor.touch();
   }
   return true;
@@ -187,11 +186,13 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const std::size_t looked_at = carries ? std::max(room.pairs, batch_room) : batch_room;
   const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch_room;
   const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
-  // Without carry-over the two take turns with one column, whose order alone is kept.
+  // Without carry-over the two take turns with one column, whose order alone is kept, and where the
+  // scene's memory is that of the contacts, it is the scene's.
   const bool two_orders = carries || may_sleep;
+  const bool one_order = two_orders || frame.event.memory() != options.memory;
   return reserve_all(shown, pages, ended, shown_again) &&
-         records.order.reserve(remembered, pages) &&
-         records_before.order.reserve(two_orders ? remembered : 0, pages) &&
+         records.bits.reserve(one_order ? remembered : 0, pages) &&
+         records_before.bits.reserve(two_orders ? remembered : 0, pages) &&
          reserve_all(two_orders ? remembered : 0, pages, records.shown, records_before.shown) &&
          (!may_sleep || dormant_records.reserve(shown, pages)) &&
          reserve_all(carried_over, pages, carried, carried_before) &&

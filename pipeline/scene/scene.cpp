@@ -167,13 +167,7 @@ Status Scene::remove(std::span<const Key> keys) {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::remove");
   SceneState& s = *state_;
   if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::remove");
-  if (!s.left.resize(keys.size())) return logged(Status::out_of_memory, "Scene::remove");
-  for (const Motion which : kEveryMotion) {
-    std::size_t count = 0;
-    for (const std::uint32_t body : s.choose(keys, which)) s.left[count++] = s.place[body];
-    s.displace(which, {s.left.data(), count});
-    for (const std::uint32_t body : s.chosen) s.keys.release(body);
-  }
+  for (const Motion which : kEveryMotion) s.take_out(keys, which);
   ++s.regroupings;
   s.forget_stale();
   s.forget_ignored(keys);

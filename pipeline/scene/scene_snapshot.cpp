@@ -225,10 +225,13 @@ class SceneReader {
     SceneSet& set = scene_.set(which);
     (void)in_.get_bytes(set.origin.data(), 3 * sizeof(double));
     if (!set.origin.allFinite()) in_.fail();
+    const BoxRoom room(scene_);
     scene_.chosen.clear();
+    bool has_room = true;
     for_live(keys_.all_stamps(), [&](ObjectId body) {
-      if (scene_.motion[body] == which) (void)scene_.chosen.push_back(body);
+      if (scene_.motion[body] == which) has_room = has_room && scene_.chosen.push_back(body);
     });
+    if (!has_room) return Status::out_of_memory;
     const std::size_t count = scene_.chosen.size();
     if (count > in_.rest().size() / sizeof(PlainBox)) in_.fail();
     if (!in_.ok()) return status_of(in_);
@@ -291,8 +294,6 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.layers.swap(read.layers);
   scene.stale.swap(read.stale);
   scene.is_stale.swap(read.is_stale);
-  scene.chosen.swap(read.chosen);
-  scene.left.swap(read.left);
   scene.ignored.swap(read.ignored);
   scene.ignores.swap(read.ignores);
   for (std::size_t i = 0; i < kMotions; ++i) {

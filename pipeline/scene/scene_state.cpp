@@ -3,6 +3,7 @@
 #include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
 #include "pipeline/composites/parts.h"
+#include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"
@@ -17,8 +18,34 @@ namespace {
 
 constexpr std::size_t kBodiesPerStretch = 256;
 constexpr std::size_t kFewBoxes = 128;
+// Boxes that are made before their partition is given them: few enough that they take little beside
+// the bodies, enough for many threads.
+constexpr std::size_t kBoxesPerBatch = 16384;
+constexpr std::size_t kPlacesPerCall = 512;
+
+// Pairs are found while there is room for half as many more; they are as many in most frames. Where
+// memory for less is refused, there is more.
+void trim(PairBuffer& pairs) noexcept {
+  const std::size_t steady = pairs.size() + pairs.size() / 8;
+  if (pairs.capacity() * sizeof(Pair) >= kSmallColumn) (void)pairs.shrink(steady);
+}
 
 }  // namespace
+
+BoxRoom::BoxRoom(SceneState& scene) noexcept : scene_(scene) {
+  std::size_t i = 0;
+  scene_.visit_box_columns([&](auto& column) { room_[i++] = column.capacity(); });
+}
+
+BoxRoom::~BoxRoom() {
+  std::size_t i = 0;
+  scene_.visit_box_columns([&](auto& column) {
+    if (column.capacity() <= std::max(room_[i++], kBoxesPerBatch)) return;
+    column.clear();
+    // Where memory for less is refused, there is more.
+    (void)column.shrink(kBoxesPerBatch);
+  });
+}
 
 Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
   const bool known = id.is_composite()
@@ -174,6 +201,19 @@ void SceneState::displace(Motion which, std::span<const Key> places) {
   ++set(which).changes;
 }
 
+// Some at a time, so that it needs no memory.
+void SceneState::take_out(std::span<const Key> given, Motion which) {
+  Key places[kPlacesPerCall];
+  std::size_t count = 0;
+  for (const Key& key : given) {
+    if (motion[key.id] != which) continue;
+    places[count++] = place[key.id];
+    keys.release(key.id);
+    if (count == kPlacesPerCall) displace(which, {places, std::exchange(count, 0)});
+  }
+  displace(which, {places, count});
+}
+
 // The last ones first, so that ids are given again in the same order.
 void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) {
   for (std::size_t i = bodies.size(); i-- > 0;) displace(which, {&place[bodies[i]], 1});
@@ -188,7 +228,7 @@ bool SceneState::reserve(std::size_t fresh) noexcept {
       (!has_offsets() || offsets.grow(slots)) && (!with_layers || layer.grow(slots));
   return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
          ball.grow(slots) && place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) &&
-         stale.grow(slots) && is_stale.grow(slots) && chosen.grow(slots) && left.grow(slots);
+         stale.grow(slots) && is_stale.grow(slots);
 }
 
 Key SceneState::acquire(const BodyDefinition& body) noexcept {
@@ -229,6 +269,8 @@ std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
 
 // Places bodies that have just got their keys, or none of them.
 Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
+  const BoxRoom room(*this);
+  if (!chosen.grow(bodies.size())) return Status::out_of_memory;
   std::size_t settled = 0;
   Status status = Status::ok;
   for (; settled < kMotions && status == Status::ok; ++settled) {
@@ -290,7 +332,9 @@ void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
 // All get their new places, with their filters, before the first one leaves its old place: until
 // then everything can be taken back.
 Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
+  const BoxRoom room(*this);
   chosen.clear();
+  if (!chosen.grow(given.size())) return Status::out_of_memory;
   for (const Key& key : given) {
     if (motion[key.id] != to) (void)chosen.push_back(key.id);
   }
@@ -353,20 +397,37 @@ Status SceneState::refresh() {
 Status SceneState::refresh_set(Motion which) {
   SceneSet& target = set(which);
   if (!target.partition.has_value()) return Status::ok;
-  chosen.clear();
-  const auto choose_one = [&](std::uint32_t body) {
-    chosen[chosen.size()] = body;
-    chosen.set_size(chosen.size() + 1);
-  };
-  if (target.origin != origin) {
-    for (std::uint32_t body = 0; body < keys.slot_count(); ++body) {
-      if (keys.is_live(body) && motion[body] == which) choose_one(body);
+  if (target.origin != origin) return move_origin(which);
+  for (std::size_t next = 0; next < stale.size();) {
+    chosen.clear();
+    if (!chosen.reserve(std::min(stale.size() - next, kBoxesPerBatch)))
+      return Status::out_of_memory;
+    for (; next < stale.size() && chosen.size() < kBoxesPerBatch; ++next) {
+      const std::uint32_t body = stale[next];
+      if (motion[body] == which && needs_box(body)) (void)chosen.push_back(body);
     }
-  } else {
-    for (const std::uint32_t body : stale) {
-      if (motion[body] == which && needs_box(body)) choose_one(body);
-    }
+    if (const Status status = renew_boxes(target); status != Status::ok) return status;
   }
+  return Status::ok;
+}
+
+// All boxes of a set at once: while a part of them is refused, none is measured from another point
+// than the others.
+Status SceneState::move_origin(Motion which) {
+  SceneSet& target = set(which);
+  const BoxRoom room(*this);
+  chosen.clear();
+  if (!chosen.reserve(target.partition->size())) return Status::out_of_memory;
+  for (std::uint32_t body = 0; body < keys.slot_count(); ++body) {
+    if (keys.is_live(body) && motion[body] == which) (void)chosen.push_back(body);
+  }
+  if (const Status status = renew_boxes(target); status != Status::ok) return status;
+  target.origin = origin;
+  return Status::ok;
+}
+
+// Gives the partition new boxes of the chosen bodies.
+Status SceneState::renew_boxes(SceneSet& target) {
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
   if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
@@ -385,7 +446,6 @@ Status SceneState::refresh_set(Motion which) {
     for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
   }
   set_balls({chosen.data(), count}, origin);
-  target.origin = origin;
   boxes_since_look += count;
   boxes_updated += count;
   ++target.changes;
@@ -408,11 +468,13 @@ Status SceneState::find_pairs(bool all) {
     if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
     const BodyPredicate judge{*this, dynamic.body_of.data(), other.body_of.data()};
     const PairOptions asked = judge.options();
+    const std::size_t room = other.with_dynamic.capacity();
     const Status status =
         &other == &dynamic
             ? dynamic.partition->self_pairs(other.with_dynamic, asked)
             : dynamic.partition->pairs_with(*other.partition, other.with_dynamic, asked);
     if (status != Status::ok) return status;
+    if (other.with_dynamic.capacity() > room) trim(other.with_dynamic);
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
   }
   const Status status = pairs.assign(

@@ -104,6 +104,14 @@ struct SceneState {
   /// Bodies of one set that a call is about, and where they were.
   Column<std::uint32_t> chosen;
   Column<Key> left;
+  template <typename Visit>
+  void visit_box_columns(Visit&& visit) noexcept {
+    visit(boxes);
+    visit(boxes_of);
+    visit(boxes_body);
+    visit(chosen);
+    visit(left);
+  }
 
   SceneSet sets[kMotions];
   /// What boxes are measured from; see ScenePlaces.
@@ -193,6 +201,8 @@ struct SceneState {
   [[nodiscard]] Status place_boxes(Motion which, std::span<const std::uint32_t> bodies);
   /// Takes out what lies at `places`.
   void displace(Motion which, std::span<const Key> places);
+  /// Takes those of the given bodies that are in a set out of it, and gives their keys back.
+  void take_out(std::span<const Key> given, Motion which);
   /// Takes out bodies that were just placed, as if they had never been.
   void take_back(std::span<const std::uint32_t> bodies, Motion which);
   /// Moves those of the given bodies that are elsewhere. A refusal changes nothing.
@@ -201,6 +211,8 @@ struct SceneState {
   void set_pose(std::uint32_t body, const Pose& to) noexcept;
   [[nodiscard]] Status refresh();
   [[nodiscard]] Status refresh_set(Motion which);
+  [[nodiscard]] Status move_origin(Motion which);
+  [[nodiscard]] Status renew_boxes(SceneSet& target);
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
   /// With all pairs whose boxes meet, or without those whose balls are apart.
   [[nodiscard]] Status find_pairs(bool all);
@@ -223,6 +235,20 @@ struct SceneState {
   }
   /// All pairs are found anew by the next `collide`.
   void ask_again() noexcept;
+};
+
+/// When it goes it gives back what boxes of more bodies than a batch took, unless there was room
+/// for them when it came.
+class BoxRoom {
+ public:
+  explicit BoxRoom(SceneState& scene) noexcept;
+  BoxRoom(const BoxRoom&) = delete;
+  BoxRoom& operator=(const BoxRoom&) = delete;
+  ~BoxRoom();
+
+ private:
+  SceneState& scene_;
+  std::size_t room_[5];
 };
 
 /// What shapes and bodies of a snapshot are called where it is played.

@@ -31,7 +31,7 @@ bool Collision::open_frame() {
     c.carried.swap(c.carried_before);
   }
   const std::size_t records = carries_ ? pair_count() : 0;
-  if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records.order, records) ||
+  if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records.bits, records) ||
       !resize_steadily(c.records.shown, records) || !c.carried.resize(records) ||
       !resize_steadily(c.shown_again, known_last_)) {
     return false;
@@ -84,7 +84,7 @@ bool Collision::grow_frame(const Place& end) {
 bool Collision::reserve_next() {
   ContactsState& c = contacts_;
   const bool has_room = !reads_last_manifolds() || c.before.reserve_as(c.frame);
-  return has_room && c.records_before.reserve(c.records.order.capacity()) &&
+  return has_room && c.records_before.reserve(c.records.bits.capacity()) &&
          c.carried_before.reserve(c.carried.capacity()) && reserve_history();
 }
 
