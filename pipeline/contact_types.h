@@ -27,6 +27,9 @@ struct BodyPair {
   std::uint32_t b = 0;  ///< index of the second
 };
 
+/// The part of a shape that has no parts: all of a convex one.
+inline constexpr std::uint32_t kWholeShape = ~0U;
+
 /// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
 /// the position of body a. Depth is positive where the bodies overlap. The feature says which
 /// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same

@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/looked_up.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
@@ -39,6 +40,30 @@ struct EndedContact {
   ClientData data_b = 0;  ///< that b was added with
 };
 
+/// Client data by body.
+struct DataLookup {
+  const Key* bodies;       ///< of each pair
+  const ClientData* data;  ///< by id of a body
+
+  /// Of pair i.
+  [[nodiscard]] ClientData operator()(std::size_t i) const noexcept { return data[bodies[i].id]; }
+};
+
+/// Parts of composite shapes.
+struct PartLookup {
+  const std::uint32_t* parts;  ///< of each manifold; null where all shapes are convex
+
+  /// Of manifold m.
+  [[nodiscard]] std::uint32_t operator()(std::size_t m) const noexcept {
+    return parts != nullptr ? parts[m] : kWholeShape;
+  }
+};
+
+/// Client data of one body of each pair: size(), [i], begin() and end(), as of a span.
+using DataColumn = LookedUp<DataLookup>;
+/// The part of one shape in each manifold, likewise.
+using PartColumn = LookedUp<PartLookup>;
+
 /// What `Scene::collide` found, as columns: pairs of bodies, sorted by the kinds of their shapes
 /// and then by body; for each pair its manifolds, one for each region of contact, or for each pair
 /// of parts that touch (see SceneOptions::contact_reduction; one alone if both shapes are convex);
@@ -67,10 +92,11 @@ class WINNOW_API Contacts {
   [[nodiscard]] std::span<const Key> a() const noexcept;
   /// Second body of each pair.
   [[nodiscard]] std::span<const Key> b() const noexcept;
-  /// Client data of the first bodies.
-  [[nodiscard]] std::span<const ClientData> data_a() const noexcept;
+  /// Client data of the first bodies, as it was when these Contacts were filled. It is looked up by
+  /// body: no column of it is kept.
+  [[nodiscard]] DataColumn data_a() const noexcept;
   /// Client data of the second bodies.
-  [[nodiscard]] std::span<const ClientData> data_b() const noexcept;
+  [[nodiscard]] DataColumn data_b() const noexcept;
   /// Whether each pair is new since the frame before.
   [[nodiscard]] std::span<const ContactEvent> event() const noexcept;
   /// Pairs that came to an end, in the same order on any number of threads.
@@ -81,10 +107,11 @@ class WINNOW_API Contacts {
   /// All manifolds of all pairs.
   [[nodiscard]] std::size_t manifolds() const noexcept;
   /// The parts that touch, of a region those of its deepest manifold: numbers of triangles or
-  /// children, kWholeShape of convex shapes.
-  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept;
+  /// children, kWholeShape of convex shapes. Scenes without SceneOptions::composites keep no column
+  /// of them.
+  [[nodiscard]] PartColumn part_a() const noexcept;
   /// The same of body b.
-  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept;
+  [[nodiscard]] PartColumn part_b() const noexcept;
   /// Levels distance and manifold: negative by the depth of penetration; the true one is within
   /// distance +- error_bound.
   [[nodiscard]] std::span<const double> distance() const noexcept;

@@ -8,6 +8,7 @@
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_regions.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
@@ -34,9 +35,6 @@ struct PairMargins {
     return each.empty() ? largest : each[pair];
   }
 };
-
-/// The part of a shape that has no parts: all of a convex one.
-inline constexpr std::uint32_t kWholeShape = ~0U;
 
 /// Pairs of convex primitives that may touch: what the narrow phase is given for pairs of bodies of
 /// which one or both are composite. Coordinates are relative to the position of body a of the pair

@@ -6,6 +6,7 @@
 
 #include <winnow/pipeline/narrow_result.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace winnow::python {
@@ -31,6 +32,17 @@ template <typename T>
 }
 [[nodiscard]] py::array key_column(Owner owner, std::span<const Key> keys) {
   return shown(owner, reinterpret_cast<const std::uint64_t*>(keys.data()), keys.size());
+}
+[[nodiscard]] py::array looked_up(const DataColumn& values) {
+  py::array_t<ClientData> copy(static_cast<py::ssize_t>(values.size()));
+  std::ranges::copy(values, copy.mutable_data());
+  return copy;
+}
+/// Where all shapes are convex, one number that is shown for every manifold.
+[[nodiscard]] py::array part_column(Owner owner, const PartColumn& values) {
+  const std::uint32_t* const parts = values.lookup().parts;
+  return parts != nullptr ? shown(owner, parts, values.size())
+                          : shown(owner, &kWholeShape, values.size(), 0);
 }
 /// Three columns, one for each axis.
 template <typename Column>
@@ -61,11 +73,12 @@ void add_pairs(Class& type) {
       type, "b", [](const Contacts& c, Owner o) { return key_column(o, c.b()); },
       "Keys of the second bodies, (n,) uint64.");
   define(
-      type, "data_a", [](const Contacts& c, Owner o) { return all(o, c.data_a()); },
-      "Client data of the first bodies, (n,) uint64.");
+      type, "data_a", [](const Contacts& c, Owner) { return looked_up(c.data_a()); },
+      "Client data of the first bodies, (n,) uint64: an array of its own, made when it is asked "
+      "for.");
   define(
-      type, "data_b", [](const Contacts& c, Owner o) { return all(o, c.data_b()); },
-      "Client data of the second bodies, (n,) uint64.");
+      type, "data_b", [](const Contacts& c, Owner) { return looked_up(c.data_b()); },
+      "The same of the second bodies.");
   define(
       type, "event",
       [](const Contacts& c, Owner o) {
@@ -97,10 +110,10 @@ void add_manifolds(Class& type) {
       type, "manifold_first", [](const Contacts& c, Owner o) { return all(o, c.manifold_first()); },
       "Manifolds of pair i are manifold_first[i] to manifold_first[i + 1]: (n + 1,) uint32.");
   define(
-      type, "part_a", [](const Contacts& c, Owner o) { return all(o, c.part_a()); },
+      type, "part_a", [](const Contacts& c, Owner o) { return part_column(o, c.part_a()); },
       "Triangle or child of a, WHOLE_SHAPE of convex shapes, of each manifold: (m,) uint32.");
   define(
-      type, "part_b", [](const Contacts& c, Owner o) { return all(o, c.part_b()); },
+      type, "part_b", [](const Contacts& c, Owner o) { return part_column(o, c.part_b()); },
       "The same of b.");
   define(
       type, "distance", [](const Contacts& c, Owner o) { return all(o, c.distance()); },

@@ -5,9 +5,26 @@
 #include <winnow/pipeline/shapes.h>
 #include "core/memory/byte_stream.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 
 namespace winnow {
+
+/// A column that is looked up, as its bytes would be added if they lay in memory.
+template <typename Lookup>
+void add_to(Digest& digest, const LookedUp<Lookup>& values) noexcept {
+  constexpr std::size_t kBytes = sizeof(values[0]);
+  constexpr std::size_t kPerWord = sizeof(std::uint64_t) / kBytes;
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    word |= std::uint64_t{values[i]} << (8 * kBytes * (i % kPerWord));
+    if (i % kPerWord == kPerWord - 1) digest.add(std::exchange(word, 0));
+  }
+  digest.add(word);
+  digest.add(std::uint64_t{values.size() * kBytes});
+}
 
 /// All that contacts tell; of keys the ids.
 inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
@@ -17,8 +34,8 @@ inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   digest.add(std::uint64_t{contacts.size()});
   add_ids(contacts.a());
   add_ids(contacts.b());
-  digest.add_array(contacts.data_a());
-  digest.add_array(contacts.data_b());
+  add_to(digest, contacts.data_a());
+  add_to(digest, contacts.data_b());
   digest.add_array(contacts.event());
   for (const EndedContact& ended : contacts.ended()) {
     digest.add(std::uint64_t{ended.a.id} << 32U | ended.b.id);
@@ -27,8 +44,8 @@ inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   }
   digest.add(std::uint64_t{contacts.ended().size()});
   digest.add_array(contacts.manifold_first());
-  digest.add_array(contacts.part_a());
-  digest.add_array(contacts.part_b());
+  add_to(digest, contacts.part_a());
+  add_to(digest, contacts.part_b());
   digest.add_array(contacts.distance());
   digest.add_array(contacts.error_bound());
   for (int axis = 0; axis < 3; ++axis) {

@@ -18,16 +18,17 @@ struct SceneRoom;
 /// No entry.
 inline constexpr std::uint32_t kNoEntry = ~0U;
 
-/// What `collide` shows: see Contacts. Pairs are sorted as BodyPairs are.
+/// What `collide` shows: see Contacts. Pairs are sorted as BodyPairs are. Client data is that of
+/// ContactsState::known.
 struct ContactFrame {
   explicit ContactFrame(std::pmr::memory_resource* memory) noexcept;
 
   Column<ContactRun> runs;
   Column<Key> key[2];
-  Column<ClientData> data[2];
   Column<ContactEvent> event;
   /// One more than pairs, and one more than manifolds.
   Column<std::uint32_t> manifold_first;
+  /// Empty without composite shapes.
   Column<std::uint32_t> part[2];
   Column<double> distance;
   Column<double> error_bound;
@@ -35,15 +36,23 @@ struct ContactFrame {
   Column<double> point[3];
   Column<std::uint32_t> point_first;
   ContactColumns points;
+  std::size_t manifolds = 0;
+  /// There may be composite shapes.
+  bool with_parts = false;
 
   [[nodiscard]] std::size_t pairs() const noexcept { return event.size(); }
-  [[nodiscard]] std::size_t manifolds() const noexcept { return part[0].size(); }
+  /// True if so much needs no more memory.
+  [[nodiscard]] bool has_room(ContactLevel level, std::size_t pair_count,
+                              std::size_t manifold_count, std::size_t point_count) const noexcept;
+  [[nodiscard]] std::uint32_t part_of(int side, std::size_t manifold) const noexcept {
+    return with_parts ? part[side][manifold] : kWholeShape;
+  }
   /// Room for what a level has, and no more. False if memory is refused.
-  [[nodiscard]] bool resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                            std::size_t contact_points) noexcept;
+  [[nodiscard]] bool resize(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
+                            std::size_t point_count) noexcept;
   /// Room for so much at a level, and for every run there may be. False if memory is refused.
-  [[nodiscard]] bool reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                             std::size_t contact_points, Pages pages) noexcept;
+  [[nodiscard]] bool reserve(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
+                             std::size_t point_count, Pages pages) noexcept;
   /// As much room as another frame has, so that the two can change places.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
@@ -75,8 +84,8 @@ struct ContactFrame {
  private:
   /// Calls make(column, count) for every column but those of runs and of points, until it is false.
   template <typename Make>
-  [[nodiscard]] bool make_columns(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                                  Make&& make) noexcept;
+  [[nodiscard]] bool make_columns(ContactLevel level, std::size_t pair_count,
+                                  std::size_t manifold_count, Make&& make) noexcept;
   void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
                    const Place& to) noexcept;
 };

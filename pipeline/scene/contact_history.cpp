@@ -52,7 +52,8 @@ class PointMatch {
       for (std::uint32_t step = 0; step < old_manifolds_.size(); ++step) {
         const std::uint32_t old = at;
         if (++at == old_manifolds_.end) at = old_manifolds_.first;
-        if (before_.part[0][old] != now_.part[0][m] || before_.part[1][old] != now_.part[1][m]) {
+        if (before_.part_of(0, old) != now_.part_of(0, m) ||
+            before_.part_of(1, old) != now_.part_of(1, m)) {
           continue;
         }
         by_feature(points_of(now_, {m, m + 1}), points_of(before_, {old, old + 1}));

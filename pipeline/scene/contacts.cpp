@@ -26,7 +26,6 @@ void copy_range(const Column<T>& from, std::size_t first, std::size_t count, Col
 ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
     : runs(memory),
       key{Column<Key>(memory), Column<Key>(memory)},
-      data{Column<ClientData>(memory), Column<ClientData>(memory)},
       event(memory),
       manifold_first(memory),
       part{Column<std::uint32_t>(memory), Column<std::uint32_t>(memory)},
@@ -38,44 +37,52 @@ ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
       points(memory) {}
 
 template <typename Make>
-bool ContactFrame::make_columns(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                                Make&& make) noexcept {
-  const bool with_parts = level != ContactLevel::pairs;
+bool ContactFrame::make_columns(ContactLevel level, std::size_t pair_count,
+                                std::size_t manifold_count, Make&& make) noexcept {
+  const bool with_manifolds = level != ContactLevel::pairs;
   const bool with_points = level == ContactLevel::manifold;
-  bool good = make(event, pairs) && make(manifold_first, with_parts ? pairs + 1 : 0);
+  bool good = make(event, pair_count) && make(manifold_first, with_manifolds ? pair_count + 1 : 0);
   for (int side = 0; side < 2; ++side) {
-    good = good && make(key[side], pairs) && make(data[side], pairs) && make(part[side], manifolds);
+    good = good && make(key[side], pair_count) && make(part[side], with_parts ? manifold_count : 0);
   }
-  const std::size_t distances = level >= ContactLevel::distance ? manifolds : 0;
+  const std::size_t distances = level >= ContactLevel::distance ? manifold_count : 0;
   good = good && make(distance, distances) && make(error_bound, distances) &&
-         make(point_first, with_points ? manifolds + 1 : 0);
+         make(point_first, with_points ? manifold_count + 1 : 0);
   for (int axis = 0; axis < 3; ++axis) {
     good = good && make(normal[axis], distances) &&
-           make(point[axis], level == ContactLevel::distance ? manifolds : 0);
+           make(point[axis], level == ContactLevel::distance ? manifold_count : 0);
   }
   return good;
 }
 
-bool ContactFrame::resize(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                          std::size_t contact_points) noexcept {
+bool ContactFrame::resize(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
+                          std::size_t point_count) noexcept {
   const auto resize_one = [](auto& column, std::size_t count) {
     return resize_steadily(column, count);
   };
-  if (!make_columns(level, pairs, manifolds, resize_one) || !points.grow(contact_points)) {
+  if (!make_columns(level, pair_count, manifold_count, resize_one) || !points.grow(point_count)) {
     return false;
   }
-  points.set_size(contact_points);
+  manifolds = manifold_count;
+  points.set_size(point_count);
   return true;
 }
 
-bool ContactFrame::reserve(ContactLevel level, std::size_t pairs, std::size_t manifolds,
-                           std::size_t contact_points, Pages pages) noexcept {
+bool ContactFrame::has_room(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
+                            std::size_t point_count) const noexcept {
+  return pair_count <= event.capacity() && (!with_parts || manifold_count <= part[0].capacity()) &&
+         (level < ContactLevel::distance || manifold_count <= distance.capacity()) &&
+         point_count <= points.depth.capacity();
+}
+
+bool ContactFrame::reserve(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
+                           std::size_t point_count, Pages pages) noexcept {
   const auto reserve_one = [pages](auto& column, std::size_t count) {
     return column.reserve(count, pages);
   };
-  const std::size_t most_runs = std::min<std::size_t>(pairs, KindPairs::kCount);
-  if (!runs.reserve(most_runs) || !make_columns(level, pairs, manifolds, reserve_one) ||
-      !points.grow(contact_points)) {
+  const std::size_t most_runs = std::min<std::size_t>(pair_count, KindPairs::kCount);
+  if (!runs.reserve(most_runs) || !make_columns(level, pair_count, manifold_count, reserve_one) ||
+      !points.grow(point_count)) {
     return false;
   }
   if (pages == Pages::touched) points.touch();
@@ -92,7 +99,6 @@ bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
               points.feature.reserve(other.points.feature.capacity());
   for (int side = 0; side < 2; ++side) {
     good = good && key[side].reserve(other.key[side].capacity()) &&
-           data[side].reserve(other.data[side].capacity()) &&
            part[side].reserve(other.part[side].capacity());
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -109,7 +115,6 @@ void ContactFrame::clear() noexcept {
   manifold_first.clear();
   for (int side = 0; side < 2; ++side) {
     key[side].clear();
-    data[side].clear();
     part[side].clear();
   }
   distance.clear();
@@ -120,6 +125,7 @@ void ContactFrame::clear() noexcept {
   }
   point_first.clear();
   points.set_size(0);
+  manifolds = 0;
 }
 
 void ContactFrame::swap(ContactFrame& other) noexcept {
@@ -128,7 +134,6 @@ void ContactFrame::swap(ContactFrame& other) noexcept {
   manifold_first.swap(other.manifold_first);
   for (int side = 0; side < 2; ++side) {
     key[side].swap(other.key[side]);
-    data[side].swap(other.data[side]);
     part[side].swap(other.part[side]);
   }
   distance.swap(other.distance);
@@ -141,6 +146,8 @@ void ContactFrame::swap(ContactFrame& other) noexcept {
   point_first.swap(other.point_first);
   points.depth.swap(other.points.depth);
   points.feature.swap(other.points.feature);
+  std::swap(manifolds, other.manifolds);
+  std::swap(with_parts, other.with_parts);
 }
 
 Bytes ContactFrame::bytes() const noexcept {
@@ -151,7 +158,6 @@ Bytes ContactFrame::bytes() const noexcept {
   }
   for (int side = 0; side < 2; ++side) {
     sum += key[side].bytes();
-    sum += data[side].bytes();
     sum += part[side].bytes();
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -175,7 +181,6 @@ void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uin
                         const Place& to) noexcept {
   for (int side = 0; side < 2; ++side) {
     copy_range(other.key[side], first, count, key[side], to.pair);
-    copy_range(other.data[side], first, count, data[side], to.pair);
   }
   copy_range(other.event, first, count, event, to.pair);
   if (other.manifold_first.empty()) {
@@ -183,20 +188,20 @@ void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uin
     return;
   }
   const std::uint32_t begin = other.manifold_first[first];
-  const std::uint32_t manifolds = other.manifold_first[first + count] - begin;
+  const std::uint32_t copied = other.manifold_first[first + count] - begin;
   for (std::uint32_t i = 0; i < count; ++i) {
     manifold_first[to.pair + i] = other.manifold_first[first + i] - begin + to.manifold;
   }
   for (int side = 0; side < 2; ++side) {
-    copy_range(other.part[side], begin, manifolds, part[side], to.manifold);
+    copy_range(other.part[side], begin, copied, part[side], to.manifold);
   }
-  copy_range(other.distance, begin, manifolds, distance, to.manifold);
-  copy_range(other.error_bound, begin, manifolds, error_bound, to.manifold);
+  copy_range(other.distance, begin, copied, distance, to.manifold);
+  copy_range(other.error_bound, begin, copied, error_bound, to.manifold);
   for (int axis = 0; axis < 3; ++axis) {
-    copy_range(other.normal[axis], begin, manifolds, normal[axis], to.manifold);
-    copy_range(other.point[axis], begin, manifolds, point[axis], to.manifold);
+    copy_range(other.normal[axis], begin, copied, normal[axis], to.manifold);
+    copy_range(other.point[axis], begin, copied, point[axis], to.manifold);
   }
-  if (!other.point_first.empty()) copy_points(other, begin, manifolds, to);
+  if (!other.point_first.empty()) copy_points(other, begin, copied, to);
 }
 
 void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
@@ -284,12 +289,12 @@ std::span<const Key> Contacts::b() const noexcept {
   return span_of(state().frame.key[1]);
 }
 
-std::span<const ClientData> Contacts::data_a() const noexcept {
-  return span_of(state().frame.data[0]);
+DataColumn Contacts::data_a() const noexcept {
+  return {{a().data(), state().known.data.data()}, size()};
 }
 
-std::span<const ClientData> Contacts::data_b() const noexcept {
-  return span_of(state().frame.data[1]);
+DataColumn Contacts::data_b() const noexcept {
+  return {{b().data(), state().known.data.data()}, size()};
 }
 
 std::span<const ContactEvent> Contacts::event() const noexcept {
@@ -305,15 +310,17 @@ std::span<const std::uint32_t> Contacts::manifold_first() const noexcept {
 }
 
 std::size_t Contacts::manifolds() const noexcept {
-  return state().frame.manifolds();
+  return state().frame.manifolds;
 }
 
-std::span<const std::uint32_t> Contacts::part_a() const noexcept {
-  return span_of(state().frame.part[0]);
+PartColumn Contacts::part_a() const noexcept {
+  const ContactFrame& frame = state().frame;
+  return {{frame.with_parts ? frame.part[0].data() : nullptr}, frame.manifolds};
 }
 
-std::span<const std::uint32_t> Contacts::part_b() const noexcept {
-  return span_of(state().frame.part[1]);
+PartColumn Contacts::part_b() const noexcept {
+  const ContactFrame& frame = state().frame;
+  return {{frame.with_parts ? frame.part[1].data() : nullptr}, frame.manifolds};
 }
 
 std::span<const double> Contacts::distance() const noexcept {

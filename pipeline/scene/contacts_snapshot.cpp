@@ -30,13 +30,13 @@ struct SavedRecord {
 
 static_assert(sizeof(SavedRecord) == 16 && sizeof(EndedContact) == 32);
 
-/// Calls visit(column) for all columns of a frame but runs and keys, whatever its level.
-template <typename Frame, typename Visit>
-void visit_frame(Frame& frame, Visit&& visit) {
-  for (auto& column : frame.data) visit(column);
+/// Calls visit(column) for all columns of a frame but runs, keys and parts, whatever its level, and
+/// visit_parts(side) for those.
+template <typename Frame, typename Visit, typename VisitParts>
+void visit_frame(Frame& frame, Visit&& visit, VisitParts&& visit_parts) {
   visit(frame.event);
   visit(frame.manifold_first);
-  for (auto& column : frame.part) visit(column);
+  for (int side = 0; side < 2; ++side) visit_parts(side);
   visit(frame.distance);
   visit(frame.error_bound);
   for (auto& column : frame.normal) visit(column);
@@ -63,11 +63,14 @@ class ContactsWriter {
     out_.put(contacts.clock);
     out_.put(contacts.regroupings);
     out_.put(std::uint64_t{contacts.carried_count});
-    put_frame(contacts.frame, contacts.records, contacts.carried);
+    put_frame(contacts.frame, contacts.known, contacts.records, contacts.carried);
     put_ended(contacts.ended);
     const bool sleeps = contacts.dormant_records.size() != 0;
     out_.put(sleeps);
-    if (sleeps) put_frame(contacts.dormant, contacts.dormant_records, contacts.dormant_carried);
+    if (sleeps) {
+      put_frame(contacts.dormant, contacts.known, contacts.dormant_records,
+                contacts.dormant_carried);
+    }
     put_column(contacts.history.pair);
     put_column(contacts.history.point);
     put_column(contacts.history.pose);
@@ -83,13 +86,22 @@ class ContactsWriter {
     out_.put(key.id);
     out_.put(scene_.keys.is_valid(key) ? 0U : key.stamp);
   }
-  void put_frame(const ContactFrame& frame, const PairRecords& records,
+  void put_frame(const ContactFrame& frame, const KnownBodies& known, const PairRecords& records,
                  const Column<CarriedPair>& carried) noexcept {
     out_.put(std::uint64_t{frame.pairs()});
     for (const Column<Key>& keys : frame.key) {
       for (const Key key : keys) put_key(key);
     }
-    visit_frame(frame, [&](const auto& column) { put_column(column); });
+    for (const Column<Key>& keys : frame.key) {
+      out_.put(std::uint64_t{keys.size()});
+      for (const Key key : keys) out_.put(known.data[key.id]);
+    }
+    visit_frame(
+        frame, [&](const auto& column) { put_column(column); },
+        [&](int side) {
+          out_.put(std::uint64_t{frame.manifolds});
+          for (std::size_t m = 0; m < frame.manifolds; ++m) out_.put(frame.part_of(side, m));
+        });
     out_.put(std::uint64_t{frame.runs.size()});
     for (const ContactRun& run : frame.runs) {
       out_.put(run.kind_a);
@@ -192,7 +204,16 @@ class ContactsReader {
       if (!make_room(keys, pairs, sizeof(Key))) return false;
       for (Key& key : keys) key = get_key();
     }
-    visit_frame(frame, [&](auto& column) { (void)in_.get_array(column); });
+    Column<ClientData> data[2] = {Column<ClientData>(frame.event.memory()),
+                                  Column<ClientData>(frame.event.memory())};
+    for (Column<ClientData>& of_side : data) {
+      if (in_.get_array(of_side) && of_side.size() != frame.key[0].size()) in_.fail();
+    }
+    visit_frame(
+        frame, [&](auto& column) { (void)in_.get_array(column); },
+        [&](int side) { (void)in_.get_array(frame.part[side]); });
+    frame.manifolds = frame.part[0].size();
+    frame.with_parts = true;
     const auto runs = in_.get<std::uint64_t>();
     if (!make_room(frame.runs, runs, 10)) return false;
     for (ContactRun& run : frame.runs) {
@@ -206,12 +227,12 @@ class ContactsReader {
     if (!read_carried(carried)) return false;
     const bool good = has_good_columns(frame) && are_good(frame, saved) &&
                       carried.size() == (carries_ ? saved.size() : 0);
-    return good ? take(saved, frame, records) : in_.fail();
+    return good ? take(saved, frame, data, records) : in_.fail();
   }
 
   /// What was found to be good.
-  [[nodiscard]] bool take(const Column<SavedRecord>& saved, const ContactFrame& frame,
-                          PairRecords& records) noexcept {
+  [[nodiscard]] bool take(const Column<SavedRecord>& saved, ContactFrame& frame,
+                          const Column<ClientData> (&data)[2], PairRecords& records) noexcept {
     KnownBodies& known = contacts_.known;
     const std::size_t bodies = scene_.keys.slot_count();
     const std::size_t noted = known.stamp.size();
@@ -228,8 +249,12 @@ class ContactsReader {
       for (std::size_t i = 0; i < frame.pairs(); ++i) {
         const Key key = frame.key[side][i];
         known.stamp[key.id] = key.stamp;
-        known.data[key.id] = frame.data[side][i];
+        known.data[key.id] = data[side][i];
       }
+    }
+    if (scene_.options.composites == nullptr) {
+      frame.with_parts = false;
+      for (Column<std::uint32_t>& part : frame.part) part.release();
     }
     return true;
   }
@@ -267,7 +292,6 @@ class ContactsReader {
     bool good = frame.event.size() == pairs && frame.part[1].size() == manifolds &&
                 frame.distance.size() == distances && frame.error_bound.size() == distances &&
                 frame.points.feature.size() == points;
-    for (const auto& column : frame.data) good = good && column.size() == pairs;
     for (const auto& column : frame.normal) good = good && column.size() == distances;
     for (const auto& column : frame.point) good = good && column.size() == places;
     for (const auto& column : frame.points.position) good = good && column.size() == points;

@@ -81,9 +81,9 @@ bool Collision::wake_dormant() {
   const std::size_t count = c.dormant_records.size();
   if (count == 0 || c.regroupings == scene_.regroupings) return true;
   Place at{static_cast<std::uint32_t>(c.frame.pairs()),
-           static_cast<std::uint32_t>(c.frame.manifolds()),
+           static_cast<std::uint32_t>(c.frame.manifolds),
            static_cast<std::uint32_t>(c.frame.points.size())};
-  if (!c.frame.resize(level_, at.pair + count, at.manifold + c.dormant.manifolds(),
+  if (!c.frame.resize(level_, at.pair + count, at.manifold + c.dormant.manifolds,
                       at.point + c.dormant.points.size()) ||
       !c.records_before.reserve(c.records.size() + count) ||
       (carries_ && !c.carried_before.resize(c.records.size() + count))) {
@@ -324,15 +324,13 @@ bool Collision::put_to_sleep() {
     if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
   }
   if (room.pair == 0) return true;
+  c.dormant.with_parts = c.frame.with_parts;
   if (!c.dormant.resize(level_, room.pair, room.manifold, room.point)) return false;
   Place at;
   for (std::size_t i = 0; i < slept.size(); ++i) {
     const BodyPair bodies = slept.order_of(i).bodies();
     const std::uint32_t ids[2] = {bodies.a, bodies.b};
-    for (int side = 0; side < 2; ++side) {
-      c.dormant.key[side][at.pair] = c.known.key(ids[side]);
-      c.dormant.data[side][at.pair] = c.known.data[ids[side]];
-    }
+    for (int side = 0; side < 2; ++side) c.dormant.key[side][at.pair] = c.known.key(ids[side]);
     c.dormant.event[at.pair] = ContactEvent::persisted;
     const std::uint32_t shown = std::exchange(slept.shown[i], at.pair);
     c.dormant.copy(c.before, shown, 1, at);

@@ -26,7 +26,7 @@ constexpr std::size_t kPlacesPerCall = 512;
 // Pairs are found while there is room for half as many more; they are as many in most frames. Where
 // memory for less is refused, there is more.
 void trim(PairBuffer& pairs) noexcept {
-  const std::size_t steady = pairs.size() + pairs.size() / 8;
+  const std::size_t steady = pairs.size() + pairs.size() / 16;
   if (pairs.capacity() * sizeof(Pair) >= kSmallColumn) (void)pairs.shrink(steady);
 }
 

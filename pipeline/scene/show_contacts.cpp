@@ -12,7 +12,7 @@ namespace winnow {
 namespace {
 
 /// Batches that find a little more than those before them need no more room.
-constexpr double kProjectionSlack = 1.03;
+constexpr double kProjectionSlack = 1.02;
 
 }  // namespace
 
@@ -31,6 +31,7 @@ bool Collision::open_frame() {
     c.carried.swap(c.carried_before);
   }
   const std::size_t records = carries_ ? pair_count() : 0;
+  c.frame.with_parts = scene_.options.composites != nullptr;
   if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records.bits, records) ||
       !resize_steadily(c.records.shown, records) || !c.carried.resize(records) ||
       !resize_steadily(c.shown_again, known_last_)) {
@@ -64,9 +65,7 @@ bool Collision::show_batch(Place& end) {
 bool Collision::grow_frame(const Place& end) {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
-  const bool has_room = end.pair <= frame.event.capacity() &&
-                        end.manifold <= frame.part[0].capacity() &&
-                        end.point <= frame.points.depth.capacity();
+  const bool has_room = frame.has_room(level_, end.pair, end.manifold, end.point);
   if (!has_room && batch_end_ < pair_count()) {
     const auto projected = [&](std::uint32_t taken) {
       const double all = static_cast<double>(taken) * pair_count() / batch_end_;
@@ -247,7 +246,6 @@ void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t
     for (int side = 0; side < 2; ++side) {
       const Key key = scene_.keys.key_of(ids[side]);
       frame.key[side][at] = key;
-      frame.data[side][at] = scene_.keys.client_data(ids[side]);
       persists = persists && c.known.key(ids[side]) == key;
     }
     frame.event[at] = persists ? ContactEvent::persisted : ContactEvent::begun;
@@ -278,7 +276,9 @@ void Collision::write_convex(std::uint32_t first, std::uint32_t end, Place& at) 
   write_bodies({touching, count}, at.pair);
   for (std::uint32_t i = 0; i < count; ++i) {
     frame.manifold_first[at.pair + i] = at.manifold + i;
-    frame.part[0][at.manifold + i] = frame.part[1][at.manifold + i] = kWholeShape;
+  }
+  for (Column<std::uint32_t>& part : frame.part) {
+    if (frame.with_parts) std::fill_n(part.data() + at.manifold, count, kWholeShape);
   }
   write_answers({touching, count}, at);
 }

@@ -2,6 +2,7 @@
 
 #include <winnow/c/scene.h>
 
+#include "core/memory/columns.h"
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
@@ -12,7 +13,14 @@
 namespace winnow::c {
 namespace {
 
-[[nodiscard]] winnow_contact_columns columns_of(const Contacts& contacts) noexcept {
+[[nodiscard]] const std::uint32_t* parts_of(const PartColumn& parts,
+                                            const Column<std::uint32_t>& whole) noexcept {
+  if (parts.empty()) return nullptr;
+  return parts.lookup().parts != nullptr ? parts.lookup().parts : whole.data();
+}
+
+[[nodiscard]] winnow_contact_columns columns_of(const winnow_contacts& handle) noexcept {
+  const Contacts& contacts = handle.value;
   static_assert(sizeof(ContactEvent) == 1 &&
                 static_cast<int>(ContactEvent::persisted) == WINNOW_EVENT_PERSISTED);
   winnow_contact_columns shown{};
@@ -20,16 +28,16 @@ namespace {
   std::size_t same = 0;
   show(contacts.a(), &shown.a, &shown.pairs);
   show(contacts.b(), &shown.b, &same);
-  shown.data_a = contacts.data_a().data();
-  shown.data_b = contacts.data_b().data();
+  shown.data_a = handle.data[0].data();
+  shown.data_b = handle.data[1].data();
   shown.event = reinterpret_cast<const std::uint8_t*>(contacts.event().data());
   show(contacts.runs(), &shown.runs, &shown.run_count);
   show(contacts.ended(), &shown.ended, &shown.ended_count);
   shown.carried = contacts.carried();
   shown.manifold_first = column(contacts.manifold_first());
   shown.manifolds = contacts.manifolds();
-  shown.part_a = column(contacts.part_a());
-  shown.part_b = column(contacts.part_b());
+  shown.part_a = parts_of(contacts.part_a(), handle.whole);
+  shown.part_b = parts_of(contacts.part_b(), handle.whole);
   shown.distance = column(contacts.distance());
   shown.error_bound = column(contacts.error_bound());
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,6 +69,20 @@ namespace {
 
 using namespace winnow::c;
 
+winnow::Status winnow_contacts::look_up() noexcept {
+  const bool is_whole = value.part_a().lookup().parts == nullptr;
+  const std::size_t known = whole.size();
+  if (!data[0].resize(value.size()) || !data[1].resize(value.size()) ||
+      (is_whole && known < value.manifolds() && !whole.resize(value.manifolds()))) {
+    value.clear();
+    return winnow::Status::out_of_memory;
+  }
+  std::ranges::copy(value.data_a(), data[0].begin());
+  std::ranges::copy(value.data_b(), data[1].begin());
+  std::fill(whole.begin() + known, whole.end(), winnow::kWholeShape);
+  return winnow::Status::ok;
+}
+
 winnow_status winnow_contacts_create(const winnow_memory* memory, winnow_contacts** contacts) {
   return create(memory, contacts);
 }
@@ -78,13 +100,15 @@ winnow_status winnow_contacts_clear(winnow_contacts* contacts) {
 winnow_status winnow_contacts_footprint(const winnow_contacts* contacts,
                                         winnow_footprint* footprint) {
   if (contacts == nullptr) return WINNOW_INVALID_ARGUMENT;
-  return write_footprint(contacts, contacts->value.footprint(), {}, footprint);
+  return write_footprint(contacts, contacts->value.footprint(),
+                         winnow::bytes_of(contacts->data[0], contacts->data[1], contacts->whole),
+                         footprint);
 }
 
 winnow_status winnow_contacts_columns(const winnow_contacts* contacts,
                                       winnow_contact_columns* columns) {
   if (contacts == nullptr || !is_sized(columns)) return WINNOW_INVALID_ARGUMENT;
-  write_sized(columns_of(contacts->value), *columns);
+  write_sized(columns_of(*contacts), *columns);
   return WINNOW_OK;
 }
 
@@ -94,7 +118,8 @@ winnow_status winnow_scene_collide(winnow_scene* scene, winnow_contact_level lev
   if (!are_given(scene, contacts) || !read_choice(level, winnow::ContactLevel::manifold, asked)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(scene->value.collide(asked, contacts->value));
+  const winnow::Status status = scene->value.collide(asked, contacts->value);
+  return answer(status == winnow::Status::ok ? contacts->look_up() : status);
 }
 
 winnow_status winnow_scene_reserve(winnow_scene* scene, const winnow_scene_room* room,

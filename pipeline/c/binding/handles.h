@@ -100,6 +100,14 @@ struct winnow_impact_result : winnow::c::Handle {
 struct winnow_contacts : winnow::c::Handle {
   using Handle::Handle;
   winnow::Contacts value{&memory};
+  /// What the library looks up, as columns: client data of a and of b, and the part of what has
+  /// none for every manifold.
+  winnow::Column<winnow::ClientData> data[2]{winnow::Column<winnow::ClientData>(&memory),
+                                             winnow::Column<winnow::ClientData>(&memory)};
+  winnow::Column<std::uint32_t> whole{&memory};
+
+  /// To be called when `value` was filled. Empty, and out_of_memory, if memory is refused.
+  [[nodiscard]] winnow::Status look_up() noexcept;
 };
 
 struct winnow_contact_groups : winnow::c::Handle {

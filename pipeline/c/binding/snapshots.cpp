@@ -105,6 +105,8 @@ winnow_status winnow_scene_save_contacts(const winnow_scene* scene, const winnow
 winnow_status winnow_scene_load_contacts(const winnow_scene* scene, const uint8_t* bytes,
                                          size_t count, winnow_contacts* contacts) {
   if (!are_given(scene, contacts)) return WINNOW_INVALID_ARGUMENT;
-  return load_from(bytes, count,
-                   [&](auto saved) { return scene->value.load_contacts(saved, contacts->value); });
+  return load_from(bytes, count, [&](auto saved) {
+    const winnow::Status status = scene->value.load_contacts(saved, contacts->value);
+    return status == winnow::Status::ok ? contacts->look_up() : status;
+  });
 }
