@@ -114,6 +114,34 @@ TEST(Column, gets_by_with_less_when_generous_growth_is_refused) {
   EXPECT_EQ(column.capacity(), 80U);
 }
 
+TEST(Column, shrinks_to_no_less_than_it_holds) {
+  CountingMemory memory;
+  Column<std::uint32_t> column(&memory);
+  ASSERT_TRUE(column.reserve(1000));
+  for (std::uint32_t i = 0; i < 20; ++i) ASSERT_TRUE(column.push_back(i));
+  ASSERT_TRUE(column.shrink(100));
+  EXPECT_EQ(column.capacity(), 112U);
+  ASSERT_TRUE(column.shrink(2000));
+  EXPECT_EQ(column.capacity(), 112U);
+  ASSERT_TRUE(column.shrink(0));
+  EXPECT_EQ(column.capacity(), 32U);
+  ASSERT_EQ(column.size(), 20U);
+  for (std::uint32_t i = 0; i < 20; ++i) EXPECT_EQ(column[i], i);
+  EXPECT_EQ(memory.outstanding(), 128U);
+}
+
+TEST(Column, that_cannot_get_less_keeps_what_it_has) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
+  CountingMemory memory;
+  Column<std::uint32_t> column(&memory);
+  ASSERT_TRUE(column.reserve(1000));
+  ASSERT_TRUE(column.push_back(7));
+  memory.refuse_one_after(0);
+  EXPECT_FALSE(column.shrink(16));
+  EXPECT_EQ(column.capacity(), 1008U);
+  EXPECT_EQ(column[0], 7U);
+}
+
 TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;

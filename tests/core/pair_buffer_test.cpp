@@ -32,6 +32,16 @@ TEST(PairBuffer, keeps_its_memory_when_cleared) {
   EXPECT_EQ(buffer.footprint().results.used, 0U);
 }
 
+TEST(PairBuffer, gives_room_back_and_keeps_its_pairs) {
+  PairBuffer buffer;
+  ASSERT_TRUE(buffer.reserve(1000));
+  for (ObjectId i = 0; i < 10; ++i) ASSERT_TRUE(buffer.edit().push_back({i, i + 1}));
+  ASSERT_TRUE(buffer.shrink(16));
+  EXPECT_EQ(buffer.capacity(), 16U);
+  ASSERT_EQ(buffer.size(), 10U);
+  EXPECT_EQ(buffer[9], (Pair{9, 10}));
+}
+
 TEST(PairBuffer, puts_the_pairs_first_that_are_asked_for_and_loses_none) {
   for (const std::size_t count : {0U, 1U, 2U, 100U}) {
     for (const ObjectId step : {1U, 2U, 7U, 1000U}) {

@@ -1,8 +1,10 @@
-// Scenes of more pairs than are answered at a time, and pairs that are left out because balls
-// around their bodies are apart.
+// Scenes of more pairs than are answered at a time, and of more bodies than get boxes at a time;
+// pairs that are left out because balls around their bodies are apart; what none of this takes.
 
 #include <gtest/gtest.h>
+#include <winnow/pipeline/composite_pool.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
 
 namespace winnow::test {
@@ -116,6 +119,119 @@ TEST(SceneBatches, tell_where_each_pair_was) {
   EXPECT_EQ(contacts.ended().size(), before.size() - persisted);
   EXPECT_GT(persisted, 0U);
   EXPECT_GT(contacts.ended().size(), 0U);
+}
+
+/// More than twice as many as get their boxes at a time.
+constexpr std::size_t kManyBodies = 40000;
+constexpr Motion kMotionOf[] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
+
+/// Balls in rows, each of which touches those beside it.
+class Rows {
+ public:
+  Rows() {
+    ShapeId ball;
+    EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+    for (std::size_t i = 0; i < kManyBodies; ++i) {
+      BodyDefinition body{.shape = ball, .data = 7 * i};
+      body.pose =
+          Pose::at(0.99 * static_cast<double>(i % 200), 2.0 * static_cast<double>(i / 200), 0.0);
+      bodies.push_back(body);
+    }
+  }
+
+  ShapePool pool;
+  std::vector<BodyDefinition> bodies;
+};
+
+TEST(SceneBatches, of_boxes_leave_no_body_where_it_was) {
+  Rows rows;
+  CountingMemory memory;
+  Scene scene(rows.pool, {.memory = &memory});
+  Contacts contacts;
+  std::vector<Key> keys(kManyBodies);
+  ASSERT_EQ(scene.add(rows.bodies, keys), Status::ok);
+  EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  std::vector<Pose> poses(kManyBodies);
+  // A third of the touches ends, near where the bodies were and then far away.
+  for (const double far : {0.0, 1e6}) {
+    for (std::size_t i = 0; i < kManyBodies; ++i) {
+      Pose& pose = rows.bodies[i].pose;
+      pose.position[1] += 0.1 * static_cast<double>((i + (far > 0.0 ? 1 : 0)) % 3);
+      pose.position[2] = far;
+      poses[i] = pose;
+    }
+    ASSERT_EQ(scene.move(keys, poses), Status::ok);
+    ASSERT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
+    Scene fresh(rows.pool, {});
+    Contacts expected;
+    std::vector<Key> fresh_keys(kManyBodies);
+    ASSERT_EQ(fresh.add(rows.bodies, fresh_keys), Status::ok);
+    ASSERT_EQ(fresh.collide(ContactLevel::distance, expected), Status::ok);
+    ASSERT_GT(contacts.size(), kManyBodies / 4);
+    ASSERT_LT(contacts.size(), kManyBodies);
+    EXPECT_TRUE(std::ranges::equal(contacts.data_a(), expected.data_a()));
+    EXPECT_TRUE(std::ranges::equal(contacts.data_b(), expected.data_b()));
+    EXPECT_TRUE(std::ranges::equal(contacts.distance(), expected.distance()));
+    EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
+  }
+}
+
+TEST(SceneBatches, of_bodies_that_leave_take_only_these) {
+  Rows rows;
+  for (std::size_t i = 0; i < kManyBodies; ++i) rows.bodies[i].motion = kMotionOf[i % 3];
+  Scene scene(rows.pool, {});
+  Contacts contacts;
+  std::vector<Key> keys(kManyBodies);
+  ASSERT_EQ(scene.add(rows.bodies, keys), Status::ok);
+  std::vector<Key> leaving;
+  for (std::size_t i = 0; i < kManyBodies; i += 2) leaving.push_back(keys[i]);
+  ASSERT_EQ(scene.remove(leaving), Status::ok);
+  EXPECT_EQ(scene.size(), kManyBodies / 2);
+  for (std::size_t i = 0; i < kManyBodies; ++i) EXPECT_EQ(scene.contains(keys[i]), i % 2 == 1);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(static_cast<double>(scene.size(kMotionOf[i])), kManyBodies / 6.0, 1.0);
+  }
+  ASSERT_EQ(scene.collide(ContactLevel::pairs, contacts), Status::ok);
+  EXPECT_EQ(contacts.size(), 0U);
+}
+
+// Of what is shown a contact at this level takes 85 bytes, and 8 where shapes may be composite; the
+// rest is what bodies, pairs and partitions hold.
+TEST(SceneBatches, take_few_bytes_a_contact) {
+  ShapePool pool;
+  ShapeId ball;
+  ASSERT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+  Random random(5);
+  std::vector<BodyDefinition> bodies(30000, BodyDefinition{.shape = ball});
+  const double side = std::cbrt(static_cast<double>(bodies.size()) * 0.29);
+  for (BodyDefinition& body : bodies) {
+    for (double& p : body.pose.position) p = random.uniform(0.0, side);
+  }
+  const CompositePool composites(pool);
+  std::size_t results[2];
+  for (int with = 0; with < 2; ++with) {
+    CountingMemory memory;
+    Scene scene(pool, {.memory = &memory,
+                       .execution = Execution::serial(),
+                       .composites = with == 1 ? &composites : nullptr});
+    Contacts contacts(&memory);
+    std::vector<Key> keys(bodies.size());
+    ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_EQ(scene.move(keys[0], bodies[0].pose), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
+    }
+    ASSERT_GT(contacts.size(), 6 * bodies.size());
+    EXPECT_EQ(scene.footprint().total().reserved + contacts.footprint().total().reserved,
+              memory.outstanding());
+    EXPECT_LT(memory.outstanding(), (with == 0 ? 170 : 178) * contacts.size());
+    results[with] = contacts.footprint().results.used / contacts.size();
+    EXPECT_TRUE(std::ranges::all_of(contacts.part_a(),
+                                    [](std::uint32_t part) { return part == kWholeShape; }));
+    EXPECT_EQ(contacts.part_b().size(), contacts.size());
+  }
+  EXPECT_EQ(results[0], 85U);
+  EXPECT_EQ(results[1], 93U);
 }
 
 /// A size of bodies, and how far from the origin they are.
