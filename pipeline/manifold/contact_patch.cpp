@@ -74,11 +74,20 @@ struct SharedPatch {
 
   SharedPatch(const Patch& a, const Patch& b, const double normal[3], double margin) noexcept
       : frame(normal), corners(0.0), rounding{a.rounding, b.rounding} {
-    const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
-    corners.same = kSamePlace * std::max(outline[0].size, outline[1].size);
-    find_meetings(outline[0], outline[1], corners);
-    put_deepest_first();
-    drop_beyond(margin);
+    meet({a, frame, 1.0}, {b, frame, -1.0}, margin);
+  }
+  SharedPatch(const SeenFaces& faces, double margin) noexcept
+      : frame(faces), corners(0.0), rounding{faces.rounding[0], faces.rounding[1]} {
+    meet({faces, 0}, {faces, 1}, margin);
+  }
+
+  /// Writes the deepest one and those that span the largest area with it.
+  std::uint32_t write_widest(ContactPoint* out) const noexcept {
+    std::uint32_t chosen[kManifoldPoints] = {0, 1, 2, 3};
+    const std::uint32_t found = corners.count;
+    const std::uint32_t count = found > kManifoldPoints ? spread(corners, chosen) : found;
+    for (std::uint32_t i = 0; i < count; ++i) out[i] = contact(chosen[i]);
+    return count;
   }
 
   [[nodiscard]] ContactPoint contact(std::uint32_t i) const noexcept {
@@ -86,6 +95,13 @@ struct SharedPatch {
   }
 
  private:
+  void meet(const Outline& a, const Outline& b, double margin) noexcept {
+    corners.same = kSamePlace * std::max(a.size, b.size);
+    find_meetings(a, b, corners);
+    put_deepest_first();
+    drop_beyond(margin);
+  }
+
   [[nodiscard]] static double rise(const PatchMeeting& m) noexcept {
     return m.height[0] - m.height[1];
   }
@@ -115,12 +131,11 @@ static_assert(kSharedCorners == 2 * kOutlineVertices);
 std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
                             ContactPoint* out) noexcept {
   if (a.count == 0 || b.count == 0) return 0;
-  const SharedPatch shared(a, b, normal, margin);
-  std::uint32_t chosen[kManifoldPoints] = {0, 1, 2, 3};
-  const std::uint32_t found = shared.corners.count;
-  const std::uint32_t count = found > kManifoldPoints ? spread(shared.corners, chosen) : found;
-  for (std::uint32_t i = 0; i < count; ++i) out[i] = shared.contact(chosen[i]);
-  return count;
+  return SharedPatch(a, b, normal, margin).write_widest(out);
+}
+
+std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept {
+  return SharedPatch(faces, margin).write_widest(out);
 }
 
 std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
@@ -137,6 +152,17 @@ Patch view(const FlatPatch& p) {
   return {p.vertex, p.vertex_feature, p.edge_feature, p.count, p.feature, p.rounding};
 }
 
+// Without places.
+FlatPatch named(const FaceNames& names, double rounding) {
+  FlatPatch patch;
+  patch.count = names.count;
+  patch.feature = names.face;
+  patch.rounding = rounding;
+  std::copy_n(names.vertex, 4, patch.vertex_feature);
+  std::copy_n(names.edge, 4, patch.edge_feature);
+  return patch;
+}
+
 }  // namespace
 
 FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
@@ -147,44 +173,23 @@ FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
   const std::uint32_t k = (i + 1) % 3;
   const std::uint32_t l = (i + 2) % 3;
   const bool up = rise[i] > 0.0;
-  FlatPatch patch;
-  patch.count = 4;
-  patch.feature = 2 * i + (up ? 1 : 0);
-  patch.rounding = box.rounding;
-  // Corners in the order (-, -), (+, -), (+, +), (-, +) of k and l.
-  constexpr bool kPlus[4][2] = {{false, false}, {true, false}, {true, true}, {false, true}};
+  const FaceNames& names = kFaceNames[2 * i + (up ? 1 : 0)];
+  FlatPatch patch = named(names, box.rounding);
   for (std::uint32_t c = 0; c < 4; ++c) {
-    const bool plus_k = kPlus[c][0];
-    const bool plus_l = kPlus[c][1];
     const double arm_i = up ? box.half[i] : -box.half[i];
-    const double arm_k = plus_k ? box.half[k] : -box.half[k];
-    const double arm_l = plus_l ? box.half[l] : -box.half[l];
+    const double arm_k = kPlusCorner[c][0] ? box.half[k] : -box.half[k];
+    const double arm_l = kPlusCorner[c][1] ? box.half[l] : -box.half[l];
     for (int r = 0; r < 3; ++r) {
       patch.vertex[c][r] = box.center[r] + (arm_i * box.axis[i][r] +
                                             (arm_k * box.axis[k][r] + arm_l * box.axis[l][r]));
     }
-    patch.vertex_feature[c] =
-        (up ? 1U << i : 0U) | (plus_k ? 1U << k : 0U) | (plus_l ? 1U << l : 0U);
-    // Edges run along k, l, k, l.
-    const std::uint32_t along = c % 2 == 0 ? k : l;
-    const std::uint32_t other = c % 2 == 0 ? (plus_l ? 1U << l : 0U) : (plus_k ? 1U << k : 0U);
-    const std::uint32_t bits = (up ? 1U << i : 0U) | other;
-    const std::uint32_t low = bits & ((1U << along) - 1U);
-    patch.edge_feature[c] = 4 * along + (low | (bits >> (along + 1U)) << along);
   }
   return patch;
 }
 
 FlatPatch triangle_patch(const TriangleFrame& triangle) noexcept {
-  FlatPatch patch;
-  patch.count = 3;
-  patch.feature = 0;
-  patch.rounding = triangle.rounding;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    std::copy_n(triangle.vertex[i], 3, patch.vertex[i]);
-    patch.vertex_feature[i] = i;
-    patch.edge_feature[i] = i;
-  }
+  FlatPatch patch = named(kFaceNames[kTriangleFace], triangle.rounding);
+  for (std::uint32_t i = 0; i < 3; ++i) std::copy_n(triangle.vertex[i], 3, patch.vertex[i]);
   return patch;
 }
 

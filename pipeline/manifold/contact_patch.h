@@ -21,6 +21,11 @@ inline constexpr double kEdgeSine = 0.25;
 inline constexpr double kCapCosine = 0.7071;
 inline constexpr std::uint32_t kRimCorners = 16;
 inline constexpr std::uint32_t kSideLine = 2 * kRimCorners;
+/// A polygon whose area is this much smaller than its size squared, or whose plane is so close to
+/// the normal, looks like a segment.
+inline constexpr double kThin = 1e-12;
+inline constexpr double kSteep = 1e-6;
+
 /// What a feature id says about its number: the upper two of 32 bits.
 enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
 inline constexpr std::uint32_t kFeatureKindShift = 30;
@@ -105,6 +110,39 @@ struct FlatPatch {
 /// contact_patch of two of them.
 std::uint32_t flat_contacts(const FlatPatch& a, const FlatPatch& b, const double normal[3],
                             double margin, ContactPoint* out) noexcept;
+
+/// Faces of boxes by number, and the triangle, as kernels see them.
+inline constexpr std::uint32_t kTriangleFace = 6;
+
+/// Two faces seen along their normal, of one of many pairs: what the outlines of box_patch or
+/// triangle_patch are, but for names, neither of them thin or steep. A number stands in each of the
+/// rows from `rows` on, `kStride` apart.
+struct SeenFaces {
+  static constexpr std::uint32_t kStride = 8;
+  /// Rows of a face. Coordinates of corner i are i rows on.
+  enum Row : std::uint8_t {
+    kX = 0,
+    kY = 4,
+    kH = 8,
+    kSize = 12,
+    kSlope = 13,
+    kCosine = 15,
+    kFaceRows = 16
+  };
+  /// Rows of the pair: the axes along which they are seen, then both faces.
+  static constexpr std::uint32_t kFaces = 9;
+  static constexpr std::uint32_t kRows = kFaces + 2 * kFaceRows;
+
+  const double* rows;
+  /// Numbers of faces, or kTriangleFace.
+  std::uint32_t face[2];
+  /// Corners are clockwise.
+  bool clockwise[2];
+  double rounding[2];
+};
+
+/// contact_patch of them.
+std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept;
 
 /// The point of a where two patches meet deepest along the normal.
 void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],

@@ -12,10 +12,6 @@
 namespace winnow {
 namespace {
 
-// A polygon whose area is this much smaller than its size squared, or whose plane is so close to
-// the normal, looks like a segment.
-constexpr double kThin = 1e-12;
-constexpr double kSteep = 1e-6;
 // Slopes that differ by less are the same.
 constexpr double kSameRise = 1e-9;
 
@@ -63,6 +59,39 @@ Outline::Outline(const Patch& patch, const PatchFrame& frame, double up) noexcep
       std::swap(vertex_id[0], vertex_id[1]);
     }
     count = 1;
+  }
+}
+
+PatchFrame::PatchFrame(const SeenFaces& faces) noexcept {
+  const double* row = faces.rows;
+  for (auto& along : axis) {
+    for (double& x : along) {
+      x = *row;
+      row += SeenFaces::kStride;
+    }
+  }
+}
+
+Outline::Outline(const SeenFaces& faces, int side) noexcept {
+  const FaceNames& names = kFaceNames[faces.face[side]];
+  const double* const rows =
+      faces.rows + (SeenFaces::kFaces + side * SeenFaces::kFaceRows) * SeenFaces::kStride;
+  const auto number = [&](std::uint32_t row) { return rows[row * SeenFaces::kStride]; };
+  face_id = feature_id(FeatureKind::face, names.face);
+  count = names.count;
+  size = number(SeenFaces::kSize);
+  slope[0] = number(SeenFaces::kSlope);
+  slope[1] = number(SeenFaces::kSlope + 1);
+  cosine = number(SeenFaces::kCosine);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t corner = faces.clockwise[side] ? count - 1 - i : i;
+    x[i] = number(SeenFaces::kX + corner);
+    y[i] = number(SeenFaces::kY + corner);
+    h[i] = number(SeenFaces::kH + corner);
+    vertex_id[i] = feature_id(FeatureKind::vertex, names.vertex[corner]);
+    // Turned round, the edge that ended at a vertex begins there.
+    const std::uint32_t edge = faces.clockwise[side] ? (2 * count - 2 - i) % count : i;
+    edge_id[i] = feature_id(FeatureKind::edge, names.edge[edge]);
   }
 }
 

@@ -22,11 +22,51 @@ struct PatchFrame {
 
   /// `normal` is a unit vector.
   explicit PatchFrame(const double normal[3]) noexcept;
+  explicit PatchFrame(const SeenFaces& faces) noexcept;
 };
 
 [[nodiscard]] constexpr std::uint32_t feature_id(FeatureKind kind, std::uint32_t number) noexcept {
   return static_cast<std::uint32_t>(kind) << kFeatureKindShift | (number & 0x3FFFFFFFU);
 }
+
+/// What the faces of boxes and triangles are called, and their vertices and edges: as numbers of
+/// their kind.
+struct FaceNames {
+  std::uint32_t count;
+  std::uint32_t face;
+  std::uint32_t vertex[4];
+  std::uint32_t edge[4];
+};
+
+/// Corners of face 2 i + up of a box lie at (-, -), (+, -), (+, +), (-, +) of the axes after i.
+inline constexpr bool kPlusCorner[4][2] = {
+    {false, false}, {true, false}, {true, true}, {false, true}};
+
+/// Vertices are numbered by the bits x > 0, y > 0, z > 0, edges by 4 x their axis and the bits of
+/// the others.
+[[nodiscard]] constexpr FaceNames box_face_names(std::uint32_t face) noexcept {
+  const std::uint32_t i = face / 2;
+  const std::uint32_t k = (i + 1) % 3;
+  const std::uint32_t l = (i + 2) % 3;
+  const std::uint32_t up = face % 2 << i;
+  FaceNames names{4, face, {}, {}};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const std::uint32_t at_k = kPlusCorner[c][0] ? 1U << k : 0U;
+    const std::uint32_t at_l = kPlusCorner[c][1] ? 1U << l : 0U;
+    names.vertex[c] = up | at_k | at_l;
+    // Edges run along k, l, k, l.
+    const std::uint32_t along = c % 2 == 0 ? k : l;
+    const std::uint32_t bits = up | (c % 2 == 0 ? at_l : at_k);
+    const std::uint32_t low = bits & ((1U << along) - 1U);
+    names.edge[c] = 4 * along + (low | (bits >> (along + 1U)) << along);
+  }
+  return names;
+}
+
+/// By face of a box, then the triangle.
+inline constexpr FaceNames kFaceNames[kTriangleFace + 1] = {
+    box_face_names(0), box_face_names(1), box_face_names(2),           box_face_names(3),
+    box_face_names(4), box_face_names(5), {3, 0, {0, 1, 2}, {0, 1, 2}}};
 
 /// A patch seen along the normal: counter-clockwise in x and y, with its heights h. What looks like
 /// a segment or a point from there has become one.
@@ -48,6 +88,7 @@ struct Outline {
 
   /// `up` is 1 for the patch of a, whose highest point is its deepest, and -1 for that of b.
   Outline(const Patch& patch, const PatchFrame& frame, double up) noexcept;
+  Outline(const SeenFaces& faces, int side) noexcept;
 
   /// Height of the polygon's plane.
   [[nodiscard]] double height(double px, double py) const noexcept {

@@ -5,21 +5,35 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::flat {
 namespace {
 
+/// Where the numbers of a staged pair begin.
+enum BoxPlace {
+  kAxesA = 0,
+  kAxesB = 9,
+  kHalfA = 18,
+  kHalfB = 21,
+  kOffset = 24,
+  kNormal = 27,
+  kRoundingA = 30,
+  kRoundingB,
+  kCount
+};
+
+// Called by both precisions.
+[[gnu::noinline]] void see_boxes(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+  const Lanes<double> zero(0.0);
+  const Doubles3 normal = rows.vector(kNormal);
+  const auto face = [&](int axes, int half, const Doubles3& center, const Doubles3& along)
+      __attribute__((always_inline)) {
+    const Doubles3 axis[3] = {rows.vector(axes), rows.vector(axes + 3), rows.vector(axes + 6)};
+    return face_of_box(axis, rows.vector(half), center, along);
+  };
+  seen.see(face(kAxesA, kHalfA, {zero, zero, zero}, normal),
+           face(kAxesB, kHalfB, rows.vector(kOffset), -normal), normal);
+}
+
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxStage {
-  /// Where the numbers begin.
-  enum Place {
-    kAxesA = 0,
-    kAxesB = 9,
-    kHalfA = 18,
-    kHalfB = 21,
-    kOffset = 24,
-    kNormal = 27,
-    kRoundingA = 30,
-    kRoundingB,
-    kCount
-  };
   Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxStage(const BoxPair<T>& pair, const Vec3<T>& normal) {
@@ -33,6 +47,10 @@ struct BoxStage {
     stage.put(kRoundingB, pair.rounding_b);
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
+  [[nodiscard]] double rounding(int side, unsigned lane) const {
+    return static_cast<double>(stage.value[kRoundingA + side][lane]);
+  }
+  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) { see_boxes(rows, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;

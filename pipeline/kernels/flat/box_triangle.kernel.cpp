@@ -277,20 +277,32 @@ template <typename T>
   return p;
 }
 
+/// Where the numbers of a staged pair begin.
+enum BoxTrianglePlace {
+  kAxes = 0,
+  kHalf = 9,
+  kVertices = 12,
+  kNormal = 21,
+  kOffset = 24,
+  kBoxRounding = 27,
+  kTriangleRounding,
+  kCount
+};
+
+// Called by both precisions.
+[[gnu::noinline]] void see_box_and_triangle(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+  const Lanes<double> zero(0.0);
+  const Doubles3 normal = rows.vector(kNormal);
+  const Doubles3 axis[3] = {rows.vector(kAxes), rows.vector(kAxes + 3), rows.vector(kAxes + 6)};
+  seen.see(face_of_box(axis, rows.vector(kHalf), {zero, zero, zero}, normal),
+           face_of_triangle(rows.vector(kVertices), rows.vector(kVertices + 3),
+                            rows.vector(kVertices + 6)),
+           normal);
+}
+
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct BoxTriangleStage {
-  /// Where the numbers begin.
-  enum Place {
-    kAxes = 0,
-    kHalf = 9,
-    kVertices = 12,
-    kNormal = 21,
-    kOffset = 24,
-    kBoxRounding = 27,
-    kTriangleRounding,
-    kCount
-  };
   Stage<T, kCount> stage;
 
   [[gnu::always_inline]] BoxTriangleStage(const BoxTrianglePair<T>& pair, const Vec3<T>& normal) {
@@ -303,6 +315,12 @@ struct BoxTriangleStage {
     stage.put(kTriangleRounding, pair.b.rounding);
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
+  [[nodiscard]] double rounding(int side, unsigned lane) const {
+    return static_cast<double>(stage.value[kBoxRounding + side][lane]);
+  }
+  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+    see_box_and_triangle(rows, seen);
+  }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;

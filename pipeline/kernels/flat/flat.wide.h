@@ -12,6 +12,7 @@
 // axis_points and closest_by_vertices; a Staged holds its lanes in memory.
 
 #include "pipeline/kernels/answers.wide.h"
+#include "pipeline/kernels/flat/seen_faces.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME::flat {
@@ -271,6 +272,17 @@ struct Stage {
     put(at + 6, axes.z);
   }
   [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
+  /// Lanes 8 `group` to 8 `group` + 7.
+  [[nodiscard]] DoubleRows<Count> in_double(int group) const {
+    DoubleRows<Count> rows;
+    for (int i = 0; i < Count; ++i) {
+      for (std::uint32_t lane = 0; lane < SeenFaces::kStride; ++lane) {
+        rows.value[i][lane] =
+            static_cast<double>(value[i][static_cast<std::uint32_t>(group) * 8 + lane]);
+      }
+    }
+    return rows;
+  }
   [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
     for (int i = 0; i < count; ++i) out[i] = static_cast<double>(value[at + i][lane]);
   }
@@ -415,6 +427,22 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
   return answer;
 }
 
+/// Contacts of a pair, or the one where its faces come closest.
+template <typename Staged>
+inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, unsigned lane,
+                                 double margin, ContactPoint* points) {
+  const unsigned of_eight = lane % SeenFaces::kStride;
+  if (seen.is_plain(of_eight)) {
+    return seen_contacts(seen.faces(of_eight, stage.rounding(0, lane), stage.rounding(1, lane)),
+                         margin, points);
+  }
+  FlatPatch a;
+  FlatPatch b;
+  double normal[3];
+  stage.patches(lane, a, b, normal);
+  return flat_contacts(a, b, normal, margin, points);
+}
+
 /// Contacts of the lanes of `touching` between the patches of `stage`. Returns the lanes in which
 /// they leave out where the shapes are closest: no manifolds.
 template <typename T, typename Staged>
@@ -425,23 +453,25 @@ template <typename T, typename Staged>
   Stage<T, 2> expected;
   expected.put(0, core.distance);
   expected.put(1, core.error_bound + scale * Lanes<T>(kDeepest<T>));
+  constexpr int kGroups = Lanes<T>::kCount / static_cast<int>(SeenFaces::kStride);
+  SeenPairs seen[kGroups];
+  for (int group = 0; group < kGroups; ++group) {
+    if ((touching >> (8 * group) & 0xFFU) == 0) continue;
+    Staged::see(stage.stage.in_double(group), seen[group]);
+  }
   Mask16 missed = 0;
-  write_patch_contacts<T>(job, given, touching, stage.offset(), sign,
-                          [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
-                            FlatPatch a;
-                            FlatPatch b;
-                            double normal[3];
-                            stage.patches(lane, a, b, normal);
-                            const auto count = flat_contacts(a, b, normal, job.margin, points);
-                            if (count > 0) {
-                              const T off =
-                                  static_cast<T>(points[0].depth) + expected.value[0][lane];
-                              const T most = expected.value[1][lane];
-                              if (off <= most && off >= -most) return count;
-                            }
-                            missed |= 1U << lane;
-                            return 0;
-                          });
+  write_patch_contacts<T>(
+      job, given, touching, stage.offset(), sign,
+      [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
+        const std::uint32_t count = contacts_of(stage, seen[lane / 8], lane, job.margin, points);
+        if (count > 0) {
+          const T off = static_cast<T>(points[0].depth) + expected.value[0][lane];
+          const T most = expected.value[1][lane];
+          if (off <= most && off >= -most) return count;
+        }
+        missed |= 1U << lane;
+        return 0;
+      });
   return missed;
 }
 

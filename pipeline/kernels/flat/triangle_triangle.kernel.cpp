@@ -247,11 +247,28 @@ template <typename T>
   return p;
 }
 
+/// Where the numbers of a staged pair begin.
+enum TrianglePlace {
+  kA = 0,
+  kB = 9,
+  kNormal = 18,
+  kOffset = 21,
+  kRoundingA = 24,
+  kRoundingB,
+  kCount
+};
+
+// Called by both precisions.
+[[gnu::noinline]] void see_triangles(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+  const auto face = [&](int at) __attribute__((always_inline)) {
+    return face_of_triangle(rows.vector(at), rows.vector(at + 3), rows.vector(at + 6));
+  };
+  seen.see(face(kA), face(kB), rows.vector(kNormal));
+}
+
 // Where a pair stands, and its normal, in memory.
 template <typename T>
 struct TriangleStage {
-  /// Where the numbers begin.
-  enum Place { kA = 0, kB = 9, kNormal = 18, kOffset = 21, kRoundingA = 24, kRoundingB, kCount };
   Stage<T, kCount> stage;
 
   [[gnu::always_inline]] TriangleStage(const TrianglePair<T>& pair, const Vec3<T>& normal) {
@@ -265,6 +282,10 @@ struct TriangleStage {
     stage.put(kRoundingB, pair.b.rounding);
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
+  [[nodiscard]] double rounding(int side, unsigned lane) const {
+    return static_cast<double>(stage.value[kRoundingA + side][lane]);
+  }
+  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) { see_triangles(rows, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
