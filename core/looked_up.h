@@ -29,32 +29,46 @@ class LookedUp {
     /// To element `at` of a column.
     iterator(const Lookup& lookup, std::size_t at) noexcept : lookup_(lookup), at_(at) {}
 
+    /// The element.
     [[nodiscard]] value_type operator*() const noexcept { return lookup_(at_); }
+    /// The element `i` after it.
     [[nodiscard]] value_type operator[](difference_type i) const noexcept { return *(*this + i); }
+    /// On by one.
     iterator& operator++() noexcept { return *this += 1; }
+    /// Back by one.
     iterator& operator--() noexcept { return *this -= 1; }
+    /// On by one; returns where it was.
     iterator operator++(int) noexcept { return std::exchange(*this, *this + 1); }
+    /// Back by one; returns where it was.
     iterator operator--(int) noexcept { return std::exchange(*this, *this - 1); }
+    /// On by so many.
     iterator& operator+=(difference_type by) noexcept {
       at_ += static_cast<std::size_t>(by);
       return *this;
     }
+    /// Back by so many.
     iterator& operator-=(difference_type by) noexcept { return *this += -by; }
+    /// So many elements on.
     [[nodiscard]] friend iterator operator+(iterator at, difference_type by) noexcept {
       return at += by;
     }
+    /// So many elements on.
     [[nodiscard]] friend iterator operator+(difference_type by, iterator at) noexcept {
       return at += by;
     }
+    /// So many elements back.
     [[nodiscard]] friend iterator operator-(iterator at, difference_type by) noexcept {
       return at -= by;
     }
+    /// Elements from b on to a.
     [[nodiscard]] friend difference_type operator-(const iterator& a, const iterator& b) noexcept {
       return static_cast<difference_type>(a.at_) - static_cast<difference_type>(b.at_);
     }
+    /// True at the same element.
     [[nodiscard]] friend bool operator==(const iterator& a, const iterator& b) noexcept {
       return a.at_ == b.at_;
     }
+    /// In the order of elements.
     [[nodiscard]] friend auto operator<=>(const iterator& a, const iterator& b) noexcept {
       return a.at_ <=> b.at_;
     }

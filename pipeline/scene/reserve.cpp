@@ -70,9 +70,12 @@ Status SceneState::reserve(const SceneRoom& room, Pages pages) {
 bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
   const std::size_t bodies = bodies_of(room);
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
-  // One call is about the bodies of one set at a time.
+  // One call may be about all bodies, and gives boxes to those of one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
-  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body, chosen, left)) return false;
+  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
+      !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, left)) {
+    return false;
+  }
   if (pages == Pages::touched) {
     keys.touch();
     touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale);
