@@ -41,16 +41,19 @@ class Collision {
   void merge_dormant() noexcept;
   [[nodiscard]] bool list_records();
   void match(const PairRecords& records) noexcept;
-  [[nodiscard]] bool match_carried();
-  [[nodiscard]] bool decide();
-  [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept;
-  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
   [[nodiscard]] bool close_frame();
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool note_bodies();
+
+  // Contacts that are carried over (carry_over.cpp).
+  [[nodiscard]] bool match_carried();
+  [[nodiscard]] bool decide();
+  [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
+  void turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept;
+  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
+  [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
   // Where contacts were (contact_history.cpp).
   [[nodiscard]] bool begin_history() noexcept;
@@ -142,7 +145,6 @@ class Collision {
                     std::uint32_t& to) noexcept;
   void write_region(const ContactRegion& region, Place& to) noexcept;
   [[nodiscard]] bool write_runs();
-  [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
   [[nodiscard]] std::uint32_t pair_count() const noexcept {
     return static_cast<std::uint32_t>(scene_.pairs.size());

@@ -1,53 +1,17 @@
-// What is known of a scene's pairs from the last call: matched with the pairs of this one, kept
-// where they have hardly moved, told where they have ended.
+// What is known of a scene's pairs from the last call: matched with the pairs of this one, put
+// aside while they sleep, told where they have ended.
 
-#include <winnow/core/rotation.h>
 #include "core/sort/stretches.h"
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
-#include "pipeline/scene/motion_bound.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace winnow {
 namespace {
 
 constexpr std::size_t kPairsPerListing = 8192;
-
-// Relative error of turning a point in float, once.
-constexpr double kTurnError = 4.0e-7;
-
-// How far points of a body of this radius move when it turns.
-[[nodiscard]] double turn_bound(const double (&from)[4], const double (&to)[4],
-                                double radius) noexcept {
-  Pose a;
-  Pose b;
-  std::copy_n(from, 4, a.orientation);
-  std::copy_n(to, 4, b.orientation);
-  return motion_bound(a, b, radius);
-}
-
-struct PoseChange {
-  Eigen::Matrix3d m;
-
-  // R(to) R(from)^T for unit quaternions.
-  PoseChange(const double (&to)[4], const double (&from)[4]) noexcept
-      : m(rotation_of_unit(
-            product({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
-
-  template <typename T>
-  void apply(Column<T> (&column)[3], std::uint32_t i) const noexcept {
-    const double v[3] = {static_cast<double>(column[0][i]), static_cast<double>(column[1][i]),
-                         static_cast<double>(column[2][i])};
-    for (int k = 0; k < 3; ++k) {
-      column[k][i] = static_cast<T>(m(k, 0) * v[0] + m(k, 1) * v[1] + m(k, 2) * v[2]);
-    }
-  }
-};
 
 }  // namespace
 
@@ -137,153 +101,6 @@ void Collision::match(const PairRecords& records) noexcept {
     }
   });
 }
-
-// What may be carried over is matched before anything is answered.
-bool Collision::match_carried() {
-  if (!carries_) return true;
-  ContactsState& c = contacts_;
-  const std::size_t pairs = pair_count();
-  same_pairs_ = same_level_ && c.pairs_serial == scene_.pairs.serial() &&
-                c.records.size() == pairs && c.carried.size() == pairs;
-  if (!resize_steadily(c.origin, pairs)) return false;
-  if (same_pairs_) return true;
-  if (!resize_steadily(c.old_record, pairs)) return false;
-  match(c.records);
-  return true;
-}
-
-// Says of every pair where its contacts come from. False if the last frame can stay as it is.
-bool Collision::decide() {
-  if (!carries_) return true;
-  ContactsState& c = contacts_;
-  std::atomic<std::uint32_t> kept{0};
-  const bool may_keep = same_level_ && c.carried.size() == c.records.size();
-  for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
-    std::uint32_t count = 0;
-    for (std::uint32_t i = first; i < end; ++i) {
-      const BodyPair pair = scene_.pairs[i];
-      const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      Origin origin = origin_of_fresh(pair);
-      if (may_keep && record != kNoEntry && is_carried_over(pair) && keep(i, record)) {
-        origin = Origin::carried;
-        ++count;
-      }
-      c.origin[i] = static_cast<std::uint8_t>(origin);
-    }
-    kept.fetch_add(count, std::memory_order_relaxed);
-  });
-  c.carried_count = kept.load();
-  if (!same_pairs_ || c.carried_count != pair_count()) return true;
-  if (!c.is_settled) {
-    std::fill(c.frame.event.begin(), c.frame.event.end(), ContactEvent::persisted);
-    c.ended.clear();
-    c.is_settled = true;
-  }
-  return false;
-}
-
-// True if a pair has moved so little that its contacts stay, and turns them if it must.
-bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
-  ContactsState& c = contacts_;
-  const BodyPair bodies = scene_.pairs[pair];
-  const std::uint32_t since = c.clock;
-  if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
-  if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
-  CarriedPair& carried = c.carried[record];
-  const std::uint32_t shown = c.records.shown_of(record);
-  const Pose& a = scene_.pose[bodies.a];
-  const Pose& b = scene_.pose[bodies.b];
-  const Pose now = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
-                       static_cast<double>(carried.drift);
-  if (!(moved <= carried.limit)) return false;
-  if (shown == kNoEntry) return true;
-  const Pose unit = with_unit_turn(a);
-  const double turned =
-      turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
-  if (moved + turned == 0.0) return true;
-  if (!(moved + turned <= carried.limit)) {
-    const double drift = static_cast<double>(carried.radius_a) * kTurnError;
-    if (!(moved + drift <= carried.limit)) return false;
-    carried.drift = round_up(static_cast<double>(carried.drift) + drift);
-    turn(carried, shown, unit.orientation);
-  }
-  if (!carried.widened) {
-    carried.widened = true;
-    const std::uint32_t end = c.frame.manifold_first[shown + 1];
-    for (std::uint32_t m = c.frame.manifold_first[shown]; m < end; ++m) {
-      c.frame.error_bound[m] += scene_.options.carry_over;
-    }
-  }
-  return true;
-}
-
-// Normals and points follow body a.
-void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept {
-  ContactFrame& frame = contacts_.frame;
-  const PoseChange turn(to, carried.turn);
-  const std::uint32_t first = frame.manifold_first[shown];
-  const std::uint32_t end = frame.manifold_first[shown + 1];
-  for (std::uint32_t m = first; m < end; ++m) {
-    turn.apply(frame.normal, m);
-    if (level_ == ContactLevel::distance) turn.apply(frame.point, m);
-  }
-  if (level_ == ContactLevel::manifold) {
-    for (std::uint32_t p = frame.point_first[first]; p < frame.point_first[end]; ++p) {
-      turn.apply(frame.points.position, p);
-    }
-  }
-  std::copy_n(to, 4, carried.turn);
-}
-
-// How much farther than the margin a pair that does not touch is at least; of composite shapes that
-// of what the mid phase found near.
-double Collision::clearance(std::uint32_t pair) const noexcept {
-  const auto of = [&](const NarrowResult& answers, std::size_t at) {
-    // At level manifold the distance of what is farther than the margin may be a lower bound
-    // already, its error on the other side; half of it is one where the error is a rounding's.
-    const double beyond = answers.distance()[at] - limit_;
-    return std::max(beyond - answers.error_bound()[at],
-                    level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
-  };
-  double least = std::numeric_limits<double>::infinity();
-  if (origin_of(pair) == Origin::convex) {
-    least = of(scene_.answers, source_of(pair));
-  } else {
-    const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
-    for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-      least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
-    }
-  }
-  return least;
-}
-
-// Notes what a pair was found to be, to be carried over. Room was made.
-void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
-  ContactsState& c = contacts_;
-  const BodyPair bodies = scene_.pairs[pair];
-  c.records.bits[pair] = scene_.pairs.order(pair).bits;
-  c.records.shown[pair] = shown;
-  if (origin_of(pair) == Origin::carried) {
-    if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
-    return;
-  }
-  CarriedPair carried{};
-  const Pose& a = scene_.pose[bodies.a];
-  const Pose& b = scene_.pose[bodies.b];
-  const double radius_a = scene_.radius(bodies.a);
-  const double radius_b = scene_.radius(bodies.b);
-  carried.from_b = radius_a <= radius_b;
-  carried.relative = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  std::copy_n(with_unit_turn(a).orientation, 4, carried.turn);
-  carried.radius = round_up(std::min(radius_a, radius_b));
-  carried.radius_a = round_up(radius_a);
-  const double carry_over = scene_.options.carry_over;
-  const double clear = shown == kNoEntry ? clearance(pair) : carry_over;
-  carried.limit = origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over);
-  c.carried[pair] = carried;
-}
-
 // A pair that is not looked at because neither body is dynamic any more.
 bool Collision::sleeps(const BodyPair& pair) const noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
