@@ -21,6 +21,10 @@ constexpr std::size_t kWorthPlanning = 1024;
 // A plan begins so many refreshes earlier than it takes: the last one takes the order, and what is
 // foreseen comes sooner where objects fall.
 constexpr std::size_t kSpareRefreshes = 2;
+// A plan waits where a refresh brings so many times fewer changes than the one that began it, in so
+// many refreshes in a row at most: where little moves for good, it has to go on.
+constexpr std::size_t kLull = 4;
+constexpr std::size_t kLongestLull = 8;
 // A build is expected where the tail will have grown to this share of what makes it due.
 constexpr float kNearlyDue = 0.35F;
 
@@ -85,6 +89,8 @@ Status SpatialIndex::build() {
 
 bool SpatialIndex::start_plan(Structure& structure) noexcept {
   refreshes_before_plan_ = departures_.refreshes();
+  changed_at_plan_ = changed();
+  lull_ = 0;
   return plan_.start(rows_, structure, spare_rows(structure), wanted_parts());
 }
 
@@ -189,7 +195,22 @@ std::size_t SpatialIndex::planning_work(const Structure& structure) const noexce
   return passes * (plan_.underway() ? plan_.rows() : rows_.pool().rows());
 }
 
+std::size_t SpatialIndex::changed() const noexcept {
+  return rows_.stale().all() ? rows_.size() : rows_.stale().ids().size();
+}
+
+// A few objects that move are not to pay for what all wore out.
+void SpatialIndex::note_lull() noexcept {
+  const bool quiet = plan_.underway() && build_budget_ == 0 && kLull * changed() < changed_at_plan_;
+  lull_ = quiet ? lull_ + 1 : 0;
+}
+
+bool SpatialIndex::plan_waits() const noexcept {
+  return lull_ != 0 && lull_ <= kLongestLull;
+}
+
 void SpatialIndex::go_on_planning() noexcept {
+  if (plan_waits()) return;
   if (!plan_.underway() && (!build_is_near() || !start_plan(*structure_))) return;
   if (plan_.advance(planning_work(*plan_.structure()))) return;
   exchange_refused_ = exchanging();

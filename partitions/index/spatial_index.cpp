@@ -39,10 +39,11 @@ Status SpatialIndex::refresh() {
   exchange_refused_ = false;
   // Of rows that were put elsewhere nothing is planned any more.
   if (rows_.regions().planned == 0 || rows_.filters().has_environments()) give_up_plan();
+  note_lull();
   Status status = Status::ok;
   if (needs_build()) {
     status = build();
-  } else if (plan_.ready()) {
+  } else if (plan_.ready() && !plan_waits()) {
     status = take_order(true);
     if (status == Status::ok) status = absorb_changes(true);
   } else {

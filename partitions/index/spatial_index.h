@@ -183,6 +183,9 @@ class SpatialIndex {
   // Planning ahead.
   [[nodiscard]] bool plans_ahead() const noexcept;
   [[nodiscard]] std::size_t planning_work(const Structure& structure) const noexcept;
+  [[nodiscard]] std::size_t changed() const noexcept;
+  void note_lull() noexcept;
+  [[nodiscard]] bool plan_waits() const noexcept;
   void go_on_planning() noexcept;
   [[nodiscard]] bool build_is_near() const noexcept;
   [[nodiscard]] std::uint64_t most_wear() const noexcept;
@@ -222,7 +225,9 @@ class SpatialIndex {
   Growth tail_growth_;
   Growth wear_growth_;
   std::size_t refreshes_before_plan_ = 0;  // since the build before it
-  std::size_t unforeseen_ = 0;             // builds to wait for until one is foreseen again
+  std::size_t changed_at_plan_ = 0;  // objects, since the refresh before the one that began it
+  std::size_t lull_ = 0;             // refreshes in a row that changed far fewer
+  std::size_t unforeseen_ = 0;       // builds to wait for until one is foreseen again
 
   // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
   // have cost beyond that.

@@ -110,6 +110,47 @@ TEST(PlannedBuild, is_taken_before_it_is_due) {
   }
 }
 
+// Frame by frame all drift, until an order would be taken next.
+std::size_t frames_before_plan(const char* name) {
+  Drift drift(uniform_boxes(2000), 0.03F);
+  Partition partition(structure_named(name));
+  std::vector<Key> keys(drift.boxes.size());
+  EXPECT_EQ(partition.insert(drift.boxes, {}, keys), Status::ok);
+  std::size_t frames = 0;
+  while (partition.statistics().planned_builds == 0 && frames < kFrames) {
+    drift.go_on();
+    EXPECT_EQ(partition.update(keys, drift.boxes), Status::ok);
+    EXPECT_EQ(partition.refresh(), Status::ok);
+    ++frames;
+  }
+  return frames - 1;
+}
+
+TEST(PlannedBuild, waits_while_few_move_but_not_for_ever) {
+  for (const char* const name : {"FlatGrid", "HierarchicalGrid", "SweepAndPrune"}) {
+    Drift drift(uniform_boxes(2000), 0.03F);
+    Partition partition(structure_named(name));
+    std::vector<Key> keys(drift.boxes.size());
+    ASSERT_EQ(partition.insert(drift.boxes, {}, keys), Status::ok);
+    const std::size_t lively = frames_before_plan(name);
+    const std::size_t few = keys.size() / 100;
+    const auto move_first = [&](std::size_t count) {
+      drift.go_on();
+      ASSERT_EQ(partition.update(std::span(keys).first(count),
+                                 BoxView(std::span(drift.boxes).first(count))),
+                Status::ok);
+      ASSERT_EQ(partition.refresh(), Status::ok);
+    };
+    for (std::size_t frame = 0; frame < lively; ++frame) move_first(keys.size());
+    for (int frame = 0; frame < 8; ++frame) {
+      move_first(few);
+      EXPECT_EQ(partition.statistics().planned_builds, 0U) << name << ", frame " << frame;
+    }
+    move_first(few);
+    EXPECT_EQ(partition.statistics().planned_builds, 1U) << name;
+  }
+}
+
 // A plan goes through levels from small to large objects. Large ones that jump before it comes to
 // theirs have places in the order where they are then.
 TEST(PlannedBuild, has_what_left_its_cell_meanwhile_where_it_is) {
