@@ -256,11 +256,11 @@ Status SpatialIndex::refresh_queries() const {
 }
 
 void SpatialIndex::view(QueryView& view) const noexcept {
-  const RowView rows = rows_.view();
-  std::copy_n(rows.column, 6, view.column);
-  view.id = rows.id;
-  view.filter = rows.filter;
-  view.span = rows.span;
+  const BoundsPool& pool = rows_.pool();
+  for (std::size_t c = 0; c < 6; ++c) view.column[c] = pool.column(c);
+  view.id = pool.ids();
+  view.filter = pool.filters();
+  view.span = rows_.filters().span();
   if (structure_->is_flat()) {
     view.flat_blocks = static_cast<std::uint32_t>(rows_.pool().blocks());
     return;

@@ -32,7 +32,7 @@ class PreparedCast {
   [[nodiscard]] const Sweep& sweep() const noexcept { return sweep_; }
 
  private:
-  void prepare(const Ray& ray) noexcept { sweep_ = make_sweep(ray); }
+  void prepare(const Ray& ray) noexcept { make_sweep(sweep_, ray); }
   void prepare(const BoxCast& cast) noexcept { sweep_of(cast.box, cast); }
   void prepare(const SphereCast& cast) noexcept {
     sweep_of(cast.sphere.bounds(), cast);
@@ -45,8 +45,8 @@ class PreparedCast {
 
   template <typename Moving>
   void sweep_of(const Aabb& box, const Moving& cast) noexcept {
-    sweep_ = make_sweep(box, cast.direction.template cast<double>(),
-                        static_cast<double>(cast.min_t), static_cast<double>(cast.max_t));
+    make_sweep(sweep_, box, cast.direction.template cast<double>(), static_cast<double>(cast.min_t),
+               static_cast<double>(cast.max_t));
     capsule_.direction = cast.direction.template cast<double>();
   }
   void decide_by(const Capsule& capsule) noexcept {
@@ -102,7 +102,7 @@ class RayGroup {
     questions_ = left_;
     count_ = 0;
     while (left_ != end_ && count_ < kMostSweeps) {
-      sweep_[count_] = make_sweep(rays_[*left_]);
+      make_sweep(sweep_[count_], rays_[*left_]);
       if (count_ != 0 && !same_way(sweep_[0], sweep_[count_])) break;
       ++count_;
       ++left_;

@@ -36,10 +36,12 @@ class NearestHits {
   static bool make_room() { return true; }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     const std::uint64_t hit = hit_of(t, id);
-    if (hit >= best_[s] || !wanted_.accepts(id)) return;
-    best_[s] = hit;
+    if (wanted_.asks_caller() && (hit >= best_[s] || !wanted_.accepts(id))) return;
+    // Whether it is nearer is a coin toss: no branch.
+    const std::uint64_t best = hit < best_[s] ? hit : best_[s];
+    best_[s] = best;
     // Up to the next float: what shows the same t may have the smaller id.
-    const float shown = value_of(static_cast<std::uint32_t>(hit >> 32U) + 1);
+    const float shown = value_of(static_cast<std::uint32_t>(best >> 32U) + 1);
     const float next = scaled_limit(sweeps_[s], static_cast<double>(shown));
     limit_[s] = next < limit_[s] ? next : limit_[s];
   }
@@ -188,26 +190,24 @@ bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
 }
 
 /// Every element's place is counted, 16 comparisons at once, with no branch that depends on the
-/// data. What has equal t is put right at the end.
+/// data. What is counted by is most of t and the element's number, so that no two are equal; what
+/// differs in the rest of t, or not at all, is put right at the end.
 void sort_few(std::uint64_t* results, std::uint32_t size) {
-  alignas(64) float t[kMostSorted];
+  constexpr std::uint32_t kLeastNormal = 0x00800000U;  // denormals may count as zero
+  alignas(64) float key[kMostSorted];
   std::uint64_t copy[kMostSorted];
   const std::uint32_t blocks = (size + kLanes - 1) / kLanes;
   for (std::uint32_t i = 0; i < size; ++i) {
     copy[i] = results[i];
-    t[i] = value_of(static_cast<std::uint32_t>(results[i] >> 32U));
+    const auto t = static_cast<std::uint32_t>(results[i] >> 33U);
+    key[i] = value_of(((t & ~(kMostSorted - 1)) | i) + kLeastNormal);
   }
-  for (std::uint32_t i = size; i < blocks * kLanes; ++i) t[i] = __builtin_inff();
+  for (std::uint32_t i = size; i < blocks * kLanes; ++i) key[i] = __builtin_inff();
   for (std::uint32_t i = 0; i < size; ++i) {
-    const Floats own = Floats(t[i]);
-    std::uint32_t place = 0;
+    const Floats own = Floats(key[i]);
+    std::uint32_t place = blocks * kLanes;
     for (std::uint32_t b = 0; b < blocks; ++b) {
-      const Floats others = Floats::load(t + b * kLanes);
-      const Mask16 not_before = bits(own <= others);
-      const Mask16 equal = not_before & bits(others <= own);
-      const std::uint32_t ahead = i > b * kLanes ? i - b * kLanes : 0;
-      place += count(~not_before & kAllRows);
-      place += count(equal & lanes_below(ahead < kLanes ? ahead : kLanes));
+      place -= count(bits(own <= Floats::load(key + b * kLanes)));
     }
     results[place] = copy[i];
   }

@@ -35,6 +35,8 @@ class Wanted {
     if (!filter_.by_object) return candidates;
     return passing_rows(rows_, first_row, candidates, range_of(filter_.object));
   }
+  /// True if the caller has the last word.
+  [[nodiscard]] bool asks_caller() const { return filter_.accept != nullptr; }
   /// The caller's last word.
   [[nodiscard]] bool accepts(std::uint32_t id) const {
     return filter_.accept == nullptr || filter_.accept(filter_.context, id);

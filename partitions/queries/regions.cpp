@@ -132,7 +132,7 @@ Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
     return Status::ok;
   }
   kind_ = Kind::swept;
-  swept_.sweep = make_sweep(Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
+  make_sweep(swept_.sweep, Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
   swept_.exact = {meet_capsule, &capsule};
   return Status::ok;
 }

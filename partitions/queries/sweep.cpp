@@ -15,9 +15,10 @@ constexpr double kSlowest = 0x1p-120;
 
 }  // namespace
 
-Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t,
-                 double max_t) noexcept {
-  Sweep s;
+void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+                double max_t) noexcept {
+  s.touch = nullptr;
+  s.shape = nullptr;
   s.min_t = min_t;
   s.max_t = max_t;
   const Eigen::Vector3d speed = direction.cwiseAbs();
@@ -58,7 +59,6 @@ Sweep make_sweep(const Aabb& box, const Eigen::Vector3d& direction, double min_t
     s.far_origin[axis] = s.far_origin[fastest];
     s.inverse[axis] = s.inverse[fastest];
   }
-  return s;
 }
 
 }  // namespace winnow
