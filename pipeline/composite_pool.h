@@ -148,6 +148,9 @@ class WINNOW_API CompositePool final : public MidPhase {
              const PrimitiveVisitor& visitor) const override;
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                   const double* limits, const RayVisitor& visitor) const override;
+  [[nodiscard]] bool place(ShapeId id, const Pose& pose, RaySurface& surface) const override;
+  void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
+                 const RayVisitor& visitor) const override;
   void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
   bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,

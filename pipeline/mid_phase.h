@@ -12,6 +12,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
+#include <winnow/pipeline/surface_frame.h>
 
 #include <cstdint>
 #include <memory_resource>
@@ -115,6 +116,18 @@ struct RayVisitor {
   void* context = nullptr;  ///< handed to both
 };
 
+struct MeshView;
+
+/// What every ray needs of a mesh where it stands: see MidPhase::place.
+struct RaySurface {
+  ShapeId shape;                   ///< of no kind: nothing was placed
+  Pose pose;                       ///< where it stands
+  std::uint64_t revision = 0;      ///< MidPhase::revision, as it was
+  const MeshView* mesh = nullptr;  ///< in its own frame
+  SurfaceFrame frame = {};         ///< which lies so in the world
+  int front = 0;                   ///< as Primitive::front
+};
+
 /// Is shown pairs of primitives that may share a point, and gives back whether to go on.
 struct PrimitivePairVisitor {
   /// False ends the visit. Must not throw.
@@ -194,6 +207,18 @@ class WINNOW_API MidPhase {
   /// any order; one with a limit below zero meets nothing.
   virtual void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                           const double* limits, const RayVisitor& visitor) const = 0;
+  /// Makes a mesh ready for rays that come one by one. False, and nothing is written, of all other
+  /// shapes.
+  [[nodiscard]] virtual bool place(ShapeId id, const Pose& pose, RaySurface& surface) const {
+    (void)id, (void)pose, (void)surface;
+    return false;
+  }
+  /// As `visit_rays`, of one ray, whose number is 0. The surface was placed by this, which has not
+  /// changed since.
+  virtual void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
+                         const RayVisitor& visitor) const {
+    (void)surface, (void)ray, (void)limit, (void)visitor;
+  }
   /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
   /// stands, roughly the nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,

@@ -496,6 +496,15 @@ void CompositePool::visit_rays(ShapeId id, const Pose& pose, std::span<const Sha
   if (contains(id)) mid::visit_rays(*state_, id, pose, rays, limits, visitor);
 }
 
+bool CompositePool::place(ShapeId id, const Pose& pose, RaySurface& surface) const {
+  return contains(id) && mid::place(*state_, id, pose, surface);
+}
+
+void CompositePool::visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
+                              const RayVisitor& visitor) const {
+  mid::visit_ray(*state_, surface, ray, limit, visitor);
+}
+
 void CompositePool::visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                                const PrimitiveVisitor& visitor) const {
   if (contains(id)) mid::visit_near(*state_, id, pose, from, limit, visitor);

@@ -252,12 +252,16 @@ void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Executio
 Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
               const PairMargins& margins, const Execution& execution, ContactRegions& out);
 
-/// See MidPhase::visit, visit_rays, visit_pairs, visit_near_pairs and visit_near. `id` is there,
-/// `pose` is valid.
+/// See MidPhase::visit, visit_rays, place, visit_ray, visit_pairs, visit_near_pairs and visit_near.
+/// `id` is there, `pose` is valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                 const double* limits, const RayVisitor& visitor);
+[[nodiscard]] bool place(const Composites& all, ShapeId id, const Pose& pose,
+                         RaySurface& surface) noexcept;
+void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
+               const RayVisitor& visitor);
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor);
 bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,

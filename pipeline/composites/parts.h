@@ -105,6 +105,19 @@ class PartTraversal {
     composites_->visit_rays(placed.shape, placed.pose, rays, limits,
                             {&Meeting::call_meet, &Meeting::call_look, &meeting});
   }
+  /// The same of one ray, and a mesh that `place` made ready.
+  template <typename Meet, typename Look>
+  void met_by_ray(const RaySurface& surface, const ShapeRay& ray, double limit, Meet&& meet,
+                  Look&& look) const {
+    using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
+    Meeting meeting{meet, look};
+    composites_->visit_ray(surface, ray, limit,
+                           {&Meeting::call_meet, &Meeting::call_look, &meeting});
+  }
+  /// See MidPhase::place.
+  [[nodiscard]] bool place(const PlacedShape& placed, RaySurface& surface) const {
+    return composites_->place(placed.shape, placed.pose, surface);
+  }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it says
   /// false. False, and nothing is shown, if these are no two meshes.
   template <typename Visit>

@@ -158,12 +158,7 @@ bool PlacedBody::own_corners(std::uint32_t number, double (&corner)[3][3]) const
     std::copy_n(&triangle.vertex[0][0], 9, &corner[0][0]);
     return true;
   }
-  for (int k = 0; k < 3; ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner[k][axis] = static_cast<double>(
-          coordinate(*mesh, corner_of(*mesh, static_cast<std::size_t>(k), number), axis));
-    }
-  }
+  put_corners(*mesh, number, corner);
   return true;
 }
 

@@ -14,16 +14,17 @@
 namespace winnow::mid {
 namespace {
 
-/// A vector times the transpose of a matrix, of length 1.
-[[nodiscard]] Vec unit_under(const Mat& transposed, const Vec& v) noexcept {
+/// A normal of a surface in its own frame turned into the world, of length 1.
+[[nodiscard]] Vec unit_under(const SurfaceFrame& frame, const Vec& normal) noexcept {
+  const Eigen::Map<const Mat> transposed(frame.to_own[0]);
   const auto times = [&](const Vec& of) {
     return Vec(transposed.col(0).dot(of), transposed.col(1).dot(of), transposed.col(2).dot(of));
   };
-  const Vec plain = times(v);
+  const Vec plain = frame.is_turned ? times(normal) : normal;
   const double square = plain.squaredNorm();
   constexpr double kSafe = 1e200;
   if (square > 1.0 / kSafe && square < kSafe) return plain * (1.0 / std::sqrt(square));
-  return times(v.stableNormalized()).stableNormalized();
+  return times(normal.stableNormalized()).stableNormalized();
 }
 
 /// The power of two that brings x, which is positive, into [1/2, 1).
@@ -78,6 +79,7 @@ struct RayTarget {
     }
     Vec::Map(frame.position) = body.position;
     Mat::Map(frame.to_own[0]) = body.to_local;
+    frame.is_turned = body.to_local != Mat::Identity();
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
@@ -87,45 +89,91 @@ struct RayTarget {
   SurfaceFrame frame;
 };
 
-/// Takes one ray into the frame of a surface. One that begins far away is moved to where it comes
-/// near the surface. False for one whose numbers are too large or too small for that.
+/// A vector in a frame, added in the order of its columns.
+void put_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
+  const auto& column = frame.to_own;
+  for (int i = 0; i < 3; ++i) {
+    own[i] =
+        frame.is_turned ? column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2] : v[i];
+  }
+}
+/// The largest coordinate that it has there whatever the signs of its own.
+[[nodiscard]] double largest_in(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
+  double largest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const auto part = [&](int k) { return std::abs(frame.to_own[k][i]) * std::abs(v[k]); };
+    largest = std::max(largest, frame.is_turned ? part(0) + part(1) + part(2) : std::abs(v[i]));
+  }
+  return largest;
+}
+[[nodiscard]] double largest_of(const double (&v)[3]) noexcept {
+  return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
+}
+[[nodiscard]] double dot(const double (&a)[3], const double (&b)[3]) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Takes one ray into the frame of a surface, as kernels take eight. One that begins far away is
+/// moved to where it comes near the surface. False for one whose numbers are too large or too small
+/// for that.
 template <std::uint32_t Room>
-[[nodiscard]] bool place_ray(const RayTarget& target, const ShapeRay& ray, std::uint32_t lane,
+[[nodiscard]] bool place_ray(const SurfaceFrame& frame, const ShapeRay& ray, std::uint32_t lane,
                              SurfaceRayColumns<Room>& own) noexcept {
-  const PlacedBody& body = target.body;
-  const double size = target.frame.size;
-  const Eigen::Map<const Vec> origin(ray.origin);
-  const Eigen::Map<const Vec> direction(ray.direction);
-  const double* const position = target.frame.position;
-  Vec start = origin - Vec::Map(position);
-  const double fastest = direction.cwiseAbs().maxCoeff();
-  if (!(start.cwiseAbs().maxCoeff() < kMostRayLength && size < kMostRayLength &&
+  double start[3];
+  for (int i = 0; i < 3; ++i) start[i] = ray.origin[i] - frame.position[i];
+  const double fastest = largest_of(ray.direction);
+  if (!(largest_of(start) < kMostRayLength && frame.size < kMostRayLength &&
         fastest < kMostRayLength && fastest > 1.0 / kMostRayLength)) {
     return false;
   }
   // Where it is nearest comes after this much of the way.
-  const double towards = -start.dot(direction);
-  const double square = direction.squaredNorm();
+  const double towards = -dot(start, ray.direction);
+  const double square = dot(ray.direction, ray.direction);
   double shift = 0.0;
-  if (towards > 4.0 * size * (square / fastest)) {
-    shift = std::max(0.0, towards / square - 4.0 * size / fastest);
+  if (towards > 4.0 * frame.size * (square / fastest)) [[unlikely]] {
+    shift = std::max(0.0, towards / square - 4.0 * frame.size / fastest);
     for (int i = 0; i < 3; ++i) {
-      start[i] = moved(ray.origin[i], position[i], shift, ray.direction[i]);
+      start[i] = moved(ray.origin[i], frame.position[i], shift, ray.direction[i]);
     }
   }
-  const Vec way = body.to_local * direction;
-  const double stretch = scale_to_one(way.cwiseAbs().maxCoeff());
-  const Vec from = body.to_local * start;
+  double way[3];
+  double from[3];
+  put_into(frame, ray.direction, way);
+  put_into(frame, start, from);
+  const double stretch = scale_to_one(largest_of(way));
   for (int axis = 0; axis < 3; ++axis) {
-    own.ray.direction[axis][lane] = way[axis] * stretch;
     own.ray.origin[axis][lane] = from[axis];
+    own.ray.direction[axis][lane] = way[axis] * stretch;
   }
-  const Vec coordinates = body.to_local.cwiseAbs() * start.cwiseAbs();
-  own.slack[lane] = kRaySlack * (coordinates.maxCoeff() + target.frame.reach);
+  own.slack[lane] = kRaySlack * (largest_in(frame, start) + frame.reach);
   own.shift[lane] = shift;
   own.stretch[lane] = stretch;
   return true;
 }
+
+/// Time of a ray in the frame of a surface, of the caller's.
+struct OwnTime {
+  double shift;
+  /// One over the stretch, which is a power of two.
+  double unit;
+
+  [[nodiscard]] double operator()(double t) const noexcept { return (t - shift) * unit; }
+  /// Not less than what rounding makes of it.
+  [[nodiscard]] double limit(double t) const noexcept {
+    return (*this)(t) + 0x1p-51 * (std::abs(t) + std::abs(shift)) * unit;
+  }
+  /// The same for what was met elsewhere, with more room: triangles that the ray grazes may be met
+  /// earlier, by what rounding makes of them, than their boxes.
+  [[nodiscard]] double first_limit(double t, double reach) const noexcept {
+    const double most = limit(t);
+    return most + 0x1p-20 * (std::abs(most) + reach);
+  }
+  /// The own limit to go on with where that in the caller's t became `now`.
+  [[nodiscard]] double after(double before, double now, double own_before) const noexcept {
+    if (now < 0.0) return -1.0;
+    return now < before ? limit(now) : own_before;
+  }
+};
 
 /// Takes rays through a surface, and tells of the triangles that they meet.
 template <std::uint32_t Room>
@@ -142,23 +190,11 @@ class RayGuides {
   void go(Elsewhere&& elsewhere);
 
  private:
-  /// Gives back a bit for each that is left.
+  /// Gives back a bit for each that is left to place_ray.
   [[nodiscard]] std::uint64_t place() noexcept;
   void go_through_mesh();
   void go_through_field(std::uint32_t i);
-  [[nodiscard]] double own(std::uint32_t i, double t) const noexcept {
-    return (t - own_.shift[i]) / own_.stretch[i];
-  }
-  /// Not less than what rounding makes of it.
-  [[nodiscard]] double own_limit(std::uint32_t i, double t) const noexcept {
-    return own(i, t) + 0x1p-51 * (std::abs(t) + std::abs(own_.shift[i])) / own_.stretch[i];
-  }
-  /// The same for what was met elsewhere, with more room: triangles that the ray grazes may be met
-  /// earlier, by what rounding makes of them, than their boxes.
-  [[nodiscard]] double first_limit(std::uint32_t i, double t) const noexcept {
-    const double limit = own_limit(i, t);
-    return limit + 0x1p-20 * (std::abs(limit) + target_.frame.reach);
-  }
+  [[nodiscard]] OwnTime time(std::uint32_t i) const noexcept { return {own_.shift[i], unit_[i]}; }
   // Those that show a triangle, or some, give back the own limit to go on with.
   [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                             double own_before);
@@ -178,14 +214,18 @@ class RayGuides {
   alignas(kRayAlignment<Room>) double own_limit_[Room];
   RayColumns<Room> world_;
   SurfaceRayColumns<Room> own_;
+  /// See OwnTime.
+  double unit_[Room];
 };
 
 template <std::uint32_t Room>
 void RayGuides<Room>::add(std::size_t ray, double limit) noexcept {
-  const ShapeRay& asked = rays_[ray];
-  for (int axis = 0; axis < 3; ++axis) {
-    world_.origin[axis][count_] = asked.origin[axis];
-    world_.direction[axis][count_] = asked.direction[axis];
+  if constexpr (Room != 1) {
+    const ShapeRay& asked = rays_[ray];
+    for (int axis = 0; axis < 3; ++axis) {
+      world_.origin[axis][count_] = asked.origin[axis];
+      world_.direction[axis][count_] = asked.direction[axis];
+    }
   }
   number_[count_] = ray;
   limit_[count_] = limit;
@@ -195,7 +235,7 @@ void RayGuides<Room>::add(std::size_t ray, double limit) noexcept {
 template <std::uint32_t Room>
 std::uint64_t RayGuides<Room>::place() noexcept {
   if constexpr (Room == 1) {
-    return mesh_kernels().place_ray(target_.frame, world_, own_) ? 0 : 1;
+    return 1;
   } else {
     const std::uint32_t rest = (kRayLanes - count_ % kRayLanes) % kRayLanes;
     const std::uint32_t last = count_ - 1;
@@ -214,14 +254,18 @@ void RayGuides<Room>::go(Elsewhere&& elsewhere) {
   if (count_ == 0) return;
   for (std::uint64_t left = place(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-    if (place_ray(target_, rays_[number_[i]], i, own_)) continue;
+    if (place_ray(target_.frame, rays_[number_[i]], i, own_)) continue;
     elsewhere(number_[i]);
     limit_[i] = -1.0;
+    own_.shift[i] = 0.0;
+    own_.stretch[i] = 1.0;
   }
   for (std::uint32_t i = 0; i < count_; ++i) {
-    own_limit_[i] = limit_[i] >= 0.0 ? first_limit(i, limit_[i]) : -1.0;
-    own_.low[i] = own(i, 0.0);
-    own_.high[i] = own(i, rays_[number_[i]].max_t);
+    unit_[i] = 1.0 / own_.stretch[i];
+    const OwnTime own = time(i);
+    own_limit_[i] = limit_[i] >= 0.0 ? own.first_limit(limit_[i], target_.frame.reach) : -1.0;
+    own_.low[i] = own(0.0);
+    own_.high[i] = own(rays_[number_[i]].max_t);
   }
   if (target_.body.kind == PlacedBody::Kind::mesh) {
     go_through_mesh();
@@ -288,20 +332,18 @@ double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot, double own_bef
 template <std::uint32_t Room>
 double RayGuides<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                              double own_before) {
-  const PlacedBody& body = target_.body;
   ShapeHit hit;
   hit.hit = true;
   hit.t = own_.shift[i] + found.t * own_.stretch[i];
   if (!(hit.t <= limit_[i])) return own_before;
-  if (body.front != 0) {
+  if (target_.body.front != 0) {
     double corner[3][3];
-    (void)body.own_corners(slot, corner);
+    (void)target_.body.own_corners(slot, corner);
     if (comes_from_behind(own_[i], corner)) return own_before;
   }
-  Vec::Map(hit.normal) = unit_under(body.to_local, Vec::Map(found.normal));
-  return after(i,
-               visitor_.meet(visitor_.context, number_[i], body.shown_number(slot), hit, limit_[i]),
-               own_before);
+  Vec::Map(hit.normal) = unit_under(target_.frame, Vec::Map(found.normal));
+  const std::uint32_t number = target_.body.shown_number(slot);
+  return after(i, visitor_.meet(visitor_.context, number_[i], number, hit, limit_[i]), own_before);
 }
 
 template <std::uint32_t Room>
@@ -316,8 +358,7 @@ template <std::uint32_t Room>
 double RayGuides<Room>::after(std::uint32_t i, double limit, double own_before) noexcept {
   const double before = limit_[i];
   limit_[i] = limit;
-  if (limit < 0.0) return -1.0;
-  return limit < before ? own_limit(i, limit) : own_before;
+  return time(i).after(before, limit, own_before);
 }
 
 /// Shows all that the box of ray `number` meets: primitives, or children of a compound with
@@ -346,6 +387,74 @@ void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& vis
          },
          &looking},
         children);
+}
+
+/// One ray through a mesh that was placed before, its number 0.
+class LoneRay {
+ public:
+  LoneRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
+          const RayVisitor& visitor) noexcept
+      : all_(all), surface_(surface), ray_(ray), visitor_(visitor), limit_(limit) {}
+
+  void go();
+
+ private:
+  [[nodiscard]] OwnTime time() const noexcept { return {own_.shift[0], unit_}; }
+  [[nodiscard]] NearBody near() const noexcept {
+    const PlacedBody body = PlacedBody::at(all_, surface_.shape, surface_.pose);
+    return {body, body.position, ray_};
+  }
+  // As those of RayGuides.
+  [[nodiscard]] double meet(std::uint32_t slot, const SurfaceHit& found, double own_before);
+  [[nodiscard]] double look(std::uint32_t slot, double own_before);
+  [[nodiscard]] double after(double limit, double own_before) noexcept {
+    const double before = limit_;
+    limit_ = limit;
+    return time().after(before, limit, own_before);
+  }
+
+  const Composites& all_;
+  const RaySurface& surface_;
+  const ShapeRay& ray_;
+  const RayVisitor& visitor_;
+  double limit_;
+  double unit_ = 1.0;
+  LoneSurfaceRay own_;
+};
+
+void LoneRay::go() {
+  if (!place_ray(surface_.frame, ray_, 0, own_)) return look_at_all(near(), 0, visitor_, {});
+  unit_ = 1.0 / own_.stretch[0];
+  own_.low[0] = time()(0.0);
+  own_.high[0] = time()(ray_.max_t);
+  mesh_ray(*surface_.mesh, own_, time().first_limit(limit_, surface_.frame.reach),
+           {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit& found,
+               double limit) { return static_cast<LoneRay*>(context)->meet(slot, found, limit); },
+            [](void* context, std::uint32_t, std::uint32_t slot, double limit) {
+              return static_cast<LoneRay*>(context)->look(slot, limit);
+            },
+            this});
+}
+
+double LoneRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_before) {
+  ShapeHit hit;
+  hit.hit = true;
+  hit.t = own_.shift[0] + found.t * own_.stretch[0];
+  if (!(hit.t <= limit_)) return own_before;
+  if (surface_.front != 0) {
+    double corner[3][3];
+    put_corners(*surface_.mesh, slot, corner);
+    if (comes_from_behind(own_[0], corner)) return own_before;
+  }
+  Vec::Map(hit.normal) = unit_under(surface_.frame, Vec::Map(found.normal));
+  const std::uint32_t number = surface_.mesh->triangle[slot] & kTriangleNumberMask;
+  return after(visitor_.meet(visitor_.context, 0, number, hit, limit_), own_before);
+}
+
+double LoneRay::look(std::uint32_t slot, double own_before) {
+  Primitive primitive;
+  if (!near().body.primitive(slot, primitive)) return own_before;
+  return after(visitor_.look(visitor_.context, 0, primitive, limit_), own_before);
 }
 
 template <std::uint32_t Room>
@@ -418,6 +527,24 @@ void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<c
     };
     look_at_all(near, i, visitor, ChildVisitor::of(show_child));
   }
+}
+
+bool place(const Composites& all, ShapeId id, const Pose& pose, RaySurface& surface) noexcept {
+  if (all.mesh(id) == nullptr) return false;
+  const PlacedBody body = PlacedBody::at(all, id, pose);
+  const RayTarget target(body, body.position);
+  surface = {.shape = id,
+             .pose = pose,
+             .revision = all.revision,
+             .mesh = body.mesh,
+             .frame = target.frame,
+             .front = body.front};
+  return true;
+}
+
+void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
+               const RayVisitor& visitor) {
+  if (limit >= 0.0) LoneRay(all, surface, ray, limit, visitor).go();
 }
 
 }  // namespace winnow::mid

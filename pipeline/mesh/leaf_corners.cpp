@@ -60,6 +60,7 @@ bool LeafCorners::take(const MeshView& view) noexcept {
   }
   LeafCorners fresh(vertex_.memory());
   if (!fresh.vertex_.resize(std::size_t{blocks} * kMeshFanout) ||
+      !fresh.point_.resize(view.box == nullptr ? std::size_t{blocks} * kMeshFanout : 0) ||
       !fresh.more_.resize(crowded != 0 ? leaves + std::size_t{1} : 0) ||
       !fresh.place_.resize(std::size_t{leaves} * kLeafCorners)) {
     return false;
@@ -78,6 +79,7 @@ bool LeafCorners::take(const MeshView& view) noexcept {
   }
   if (crowded != 0) fresh.more_[leaves] = next_block;
   vertex_.swap(fresh.vertex_);
+  point_.swap(fresh.point_);
   more_.swap(fresh.more_);
   place_.swap(fresh.place_);
   return true;
@@ -86,12 +88,14 @@ bool LeafCorners::take(const MeshView& view) noexcept {
 void LeafCorners::link(MeshView& view) const noexcept {
   for (const std::uint32_t*& column : view.corner) column = nullptr;
   view.leaf_vertex = vertex_.data();
+  view.leaf_point = point_.data();
   view.leaf_more = more_.data();
   view.leaf_place = place_.data();
 }
 
 Bytes LeafCorners::bytes() const noexcept {
   Bytes sum = vertex_.bytes();
+  sum += point_.bytes();
   sum += more_.bytes();
   sum += place_.bytes();
   return sum;

@@ -8,71 +8,71 @@
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/mesh/surface_rays.h"
 #include "pipeline/shapes/difference_of_products.h"
-#include "simd/lanes/axes.h"
 #include "simd/lanes/corners.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// A triangle twice: by axis, and corner by corner.
-struct TriangleInLanes {
+/// A triangle twice: by axis in lanes, and corner by corner.
+struct CrossedTriangle {
   CornerDoubles by_axis[3];
-  Axes corner[3];
+  Numbers corner[3];
 };
 
-[[gnu::always_inline]] inline TriangleInLanes load_triangle(const MeshView& mesh,
+[[gnu::always_inline]] inline CrossedTriangle load_triangle(const MeshView& mesh,
                                                             std::uint32_t slot) {
-  TriangleInLanes triangle;
+  CrossedTriangle triangle;
   const float* at[3];
   for (int k = 0; k < 3; ++k) {
     at[k] = mesh.vertex + std::size_t{3} * corner_of(mesh, static_cast<std::size_t>(k), slot);
-    triangle.corner[k] = load_axes(at[k]);
+    triangle.corner[k] = {static_cast<double>(at[k][0]), static_cast<double>(at[k][1]),
+                          static_cast<double>(at[k][2])};
   }
   load_points(at[0], at[1], at[2], triangle.by_axis);
   return triangle;
 }
-[[gnu::always_inline]] inline TriangleInLanes load_triangle(const double (&corner)[3][3]) {
-  TriangleInLanes triangle;
-  for (int k = 0; k < 3; ++k) {
-    triangle.corner[k] = join_axes(corner[k][0], corner[k][1], corner[k][2]);
-  }
+[[gnu::always_inline]] inline CrossedTriangle load_triangle(const double (&corner)[3][3]) {
+  CrossedTriangle triangle;
+  for (int k = 0; k < 3; ++k) triangle.corner[k] = {corner[k][0], corner[k][1], corner[k][2]};
   for (int axis = 0; axis < 3; ++axis) {
     triangle.by_axis[axis] = join_corners(corner[0][axis], corner[1][axis], corner[2][axis]);
   }
   return triangle;
 }
 
-[[gnu::always_inline]] inline double sum_of(const Components& c) {
-  return c.of[0] + c.of[1] + c.of[2];
+[[gnu::always_inline]] inline double taxicab(const Numbers& v) {
+  return abs(v.x) + abs(v.y) + abs(v.z);
 }
-[[gnu::always_inline]] inline double taxicab(const Axes& v) {
-  return sum_of(Components(abs(v)));
+[[gnu::always_inline]] inline double dot(const Numbers& a, const Numbers& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// The product of two edges of a triangle, at right angles to both. Where no more than three bits
 /// of the products cancel, they need no more care.
-[[gnu::always_inline]] inline Axes normal_of(const Axes& a, const Axes& b) {
-  const Axes a_next = of_next(a);
-  const Axes b_next = of_next(b);
-  const Axes plus = a_next * of_next(b_next);
-  const Axes minus = of_next(a_next) * b_next;
-  const Axes normal = plus - minus;
+[[gnu::always_inline]] inline Numbers normal_of(const Numbers& a, const Numbers& b) {
+  const Numbers plus{a.y * b.z, a.z * b.x, a.x * b.y};
+  const Numbers minus{a.z * b.y, a.x * b.z, a.y * b.x};
+  const Numbers normal = plus - minus;
   constexpr double kLeastLeft = 0.125;
   if (taxicab(normal) > kLeastLeft * (taxicab(plus) + taxicab(minus))) [[likely]]
     return normal;
-  const Components p(a);
-  const Components q(b);
-  return join_axes(difference_of_products(p.of[1], q.of[2], p.of[2], q.of[1]),
-                   difference_of_products(p.of[2], q.of[0], p.of[0], q.of[2]),
-                   difference_of_products(p.of[0], q.of[1], p.of[1], q.of[0]));
+  return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+          difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+/// The first lane.
+[[gnu::always_inline]] inline double first_of(const CornerDoubles& v) {
+  alignas(64) double lane[CornerDoubles::kCount];
+  v.store(lane);
+  return lane[0];
 }
 
 /// A ray as each of three numbers, and by itself.
 struct CrossingRay {
   Vec3<double, CornerDoubles::kParts> origin;
   Vec3<double, CornerDoubles::kParts> direction;
-  Axes start;
-  Axes way;
+  Numbers start;
+  Numbers way;
   double slack;
   double low;
   double high;
@@ -80,7 +80,7 @@ struct CrossingRay {
 
 /// See cross_triangle.
 [[gnu::always_inline]] inline Crossing cross(const CrossingRay& ray,
-                                             const TriangleInLanes& triangle, SurfaceHit& hit) {
+                                             const CrossedTriangle& triangle, SurfaceHit& hit) {
   using D = CornerDoubles;
   using V = Vec3<double, D::kParts>;
   const auto& corner = triangle.by_axis;
@@ -95,17 +95,18 @@ struct CrossingRay {
   const Mask16 below = bits(volume < -doubt) & kThreeCorners;
   if (above != 0 && below != 0) return Crossing::none;
   if (above != kThreeCorners && below != kThreeCorners) return Crossing::doubtful;
-  const Axes& first = triangle.corner[0];
-  const Axes normal = normal_of(triangle.corner[1] - first, triangle.corner[2] - first);
+  const Numbers& first = triangle.corner[0];
+  const Numbers normal = normal_of(triangle.corner[1] - first, triangle.corner[2] - first);
   const double rate = dot(normal, ray.way);
   const double t = dot(normal, first - ray.start) / rate;
-  const double error =
-      taxicab(normal) * (2.0 * ray.slack + 0x1p-48 * Components(far).of[0]) / __builtin_fabs(rate);
+  const double error = taxicab(normal) * (2.0 * ray.slack + 0x1p-48 * first_of(far)) / abs(rate);
   if (t < ray.low - error || t > ray.high + error) return Crossing::none;
   if (!(t > ray.low + error && t < ray.high - error)) return Crossing::doubtful;
   hit.t = t;
-  const Components towards(rate > 0.0 ? -normal : normal);
-  for (int axis = 0; axis < 3; ++axis) hit.normal[axis] = towards.of[axis];
+  const double side = rate > 0.0 ? -1.0 : 1.0;
+  hit.normal[0] = side * normal.x;
+  hit.normal[1] = side * normal.y;
+  hit.normal[2] = side * normal.z;
   return Crossing::found;
 }
 
@@ -116,8 +117,8 @@ template <std::uint32_t Room>
   const auto& way = rays.ray.direction;
   return {{start[0][ray], start[1][ray], start[2][ray]},
           {way[0][ray], way[1][ray], way[2][ray]},
-          join_axes(start[0][ray], start[1][ray], start[2][ray]),
-          join_axes(way[0][ray], way[1][ray], way[2][ray]),
+          {start[0][ray], start[1][ray], start[2][ray]},
+          {way[0][ray], way[1][ray], way[2][ray]},
           rays.slack[ray],
           rays.low[ray],
           rays.high[ray]};
@@ -130,8 +131,8 @@ inline Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][
   const double* const way = ray.direction;
   const CrossingRay crossing{{start[0], start[1], start[2]},
                              {way[0], way[1], way[2]},
-                             join_axes(start[0], start[1], start[2]),
-                             join_axes(way[0], way[1], way[2]),
+                             {start[0], start[1], start[2]},
+                             {way[0], way[1], way[2]},
                              ray.slack,
                              ray.low,
                              ray.high};

@@ -63,14 +63,19 @@ struct Corners16 {
   return are_below<2 * kLanes>(places) ? 2 : 0;
 }
 
+/// Where one of them lies.
+[[gnu::always_inline]] inline std::size_t block_of(const MeshView& mesh, std::uint32_t leaf,
+                                                   int block) {
+  return block == 0 ? leaf : std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
+}
+
 /// Calls look(block, its vertices) for each of them.
 template <int Blocks, typename Look>
 [[gnu::always_inline]] inline void each_vertex_block(const MeshView& mesh, std::uint32_t leaf,
                                                      Look&& look) {
   for (int block = 0; block < Blocks; ++block) {
-    const std::size_t at = block == 0 ? leaf : std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
     Floats vertex[3];
-    load_points(mesh.vertex, mesh.leaf_vertex + at * kMeshFanout, vertex);
+    load_points(mesh.vertex, mesh.leaf_vertex + block_of(mesh, leaf, block) * kMeshFanout, vertex);
     look(block, vertex);
   }
 }

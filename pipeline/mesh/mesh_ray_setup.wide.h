@@ -1,12 +1,12 @@
 #pragma once
 
 // Rays into the frame of a surface, and made ready for their way through the nodes of a mesh: eight
-// at once, or one alone, whose lanes are its axes. In double, without fused operations: the same
-// either way and on every instruction set.
+// at once, a lane for each, or one alone in plain numbers, which have less to wait for than lanes
+// of axes. In double, without fused operations: the same either way and on every instruction set.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
-#include "simd/lanes/axes.h"
+#include "simd/lanes/float_axes.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
@@ -19,24 +19,47 @@ inline constexpr double kStandingRate = 0.01;
 inline constexpr double kStandingInverse = 1e30;
 /// More slack than this leaves all in doubt as well.
 inline constexpr double kMostSlack = 1e200;
-inline constexpr double kMostWrong = 1e38;
 
-/// Eight rays: a lane for each.
+// Of a ray that is measured from where it begins, in float: u is half an ulp of 1.
+
+/// It begins no more units away along any axis, so that it leaves the mesh before tau = 200.
+inline constexpr float kNearUnits = 0x1p22F;
+/// What rounding makes of its place, as a share of it and of the largest bound: 14 u.
+inline constexpr float kNearShare = 0x1p-20F;
+inline constexpr float kNearDoubt = 0.3F;
+inline constexpr float kNearStandingRate = 1e-4F;
+
+/// Three numbers of one vector.
+struct Numbers {
+  double x;
+  double y;
+  double z;
+
+  [[gnu::always_inline]] friend Numbers operator+(const Numbers& a, const Numbers& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  [[gnu::always_inline]] friend Numbers operator-(const Numbers& a, const Numbers& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  [[gnu::always_inline]] friend Numbers operator*(const Numbers& a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+  }
+};
+
+/// Eight rays.
 struct RaysInLanes {
   static constexpr std::uint32_t kRoom = kRaysAtOnce;
   using Number = Doubles;
-  using Lane = Doubles;
   using Vector = Vec3<double>;
 };
-/// One ray: a lane for each axis.
-struct AxesInLanes {
+/// One ray.
+struct RayInNumbers {
   static constexpr std::uint32_t kRoom = 1;
   using Number = double;
-  using Lane = Axes;
-  using Vector = Axes;
+  using Vector = Numbers;
 };
 
-// What both are written in: numbers,
+// What both are written in.
 
 [[gnu::always_inline]] inline void load(const double* p, double& number) {
   number = *p;
@@ -56,11 +79,14 @@ struct AxesInLanes {
 [[gnu::always_inline]] inline void store(const Doubles& number, float* p) {
   to_single(number).store_unaligned(p);
 }
-[[gnu::always_inline]] inline Mask16 bits(int holds) {
-  return holds != 0 ? 1U : 0U;
+[[gnu::always_inline]] inline Mask16 bits(bool holds) {
+  return holds ? 1U : 0U;
 }
 [[gnu::always_inline]] inline double select(bool holds, double a, double b) {
   return holds ? a : b;
+}
+[[gnu::always_inline]] inline double abs(double a) {
+  return __builtin_fabs(a);
 }
 [[gnu::always_inline]] inline double min(double a, double b) {
   return a < b ? a : b;
@@ -68,100 +94,54 @@ struct AxesInLanes {
 [[gnu::always_inline]] inline double max(double a, double b) {
   return a > b ? a : b;
 }
+/// With the sign of another one; none of its own is set.
+[[gnu::always_inline]] inline double with_sign(double size, double of) {
+  return __builtin_copysign(size, of);
+}
+[[gnu::always_inline]] inline Doubles with_sign(const Doubles& size, const Doubles& of) {
+  return (of & Doubles(-0.0)) | size;
+}
 /// The power of two of its exponent. Infinity has the bits of the exponent alone.
 [[gnu::always_inline]] inline Doubles power_of(const Doubles& v) {
   return v & Doubles(__builtin_inf());
 }
-[[gnu::always_inline]] inline double power_of(double v) {
-  constexpr std::uint64_t kExponent = 0x7FF0000000000000U;
-  return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, v) & kExponent);
-}
 
-// and vectors.
-
-/// Calls f with what each axis has of the vectors.
-template <typename F, typename... V>
-[[gnu::always_inline]] inline Vec3<double> by_axis(F&& f, const Vec3<double>& a, V&&... b) {
-  return {f(a.x, b.x...), f(a.y, b.y...), f(a.z, b.z...)};
-}
-template <typename F, typename... V>
-[[gnu::always_inline]] inline Axes by_axis(F&& f, const Axes& a, V&&... b) {
-  return f(a, b...);
-}
-/// The same vector for every ray.
-[[gnu::always_inline]] inline void spread(const double (&of)[3], Vec3<double>& v) {
-  v = {of[0], of[1], of[2]};
-}
-[[gnu::always_inline]] inline void spread(const double (&of)[3], Axes& v) {
-  v = load_axes(of);
-}
-template <typename V>
-[[gnu::always_inline]] inline V spread(const double (&of)[3]) {
-  V v;
-  spread(of, v);
+template <typename Vector, std::size_t Room>
+[[gnu::always_inline]] inline Vector load(const double (&column)[3][Room], std::uint32_t first) {
+  Vector v;
+  load(column[0] + first, v.x);
+  load(column[1] + first, v.y);
+  load(column[2] + first, v.z);
   return v;
 }
-/// The same of numbers that the caller has just stored.
-[[gnu::always_inline]] inline void spread_stored(const double (&of)[3], Vec3<double>& v) {
-  spread(of, v);
-}
-[[gnu::always_inline]] inline void spread_stored(const double (&of)[3], Axes& v) {
-  v = join_axes(of[0], of[1], of[2]);
-}
-[[gnu::always_inline]] inline void load(const double (&column)[3][kRaysAtOnce], std::uint32_t first,
-                                        Vec3<double>& v) {
-  v = {Doubles::load(column[0] + first), Doubles::load(column[1] + first),
-       Doubles::load(column[2] + first)};
-}
-[[gnu::always_inline]] inline void load(const double (&column)[4][1], std::uint32_t, Axes& v) {
-  v = load_axes(column[0]);
-}
-[[gnu::always_inline]] inline void load_stored(const double (&column)[3][kRaysAtOnce],
-                                               std::uint32_t first, Vec3<double>& v) {
-  load(column, first, v);
-}
-[[gnu::always_inline]] inline void load_stored(const double (&column)[4][1], std::uint32_t,
-                                               Axes& v) {
-  v = join_axes(column[0][0], column[1][0], column[2][0]);
-}
-template <typename T, std::size_t Stride>
-[[gnu::always_inline]] inline void store(const Vec3<double>& v, T (&column)[3][Stride],
+template <typename Vector, typename T, std::size_t Rows, std::size_t Room>
+[[gnu::always_inline]] inline void store(const Vector& v, T (&column)[Rows][Room],
                                          std::uint32_t first) {
   store(v.x, column[0] + first);
   store(v.y, column[1] + first);
   store(v.z, column[2] + first);
 }
-template <typename T>
-[[gnu::always_inline]] inline void store(const Axes& v, T (&column)[4][1], std::uint32_t) {
-  store_axes(v, column[0]);
+/// The same vector for every ray.
+template <typename Vector>
+[[gnu::always_inline]] inline Vector spread(const double (&of)[3]) {
+  return {of[0], of[1], of[2]};
 }
-/// The axes of a vector by themselves.
-struct Components {
-  alignas(64) double of[Axes::kCount];
-
-  [[gnu::always_inline]] explicit Components(const Axes& v) { v.store(of); }
-};
-template <typename V>
-[[gnu::always_inline]] inline V abs_of(const V& v) {
+/// Calls f with what each axis has of the vectors.
+template <typename F, typename Vector, typename... V>
+[[gnu::always_inline]] inline Vector by_axis(F&& f, const Vector& a, V&&... b) {
+  return {f(a.x, b.x...), f(a.y, b.y...), f(a.z, b.z...)};
+}
+template <typename Vector>
+[[gnu::always_inline]] inline Vector abs_of(const Vector& v) {
   return by_axis([](const auto& x) { return abs(x); }, v);
 }
-[[gnu::always_inline]] inline Doubles largest_of(const Vec3<double>& v) {
+template <typename Vector>
+[[gnu::always_inline]] inline auto largest_of(const Vector& v) {
   return max(max(v.x, v.y), v.z);
 }
-[[gnu::always_inline]] inline double largest_of(const Axes& v) {
-  const Components c(v);
-  return max(max(c.of[0], c.of[1]), c.of[2]);
-}
-[[gnu::always_inline]] inline Doubles least_of(const Vec3<double>& v) {
+template <typename Vector>
+[[gnu::always_inline]] inline auto least_of(const Vector& v) {
   return min(min(v.x, v.y), v.z);
-}
-[[gnu::always_inline]] inline double least_of(const Axes& v) {
-  const Components c(v);
-  return min(min(c.of[0], c.of[1]), c.of[2]);
-}
-[[gnu::always_inline]] inline double dot(const Axes& a, const Axes& b) {
-  const Components c(a * b);
-  return c.of[0] + c.of[1] + c.of[2];
 }
 
 /// A matrix times a vector, its columns added in their order; `on_entries` is done to each before.
@@ -174,36 +154,22 @@ template <typename OnEntries>
   };
   return {row(0), row(1), row(2)};
 }
-template <typename OnEntries>
-[[gnu::always_inline]] inline Axes times(const double (&column)[3][3], const Axes& v,
-                                         OnEntries&& on_entries) {
-  const Components c(v);
-  return on_entries(join_axes(column[0][0], column[0][1], column[0][2])) * Axes(c.of[0]) +
-         on_entries(join_axes(column[1][0], column[1][1], column[1][2])) * Axes(c.of[1]) +
-         on_entries(join_axes(column[2][0], column[2][1], column[2][2])) * Axes(c.of[2]);
-}
-template <typename V>
-[[gnu::always_inline]] inline V times(const double (&column)[3][3], const V& v) {
-  return times(column, v, [](const auto& entries) { return entries; });
+[[gnu::always_inline]] inline Vec3<double> times(const double (&column)[3][3],
+                                                 const Vec3<double>& v) {
+  return times(column, v, [](const Doubles& entries) { return entries; });
 }
 
-/// Takes rays from `first` on into the frame of a surface. Gives back a bit for each that is left
-/// to the caller: those that begin far away, or whose numbers are too large or too small.
-template <typename Rays>
+/// Takes rays [first, first + kRayLanes) into the frame of a surface. Gives back a bit for each
+/// that is left to the caller: those that begin far away, or whose numbers are too large or too
+/// small.
 [[gnu::always_inline]] inline Mask16 place_some(const SurfaceFrame& frame,
-                                                const RayColumns<Rays::kRoom>& world,
-                                                std::uint32_t first,
-                                                SurfaceRayColumns<Rays::kRoom>& own) {
-  using D = typename Rays::Number;
-  using V = typename Rays::Vector;
+                                                const RayColumns<kRaysAtOnce>& world,
+                                                std::uint32_t first, SurfaceRays& own) {
+  using D = Doubles;
+  using V = Vec3<double>;
   constexpr double kLeast = 1e-300;
-  V direction;
-  load_stored(world.direction, first, direction);
-  V start;
-  load_stored(world.origin, first, start);
-  V position;
-  spread_stored(frame.position, position);
-  start = start - position;
+  const V direction = load<V>(world.direction, first);
+  const V start = load<V>(world.origin, first) - spread<V>(frame.position);
   const D fastest = largest_of(abs_of(direction));
   const D square = dot(direction, direction);
   const D towards = -dot(start, direction);
@@ -212,8 +178,8 @@ template <typename Rays>
   const D stretch = D(0.5) / power_of(longest);
   store(times(frame.to_own, start), own.ray.origin, first);
   store(way * stretch, own.ray.direction, first);
-  const D coordinate = largest_of(
-      times(frame.to_own, abs_of(start), [](const auto& entries) { return abs(entries); }));
+  const D coordinate =
+      largest_of(times(frame.to_own, abs_of(start), [](const D& entries) { return abs(entries); }));
   store(D(kRaySlack) * (coordinate + D(frame.reach)), own.slack + first);
   store(D(0.0), own.shift + first);
   store(stretch, own.stretch + first);
@@ -225,45 +191,37 @@ template <typename Rays>
   return ~bits(near & tame);
 }
 
-/// The same of one.
-inline bool place_ray(const SurfaceFrame& frame, const RayColumns<1>& world, LoneSurfaceRay& own) {
-  return (place_some<AxesInLanes>(frame, world, 0, own) & 1U) == 0;
-}
 /// The same of rays [0, count).
 inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                                 std::uint32_t count, SurfaceRays& own) {
   std::uint64_t left = 0;
   for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-    const Mask16 some = place_some<RaysInLanes>(frame, world, first, own);
+    const Mask16 some = place_some(frame, world, first, own);
     left |= std::uint64_t{some & lanes_below(kRayLanes)} << first;
   }
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;
 }
 
-/// Rays that are ready to go through a mesh, in columns. `tau` is time from where a ray comes to
-/// the mesh, in another unit: it leaves the mesh's box before tau = 3.
+/// Rays that are ready to go through a mesh, in columns. `tau` is time, in another unit, from where
+/// a ray comes to the mesh, or from where it begins near it.
 template <std::uint32_t Room>
 struct ReadyRays {
   static constexpr std::size_t kAlignment = kRayAlignment<Room>;
-  static constexpr std::uint32_t kRows = kVectorRows<Room>;
   /// Of floats, more are written than are there: those of the next rays, or slack.
   static constexpr std::uint32_t kFloats = Room == 1 ? 1 : Room + kLanes;
+  static constexpr std::uint32_t kRows = Room == 1 ? 4 : 3;
   /// tau = (t - entry) * pace.
   alignas(kAlignment) double entry[Room];
   alignas(kAlignment) double pace[Room];
-  /// Where rays are at tau = 0, and by how much they move, in the mesh's lengths.
-  alignas(kAlignment) double origin[kRows][Room];
-  alignas(kAlignment) double direction[kRows][Room];
+  /// Where rays are at tau = 0, in units of the nodes, and by how much boxes are grown for what is
+  /// wrong of that and of their ways.
+  alignas(kAlignment) float at[kRows][kFloats];
+  alignas(kAlignment) float grow[kRows][kFloats];
   /// A bound of q units is passed at q * inverse + near, or + far, where the ray enters or leaves:
   /// not later, or earlier, than it is.
   alignas(kAlignment) float inverse[kRows][kFloats];
   alignas(kAlignment) float near[kRows][kFloats];
   alignas(kAlignment) float far[kRows][kFloats];
-  /// Rows that take a vector to where it is across the ray: along two axes, less what the ray moves
-  /// along each while it does so along the third, the fastest one.
-  alignas(kAlignment) float across[2][3][kFloats];
-  /// By how much corners of triangles may be wrong there before they are rounded.
-  alignas(kAlignment) float wrong[kFloats];
 };
 
 /// The part of [0, limit] in which a ray is within bounds on an axis, grown by its slack: it enters
@@ -280,8 +238,8 @@ struct AxisPassage {
     const L zero(0.0);
     const L near = least - slack - from;
     const L far = most + slack - from;
-    const typename L::Mask stands = way == zero;
-    const typename L::Mask beside = (near > zero) | (far < zero);
+    const auto stands = way == zero;
+    const auto beside = (near > zero) | (far < zero);
     const L a = near * inverse;
     const L b = far * inverse;
     const L in = select(b < a, b, a) * L(1.0 - 0x1p-48);
@@ -301,55 +259,13 @@ struct AxisWay {
   L far;
 
   [[gnu::always_inline]] AxisWay(const L& from, const L& given, const L& grow) {
-    const L sign(-0.0);
     inverse =
-        select(abs(given) <= L(1.0 / kStandingRate), given, (given & sign) | L(kStandingInverse));
-    const L forward_grow = (inverse & sign) | grow;
+        select(abs(given) <= L(1.0 / kStandingRate), given, with_sign(L(kStandingInverse), given));
+    const L forward_grow = with_sign(grow, inverse);
     near = (-from - forward_grow) * inverse;
     far = (-from + forward_grow) * inverse;
   }
 };
-
-/// Rows that take a vector across rays are made of quotients of their directions. Which way a ray
-/// goes is as hard to foresee as a coin: nothing branches on it.
-[[gnu::always_inline]] inline void set_across(ReadyRays<kRaysAtOnce>& ready, std::uint32_t first,
-                                              const Vec3<double>& direction,
-                                              const Vec3<double>& inverse) {
-  using D = Doubles;
-  const auto y_is_faster = abs(direction.y) > abs(direction.x);
-  const auto faster = select(y_is_faster, abs(direction.y), abs(direction.x));
-  const auto z = abs(direction.z) > faster;
-  const auto y = y_is_faster & !z;
-  const auto by_fastest = [&](const D& if_x, const D& if_y, const D& if_z) {
-    return select(z, if_z, select(y, if_y, if_x));
-  };
-  const D back = -by_fastest(inverse.x, inverse.y, inverse.z);
-  const Vec3<double> along = direction * back;
-  const D one(1.0);
-  const D none(0.0);
-  store(Vec3<double>{by_fastest(along.y, none, one), by_fastest(one, along.z, none),
-                     by_fastest(none, one, along.x)},
-        ready.across[0], first);
-  store(Vec3<double>{by_fastest(along.z, one, none), by_fastest(none, along.x, one),
-                     by_fastest(one, none, along.y)},
-        ready.across[1], first);
-}
-[[gnu::always_inline]] inline void set_across(ReadyRays<1>& ready, std::uint32_t,
-                                              const Axes& direction, const Axes& inverse) {
-  constexpr int kNext[3] = {1, 2, 0};
-  const Components size(abs(direction));
-  const int faster = size.of[1] > size.of[0] ? 1 : 0;
-  const int fastest = size.of[2] > max(size.of[0], size.of[1]) ? 2 : faster;
-  const int second = kNext[fastest];
-  const int third = kNext[second];
-  const Components along(direction * Axes(-Components(inverse).of[fastest]));
-  ready.across[0][fastest][0] = static_cast<float>(along.of[second]);
-  ready.across[0][second][0] = 1.0F;
-  ready.across[0][third][0] = 0.0F;
-  ready.across[1][fastest][0] = static_cast<float>(along.of[third]);
-  ready.across[1][second][0] = 0.0F;
-  ready.across[1][third][0] = 1.0F;
-}
 
 /// Makes rays [first, first + kRayLanes) ready, or the only one there is. Gives back bits of those
 /// that do not pass the mesh by.
@@ -364,19 +280,16 @@ template <typename Rays>
                                                 ReadyRays<Rays::kRoom>& ready) {
   using D = typename Rays::Number;
   using V = typename Rays::Vector;
-  using L = typename Rays::Lane;
-  V start;
-  V direction;
+  const V start = load<V>(rays.ray.origin, first);
+  const V direction = load<V>(rays.ray.direction, first);
   D own_slack;
   D most;
-  load(rays.ray.origin, first, start);
-  load(rays.ray.direction, first, direction);
   load(rays.slack + first, own_slack);
   load(limit + first, most);
   const D one(1.0);
-  const V inverse = by_axis([](const L& way) { return L(1.0) / way; }, direction);
+  const V inverse = by_axis([](const D& way) { return D(1.0) / way; }, direction);
   V leaves;
-  const AxisPassage<L> passage{own_slack, most};
+  const AxisPassage<D> passage{own_slack, most};
   const D in = largest_of(by_axis(passage, start, direction, inverse, spread<V>(mesh.least),
                                   spread<V>(mesh.most), leaves));
   const Mask16 come = bits((in <= least_of(leaves)) & (most >= D(0.0)));
@@ -392,27 +305,62 @@ template <typename Rays>
   const D longest = select(is_slack, extent + D(2.0) * slack, extent);
   const D pace = select(is_slack, one / longest, D(mesh.pace));
   store(pace, ready.pace + first);
-  store(from, ready.origin, first);
-  store(direction * longest, ready.direction, first);
   V near;
   V far;
+  V at;
+  V grow;
   const V rate = by_axis(
-      [&](const L& at, const L& time, const L& low, const L& step, const L& units, L& to_near,
-          L& to_far) {
-        const AxisWay<L> way((at - low) * units, step * time * L(pace),
-                             L(kUnitDoubt) + L(1.001) * L(slack) * units);
+      [&](const D& place, const D& time, const D& low, const D& step, const D& units, D& in_units,
+          D& grown, D& to_near, D& to_far) {
+        in_units = (place - low) * units;
+        grown = D(kUnitDoubt) + D(1.001) * slack * units;
+        const AxisWay<D> way(in_units, step * time * pace, grown);
         to_near = way.near;
         to_far = way.far;
         return way.inverse;
       },
-      from, inverse, spread<V>(mesh.low), spread<V>(mesh.step), spread<V>(mesh.units), near, far);
+      from, inverse, spread<V>(mesh.low), spread<V>(mesh.step), spread<V>(mesh.units), at, grow,
+      near, far);
+  store(at, ready.at, first);
+  store(grow, ready.grow, first);
   store(rate, ready.inverse, first);
   store(near, ready.near, first);
   store(far, ready.far, first);
-  set_across(ready, first, direction, inverse);
-  const D wrong = min(D(4.0) * slack, D(kMostWrong)) + D(mesh.rounding);
-  store(wrong, ready.wrong + first);
   return come;
+}
+
+/// The same of a ray that begins near the mesh, as most do, and is measured from there: what passes
+/// the mesh's box by is left to its nodes. False for others.
+///
+/// Where it is takes three roundings, its inverse as many, and a bound on its way to tau four: all
+/// of them are of less than |at| and the largest bound.
+[[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh, const LoneSurfaceRay& ray,
+                                                   ReadyRays<1>& ready) {
+  const auto& start = ray.ray.origin;
+  const auto& way = ray.ray.direction;
+  const double slack = ray.slack[0];
+  const FloatAxes units = load_axes(mesh.float_units);
+  const FloatAxes at =
+      float_axes(start[0][0] - mesh.low[0], start[1][0] - mesh.low[1], start[2][0] - mesh.low[2]) *
+      units;
+  const FloatAxes away = absolute(at);
+  if (!(are_all_below(away, kNearUnits) && slack <= 0x1p-10 * mesh.extent)) return false;
+  const FloatAxes given =
+      load_axes(mesh.float_inverse) / float_axes(way[0][0], way[1][0], way[2][0]);
+  const FloatAxes inverse =
+      select_below(absolute(given), 1.0F / kNearStandingRate, given,
+                   signed_as(spread_axes(static_cast<float>(kStandingInverse)), given));
+  const FloatAxes grow = spread_axes(static_cast<float>(1.001 * slack)) * units +
+                         (away * spread_axes(kNearShare) + spread_axes(kNearDoubt));
+  const FloatAxes forward_grow = signed_as(grow, inverse);
+  ready.entry[0] = 0.0;
+  ready.pace[0] = mesh.pace;
+  store_axes(at, ready.at[0]);
+  store_axes(grow, ready.grow[0]);
+  store_axes(inverse, ready.inverse[0]);
+  store_axes((forward_grow + at) * -inverse, ready.near[0]);
+  store_axes((forward_grow - at) * inverse, ready.far[0]);
+  return true;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh

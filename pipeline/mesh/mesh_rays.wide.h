@@ -6,98 +6,33 @@
 //
 // Triangles are tested in a frame that is sheared along the ray, so that it becomes an axis, by the
 // signs of the areas between it and their sides (Woop, Benthin, Wald, "Watertight ray/triangle
-// intersection", JCGT 2013). It starts near the leaf, so that areas lose little.
+// intersection", JCGT 2013); in units of the nodes too, and by where their vertices are in the box
+// of their leaf, of which each takes four bytes.
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
+#include "simd/lanes/packed.h"
 #include "simd/lanes/positive.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Where the corners of the triangles of a leaf are across a ray, and the longest coordinate of
-/// each triangle. All are measured from a place near the leaf.
+/// Corners of triangles across a ray: where they are along two axes once they are moved along the
+/// ray to one place on the third, the fastest one, measured from the ray.
 struct CornersAcross {
   Floats x[3];
   Floats y[3];
-  Floats size{0.0F};
 };
 
-/// Takes points across a ray.
-template <std::uint32_t Room>
-class AcrossRay {
- public:
-  /// The places are measured from where the ray is at tau = `entry`.
-  [[gnu::always_inline]] AcrossRay(const ReadyRays<Room>& rays, std::uint32_t ray, float entry)
-      : rays_(rays), ray_(ray) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double way = static_cast<double>(entry) * rays.direction[axis][ray];
-      from_[axis] = Floats(static_cast<float>(rays.origin[axis][ray] + way));
-    }
-  }
-
-  /// Gives back their longest coordinates.
-  [[gnu::always_inline]] Floats operator()(const Floats (&point)[3], Floats& x, Floats& y) const {
-    const Floats at[3] = {point[0] - from_[0], point[1] - from_[1], point[2] - from_[2]};
-    x = along(at, rays_.across[0]);
-    y = along(at, rays_.across[1]);
-    return max(max(abs(at[0]), abs(at[1])), abs(at[2]));
-  }
-
-  /// Of corners, each by itself.
-  [[gnu::always_inline]] CornersAcross corners(const MeshView& mesh, std::uint32_t leaf) const {
-    CornersAcross r;
-    for (std::size_t k = 0; k < 3; ++k) {
-      Floats corner[3];
-      load_corners(mesh, leaf, k, corner);
-      r.size = max(r.size, (*this)(corner, r.x[k], r.y[k]));
-    }
-    return r;
-  }
-  /// The same by way of the vertices that the leaf lists.
-  template <int Blocks>
-  [[gnu::always_inline]] CornersAcross listed(const MeshView& mesh, std::uint32_t leaf) const {
-    Floats x[Blocks];
-    Floats y[Blocks];
-    Floats size[Blocks];
-    each_vertex_block<Blocks>(mesh, leaf, [&](int block, const Floats(&vertex)[3]) {
-      size[block] = (*this)(vertex, x[block], y[block]);
-    });
-    CornersAcross r;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const LanePlaces places(places_of(mesh, leaf, k));
-      r.x[k] = places.pick(x);
-      r.y[k] = places.pick(y);
-      r.size = max(r.size, places.pick(size));
-    }
-    return r;
-  }
-
- private:
-  [[gnu::always_inline]] Floats along(const Floats (&at)[3],
-                                      const float (&row)[3][ReadyRays<Room>::kFloats]) const {
-    const Floats first = at[0] * Floats(row[0][ray_]);
-    return multiply_add(at[2], Floats(row[2][ray_]),
-                        multiply_add(at[1], Floats(row[1][ray_]), first));
-  }
-
-  const ReadyRays<Room>& rays_;
-  const std::uint32_t ray_;
-  Floats from_[3];
-};
-
-/// Which of those triangles the line of the ray may meet, which may be wrong by `ray_wrong`.
+/// Which of those triangles the line of the ray may meet, if coordinates are wrong by less than
+/// `wrong`, less 0.03 units for roundings of products, of 3 u of a coordinate of 2^17.
 ///
-/// Coordinates of corners, no longer than `size`, are wrong by u of themselves, and in the sheared
-/// frame, where they are at most twice as long, by less than `wrong`: by 6 u of `size` and by what
-/// the ray is. The area of two such corners is wrong by less than `doubt`.
-[[gnu::always_inline]] inline Mask16 around_line(const CornersAcross& at, float ray_wrong) {
-  constexpr float kUnit = 0x1p-24F;
-  const Floats& size = at.size;
-  const Floats wrong = multiply_add(size, Floats(8.0F * kUnit), Floats(ray_wrong));
-  const Floats rounded = multiply_add(size, Floats(20.0F * kUnit), wrong * Floats(8.5F));
-  const Floats doubt =
-      multiply_add(size, rounded, multiply_add(wrong * Floats(2.5F), wrong, Floats(1e-36F)));
+/// The product of two corners is wrong by less than `wrong` times the coordinates of both and twice
+/// its square.
+[[gnu::always_inline]] inline Mask16 around_line(const CornersAcross& at, float wrong) {
+  const auto taxicab = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
+  const Floats doubt = multiply_add(taxicab(0) + taxicab(1) + taxicab(2), Floats(wrong),
+                                    Floats(2.1F * wrong * wrong));
   const Floats a = at.x[2] * at.y[1] - at.y[2] * at.x[1];
   const Floats b = at.x[0] * at.y[2] - at.y[0] * at.x[2];
   const Floats c = at.x[1] * at.y[0] - at.y[1] * at.x[0];
@@ -105,18 +40,104 @@ class AcrossRay {
   return ~bits(misses) & 0xFFFFU;
 }
 
-/// Which triangles of a leaf the line of the ray may meet, which enters the leaf at `entry`.
-template <std::uint32_t Room>
-[[gnu::always_inline]] inline Mask16 on_line(const MeshView& mesh, std::uint32_t leaf,
-                                             const ReadyRays<Room>& rays, std::uint32_t ray,
-                                             float entry) {
-  const AcrossRay<Room> across(rays, ray, entry);
-  const float wrong = rays.wrong[ray];
-  const int blocks = vertex_blocks(mesh, leaf);
-  if (blocks == 1) return around_line(across.template listed<1>(mesh, leaf), wrong);
-  if (blocks == 2) return around_line(across.template listed<2>(mesh, leaf), wrong);
-  return around_line(across.corners(mesh, leaf), wrong);
-}
+/// The line of a ray, in units.
+class RayLine {
+ public:
+  template <std::uint32_t Room>
+  [[gnu::always_inline]] void set(const ReadyRays<Room>& rays, std::uint32_t ray) {
+    constexpr std::uint32_t kNext[3] = {1, 2, 0};
+    const auto size = [&](std::uint32_t axis) { return __builtin_fabsf(rays.inverse[axis][ray]); };
+    const std::uint32_t faster = size(1) < size(0) ? 1 : 0;
+    const std::uint32_t fastest = size(2) < size(faster) ? 2 : faster;
+    const std::uint32_t side[2] = {kNext[fastest], kNext[kNext[fastest]]};
+    float wrong[2];
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      const std::uint32_t axis = side[k];
+      const float slope = -rays.inverse[fastest][ray] / rays.inverse[axis][ray];
+      across_[k][fastest] = slope;
+      across_[k][axis] = 1.0F;
+      across_[k][side[1 - k]] = 0.0F;
+      at_[k] = rays.at[axis][ray] + slope * rays.at[fastest][ray];
+      wrong[k] = rays.grow[axis][ray] + __builtin_fabsf(slope) * rays.grow[fastest][ray];
+    }
+    wrong_ = larger(wrong[0], wrong[1]) + kRoundings;
+  }
+
+  /// Which triangles of a leaf it may meet.
+  [[gnu::always_inline]] Mask16 near(const MeshView& mesh, std::uint32_t leaf) const {
+    const int blocks = mesh.leaf_point != nullptr ? vertex_blocks(mesh, leaf) : 0;
+    if (blocks == 1) return near_listed<1>(mesh, leaf);
+    if (blocks == 2) return near_listed<2>(mesh, leaf);
+    return near_corners(mesh, leaf);
+  }
+
+ private:
+  /// For those of coordinates from here on, of 65536 units or their products.
+  static constexpr float kRoundings = 0.06F;
+
+  [[gnu::always_inline]] static float larger(float a, float b) { return a > b ? a : b; }
+
+  /// By way of the vertices that the leaf lists, which are wrong by half a step each.
+  template <int Blocks>
+  [[gnu::always_inline]] Mask16 near_listed(const MeshView& mesh, std::uint32_t leaf) const {
+    const std::uint16_t* const bounds = mesh.node[0] + place_of_bound(leaf, 0);
+    float row[2][3];
+    float from[2] = {-at_[0], -at_[1]};
+    float steps[2] = {0.0F, 0.0F};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = static_cast<float>(bounds[axis * kLanes]);
+      const auto high = static_cast<float>(bounds[(3 + axis) * kLanes]);
+      const float step = (high - low) * (1.0F / kMaxLeafPoint);
+      for (int k = 0; k < 2; ++k) {
+        row[k][axis] = across_[k][axis] * step;
+        from[k] += across_[k][axis] * low;
+        steps[k] += __builtin_fabsf(row[k][axis]);
+      }
+    }
+    Floats x[Blocks];
+    Floats y[Blocks];
+    for (int block = 0; block < Blocks; ++block) {
+      Floats point[3];
+      load_packed(mesh.leaf_point + block_of(mesh, leaf, block) * kMeshFanout, point);
+      x[block] = along(row[0], point, from[0]);
+      y[block] = along(row[1], point, from[1]);
+    }
+    CornersAcross at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LanePlaces places(places_of(mesh, leaf, k));
+      at.x[k] = places.pick(x);
+      at.y[k] = places.pick(y);
+    }
+    return around_line(at, wrong_ + 0.51F * larger(steps[0], steps[1]));
+  }
+
+  /// By way of each corner's own vertex.
+  [[gnu::always_inline]] Mask16 near_corners(const MeshView& mesh, std::uint32_t leaf) const {
+    CornersAcross at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Floats corner[3];
+      load_corners(mesh, leaf, k, corner);
+      for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] =
+            (corner[axis] - Floats(mesh.origin[axis])) * Floats(mesh.span.float_units[axis]);
+      }
+      at.x[k] = along(across_[0], corner, -at_[0]);
+      at.y[k] = along(across_[1], corner, -at_[1]);
+    }
+    return around_line(at, wrong_);
+  }
+
+  [[gnu::always_inline]] static Floats along(const float* row, const Floats (&at)[3], float from) {
+    return multiply_add(
+        at[0], Floats(row[0]),
+        multiply_add(at[1], Floats(row[1]), multiply_add(at[2], Floats(row[2]), Floats(from))));
+  }
+
+  /// Rows that take a vector across it, and where it is across itself.
+  float across_[2][3];
+  float at_[2];
+  float wrong_;
+};
 
 /// What a ray does next: goes into a node, asks for the vertices of a leaf whose corners are there,
 /// finds out which of its triangles its line may meet, looks whether it does, turns to the nodes
@@ -140,9 +161,10 @@ class RayWalk {
  public:
   static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
 
-  /// `ray`: its place among those that are ready, and as its visitor knows it.
-  void start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
-             const ReadyRays<kRoom>& rays, std::uint32_t ray, double limit) {
+  /// `ray`: its place among those that are ready, and as its visitor knows it. Gives its first
+  /// step.
+  RayStep start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
+                const ReadyRays<kRoom>& rays, std::uint32_t ray, double limit) {
     own_ = &own;
     rays_ = &rays;
     ray_ = ray;
@@ -151,13 +173,14 @@ class RayWalk {
       near_bound_[axis] = (axis + 3U * upper) * kMeshFanout;
       far_bound_[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
     }
+    if (mesh.box == nullptr) line_.set(rays, ray);
     set_limit(limit);
     size_ = 0;
     // What is below a top level of few nodes is nearly as soon asked.
     const std::uint32_t top = mesh.levels - 1;
-    if (top == 0 || mesh.count[top] > 2) return wait(mesh, top, 0);
-    if (mesh.count[top] == 1) return wait(mesh, top - 1, 0);
-    wait_for_two(mesh, top - 1);
+    if (top != 0 && mesh.count[top] == 2) return start_between_two(mesh, top - 1);
+    const std::uint32_t level = top != 0 && mesh.count[top] == 1 ? top - 1 : top;
+    return meet(mesh, level, 0) ? step_into(level << kLevelShift) : kTakeNext;
   }
 
   /// Turns to the nearest of the nodes that came last; or drops those that are left of them, if it
@@ -197,28 +220,32 @@ class RayWalk {
   }
   /// False if its line meets none of them.
   [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
-    asked_.triangles &= on_line(mesh, asked_.leaf, *rays_, ray_, asked_.entry);
+    asked_.triangles &= line_.near(mesh, asked_.leaf);
     return asked_.triangles != 0;
   }
   /// False if the visitor has seen enough.
   bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
     return cross_triangles(mesh, asked_, visitor);
   }
-  /// The whole way of one ray. A leaf is looked at after the next nodes, while its vertices come.
-  void go(const MeshView& mesh, const RaySlotVisitor& visitor) {
+  /// The whole way of one ray. A leaf whose triangles have boxes is looked at after the next nodes,
+  /// while its vertices come; of others nearly all is at hand.
+  void go(const MeshView& mesh, RayStep step, const RaySlotVisitor& visitor) {
     asked_.triangles = 0;
-    for (RayStep step = kTakeNext;;) {
+    for (;;) {
       while (step == kEnterInner || step == kTakeNext) {
         step = step == kEnterInner ? enter_inner(mesh) : take_next();
       }
-      Asked asked = asked_;
+      if (mesh.box == nullptr) {
+        if (step == kEnd) return;
+        step = kTakeNext;
+        if (enter_leaf(mesh) && find_triangles(mesh) && !cross_triangles(mesh, visitor)) return;
+        continue;
+      }
+      const Asked asked = asked_;
       asked_.triangles = 0;
       if (step == kEnterLeaf && enter_leaf(mesh)) fetch_vertices(mesh);
-      if (asked.triangles != 0 && asked.entry <= last_) {
-        if (mesh.box == nullptr) {
-          asked.triangles &= on_line(mesh, asked.leaf, *rays_, ray_, asked.entry);
-        }
-        if (!cross_triangles(mesh, asked, visitor)) return;
+      if (asked.triangles != 0 && asked.entry <= last_ && !cross_triangles(mesh, asked, visitor)) {
+        return;
       }
       if (step == kEnd && asked_.triangles == 0) return;
       step = kTakeNext;
@@ -293,25 +320,25 @@ class RayWalk {
     rest_[size_] = rest;
     first_node_[size_] = first_node;
   }
-  /// Lets those of sixteen nodes wait that the ray meets.
-  void wait(const MeshView& mesh, std::uint32_t level, std::uint32_t first_node) {
-    Floats key;
-    const Mask16 hits = find(mesh, level, first_node, key);
-    put(key, level << kLevelShift | first_node, hits, 0.0F);
-    size_ += hits != 0 ? 1U : 0U;
-  }
-  /// The same of a level of two blocks, of which the nearer one comes last.
-  void wait_for_two(const MeshView& mesh, std::uint32_t level) {
+  /// Lets the nodes that the ray meets on a level of two blocks wait, of which the nearer one comes
+  /// last, and turns to the nearest.
+  RayStep start_between_two(const MeshView& mesh, std::uint32_t level) {
     Floats key[2];
     const Mask16 hits[2] = {find(mesh, level, 0, key[0]), find(mesh, level, kLanes, key[1])};
-    const bool is_first_nearer = reduce_min_positive(key[0]) < reduce_min_positive(key[1]);
+    const std::uint32_t nearest[2] = {reduce_min_positive(key[0]), reduce_min_positive(key[1])};
+    const std::uint32_t nearer = nearest[0] < nearest[1] ? 0 : 1;
+    const std::uint32_t least = nearest[0] < nearest[1] ? nearest[0] : nearest[1];
     for (std::uint32_t k = 0; k < 2; ++k) {
-      size_ = (k == 0) == is_first_nearer ? 1U : 0U;
+      size_ = k == nearer ? 1U : 0U;
       put(key[k], level << kLevelShift | k * kLanes, hits[k], 0.0F);
     }
-    size_ = 2;
+    gone_to_[1] = __builtin_bit_cast(float, least);
+    rest_[1] &= ~(1U << least % kLanes);
+    size_ = rest_[1] != 0 ? 2 : 1;
+    return aim(least, first_node_[1]) ? step_into(first_node_[1]) : kTakeNext;
   }
-  /// The same, but aims at the nearest of them: false if there is none.
+  /// Lets those of sixteen nodes wait that the ray meets, and aims at the nearest of them: false if
+  /// there is none.
   [[gnu::always_inline]] bool meet(const MeshView& mesh, std::uint32_t level,
                                    std::uint32_t first_node) {
     Floats key;
@@ -343,6 +370,9 @@ class RayWalk {
   static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
     if (mesh.corner[0] == nullptr) {
       __builtin_prefetch(mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout);
+      if (mesh.leaf_point != nullptr) {
+        __builtin_prefetch(mesh.leaf_point + std::size_t{leaf} * kMeshFanout);
+      }
       __builtin_prefetch(places_of(mesh, leaf, 0));
       __builtin_prefetch(places_of(mesh, leaf, 2));
       return;
@@ -370,12 +400,10 @@ class RayWalk {
     if (!Alone && asked_.triangles != 0) fetch_corners(mesh, leaf);
   }
 
-  /// Asks for their vertices, once their corners are there; neighbours in a leaf without boxes
-  /// share most of them.
+  /// Asks for their vertices, once their corners are there.
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh, const Asked& asked) const {
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
-    Mask16 rest = mesh.box != nullptr ? asked.triangles : 1U;
-    for (; rest != 0; rest &= rest - 1) {
+    for (Mask16 rest = asked.triangles; rest != 0; rest &= rest - 1) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = corner_of(mesh, k, first_slot + first(rest));
         __builtin_prefetch(mesh.vertex + std::size_t{3} * corner);
@@ -403,6 +431,8 @@ class RayWalk {
 
   const SurfaceRayColumns<kRoom>* own_;
   const ReadyRays<kRoom>* rays_;
+  /// Not set where triangles have boxes.
+  RayLine line_;
   std::uint32_t ray_;
   /// Where the bounds of sixteen nodes lie that it passes as it enters and leaves them.
   std::uint32_t near_bound_[3];
@@ -439,11 +469,11 @@ class WaitingRays {
   }
 
   /// Lets the next one start that does not pass the mesh by; false if there is none.
-  [[gnu::always_inline]] bool start(RayWalk<false>& walk) {
+  [[gnu::always_inline]] bool start(RayWalk<false>& walk, RayStep& step) {
     if (come_ == 0) return false;
     const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
     come_ &= come_ - 1;
-    walk.start(mesh_, rays_, ready_, ray, limits_[ray]);
+    step = walk.start(mesh_, rays_, ready_, ray, limits_[ray]);
     return true;
   }
 
@@ -464,26 +494,21 @@ class RaysSideBySide {
 
   void run() {
     for (Walk& walk : walk_) begin(walk);
-    const RayStep look = mesh_.box != nullptr ? kCrossTriangles : kFindTriangles;
-    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : look;
+    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : kFindTriangles;
     while (going_ != 0) {
       // Asked for before other rays take their steps.
       for (Walk* const walk : steps_[kEnterLeaf]) walk->fetch_leaf(mesh_);
-      each(kFindTriangles, [&](Walk& walk) {
-        put(walk, walk.find_triangles(mesh_) ? kCrossTriangles : kTakeNext);
-      });
+      each(kFindTriangles,
+           [&](Walk& walk) { put(walk, walk.find_triangles(mesh_) ? kFetchVertices : kTakeNext); });
       each(kCrossTriangles, [&](Walk& walk) {
         put(walk, walk.cross_triangles(mesh_, visitor_) ? kTakeNext : kEnd);
       });
       each(kFetchVertices, [&](Walk& walk) {
         walk.fetch_vertices(mesh_);
-        put(walk, look);
+        put(walk, kCrossTriangles);
       });
-      each(kEnterLeaf, [&](Walk& walk) {
-        const bool is_met = walk.enter_leaf(mesh_);
-        if (first_step == look) walk.fetch_vertices(mesh_);
-        put(walk, is_met ? first_step : kTakeNext);
-      });
+      each(kEnterLeaf,
+           [&](Walk& walk) { put(walk, walk.enter_leaf(mesh_) ? first_step : kTakeNext); });
       each(kEnterInner, [&](Walk& walk) { put(walk, walk.enter_inner(mesh_)); });
       each(kTakeNext, [&](Walk& walk) { put(walk, walk.take_next()); });
       each(kEnd, [&](Walk& walk) {
@@ -507,9 +532,10 @@ class RaysSideBySide {
 
   /// Lets the next ray go whose turn it is, if there is one.
   void begin(Walk& walk) {
-    if (!waiting_.start(walk)) return;
+    RayStep step;
+    if (!waiting_.start(walk, step)) return;
     ++going_;
-    put(walk, kTakeNext);
+    put(walk, step);
   }
   [[gnu::always_inline]] void put(Walk& walk, RayStep step) {
     Waiting& waiting = steps_[step];
@@ -540,11 +566,14 @@ inline void show_on_rays(const MeshView& mesh, const SurfaceRays& rays, const do
 /// The same of one ray.
 inline void show_on_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
                         const RaySlotVisitor& visitor) {
+  if (!(limit >= 0.0)) return;
   ReadyRays<1> ready;
-  if (make_ready<AxesInLanes>(mesh.span, ray, &limit, 0, ready) == 0) return;
+  if (!make_near_ready(mesh.span, ray, ready) &&
+      make_ready<RayInNumbers>(mesh.span, ray, &limit, 0, ready) == 0) {
+    return;
+  }
   RayWalk<true> walk;
-  walk.start(mesh, ray, ready, 0, limit);
-  walk.go(mesh, visitor);
+  walk.go(mesh, walk.start(mesh, ray, ready, 0, limit), visitor);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -156,8 +156,6 @@ struct MeshKernels {
   /// Takes rays into the frame of a surface; gives back a bit for each that is left to the caller.
   std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                               std::uint32_t count, SurfaceRays& own);
-  /// The same of one; false if it is left.
-  bool (*place_ray)(const SurfaceFrame& frame, const RayColumns<1>& world, LoneSurfaceRay& own);
   void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor);
   void (*ray)(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,

@@ -33,11 +33,11 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 }  // namespace WINNOW_ISA_NAME::mesh
 
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
-    WINNOW_ISA_NAME::mesh::find_overlaps,  WINNOW_ISA_NAME::mesh::find_pairs,
-    WINNOW_ISA_NAME::mesh::show_swept,     WINNOW_ISA_NAME::mesh::show_near_pairs,
-    WINNOW_ISA_NAME::mesh::place_rays,     WINNOW_ISA_NAME::mesh::place_ray,
-    WINNOW_ISA_NAME::mesh::show_on_rays,   WINNOW_ISA_NAME::mesh::show_on_ray,
-    WINNOW_ISA_NAME::mesh::cross_triangle, WINNOW_ISA_NAME::mesh::show_near,
+    WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
+    WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_near_pairs,
+    WINNOW_ISA_NAME::mesh::place_rays,    WINNOW_ISA_NAME::mesh::show_on_rays,
+    WINNOW_ISA_NAME::mesh::show_on_ray,   WINNOW_ISA_NAME::mesh::cross_triangle,
+    WINNOW_ISA_NAME::mesh::show_near,
 };
 
 }  // namespace winnow

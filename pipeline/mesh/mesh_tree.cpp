@@ -42,23 +42,28 @@ bool has_boxes(const MeshView& view) {
   return view.vertex_count > view.triangle_count;
 }
 
+/// Calls look(at) for each place in a list of those of its vertices that a leaf has.
+template <typename Look>
+void each_listed(const MeshView& view, std::size_t leaf, Look&& look) {
+  const auto each = [&](std::size_t block, std::size_t blocks) {
+    for (std::size_t at = block * kMeshFanout; at < (block + blocks) * kMeshFanout; ++at) look(at);
+  };
+  each(leaf, 1);
+  if (view.leaf_more == nullptr) return;
+  each(std::size_t{view.count[0]} + view.leaf_more[leaf],
+       view.leaf_more[leaf + 1] - view.leaf_more[leaf]);
+}
+
 /// Calls look(number) for the vertices of a leaf: for shared ones once, where leaves list theirs.
 template <typename Look>
 void each_vertex(const MeshView& view, std::size_t leaf, Look&& look) {
-  const auto each = [&](const std::uint32_t* numbers, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) look(numbers[i]);
-  };
-  if (view.corner[0] != nullptr) {
-    for (const std::uint32_t* const column : view.corner) {
-      each(column + leaf * kMeshFanout, kMeshFanout);
-    }
-    return;
+  if (view.corner[0] == nullptr) {
+    return each_listed(view, leaf, [&](std::size_t at) { look(view.leaf_vertex[at]); });
   }
-  each(view.leaf_vertex + leaf * kMeshFanout, kMeshFanout);
-  if (view.leaf_more == nullptr) return;
-  const std::size_t first = std::size_t{view.count[0]} + view.leaf_more[leaf];
-  const std::size_t blocks = view.leaf_more[leaf + 1] - view.leaf_more[leaf];
-  each(view.leaf_vertex + first * kMeshFanout, blocks * kMeshFanout);
+  for (const std::uint32_t* const column : view.corner) {
+    const std::uint32_t* const own = column + leaf * kMeshFanout;
+    for (std::size_t i = 0; i < kMeshFanout; ++i) look(own[i]);
+  }
 }
 
 struct FloatBox {
@@ -100,15 +105,8 @@ void choose_scale(MeshView& view, const float low[3], const float high[3]) {
   }
 }
 
-double rounding_of(double farthest) noexcept {
-  constexpr double kFarthest = 1e37;
-  return farthest < kFarthest ? 0x1p-21 * farthest + 1e-36
-                              : std::numeric_limits<double>::infinity();
-}
-
 MeshSpan span_of(const MeshView& mesh) noexcept {
   MeshSpan span{};
-  double farthest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     span.low[axis] = static_cast<double>(mesh.origin[axis]);
     span.step[axis] = static_cast<double>(mesh.step[axis]);
@@ -116,10 +114,15 @@ MeshSpan span_of(const MeshView& mesh) noexcept {
     span.least[axis] = span.low[axis] - span.step[axis];
     span.most[axis] = span.low[axis] + (kMaxNodeBound + 1.0) * span.step[axis];
     span.extent = std::max(span.extent, span.most[axis] - span.least[axis]);
-    farthest = std::max({farthest, std::abs(span.least[axis]), std::abs(span.most[axis])});
   }
   span.pace = 1.0 / span.extent;
-  span.rounding = rounding_of(farthest);
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double kThinnest = 1e-20;
+    const double inverse = span.step[axis] * span.pace;
+    span.float_units[axis] = inverse > kThinnest ? static_cast<float>(span.units[axis])
+                                                 : std::numeric_limits<float>::infinity();
+    span.float_inverse[axis] = static_cast<float>(inverse);
+  }
   return span;
 }
 
@@ -168,14 +171,38 @@ void join_boxes(const std::uint16_t* below, std::uint32_t children, std::uint16_
   }
 }
 
+/// Where the vertices of a leaf, whose box is written, are in it.
+void write_points(const MeshView& view, std::uint32_t leaf, std::uint32_t* points) {
+  double low[3];
+  double share[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = bound_of(view, 0, leaf, axis);
+    const double extent = bound_of(view, 0, leaf, 3 + axis) - low[axis];
+    share[axis] = extent > 0.0 ? kMaxLeafPoint / extent : 0.0;
+  }
+  each_listed(view, leaf, [&](std::size_t at) {
+    std::uint32_t packed = 0;
+    for (std::size_t axis = 3; axis-- > 0;) {
+      const double x = static_cast<double>(coordinate(view, view.leaf_vertex[at], axis));
+      const double inside =
+          ((x - view.span.low[axis]) * view.span.units[axis] - low[axis]) * share[axis];
+      const double nearest = std::clamp(inside + 0.5, 0.0, static_cast<double>(kMaxLeafPoint));
+      packed = packed << kLeafPointBits | static_cast<std::uint32_t>(nearest);
+    }
+    points[at] = packed;
+  });
+}
+
 /// Leaves [first, end), and their triangles where these have boxes.
-void fit_leaves(const MeshView& view, std::uint16_t* words, std::size_t first, std::size_t end) {
+void fit_leaves(const MeshView& view, std::uint16_t* words, std::uint32_t* points,
+                std::size_t first, std::size_t end) {
   std::uint16_t* const leaves = words + (view.node[0] - words);
   std::uint16_t* const boxes = view.box != nullptr ? words + (view.box - words) : nullptr;
   for (std::size_t i = first; i < end; ++i) {
     const std::size_t slot = i * kMeshFanout;
     if (boxes == nullptr) {
       write_box(view, box_of_leaf(view, i), leaves, i);
+      if (points != nullptr) write_points(view, static_cast<std::uint32_t>(i), points);
       continue;
     }
     for (std::size_t k = slot; k < slot + kMeshFanout; ++k) {
@@ -250,8 +277,8 @@ void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept {
   view.box = has_boxes(view) ? words : nullptr;
 }
 
-void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float high[3],
-                     const Execution& execution) noexcept {
+void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points, float low[3],
+                     float high[3], const Execution& execution) noexcept {
   FloatBox all;
   for (std::size_t leaf = 0; leaf < view.count[0]; ++leaf) {
     each_vertex(view, leaf, [&](std::uint32_t vertex) { all.add(view, vertex); });
@@ -261,8 +288,9 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float h
   choose_scale(view, low, high);
   view.span = span_of(view);
   const std::size_t leaves = view.count[0];
-  for_stretches(execution, leaves, kLeavesPerStretch,
-                [&](std::size_t first, std::size_t end) { fit_leaves(view, words, first, end); });
+  for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
+    fit_leaves(view, words, points, first, end);
+  });
   pad_levels(view, words);
   for (std::uint32_t level = 1; level < view.levels; ++level) fit_upper_level(view, level, words);
 }

@@ -27,10 +27,11 @@ namespace winnow {
 /// Points the levels of a planned view at `words`.
 void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept;
 
-/// Fills `words`, to which the levels of `view` point, with the bounds of its triangles; sets
-/// origin and step, and gives the box of all triangles. O(n).
-void fit_mesh_levels(MeshView& view, std::uint16_t* words, float low[3], float high[3],
-                     const Execution& execution) noexcept;
+/// Fills `words`, to which the levels of `view` point, with the bounds of its triangles, and
+/// `points`, which are its leaf_point; sets origin and step, and gives the box of all triangles.
+/// O(n).
+void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points, float low[3],
+                     float high[3], const Execution& execution) noexcept;
 
 /// The order of triangles by which near ones share leaves: slot i is triangle order[i]. False if
 /// memory is refused. Corners are those of the caller's triangles.

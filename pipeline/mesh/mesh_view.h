@@ -20,6 +20,9 @@ inline constexpr std::uint32_t kMaxTriangles = 1U << kActiveEdgeShift;
 inline constexpr std::uint32_t kTriangleNumberMask = kMaxTriangles - 1U;
 /// The largest bound of a node.
 inline constexpr std::uint32_t kMaxNodeBound = 65535;
+/// The largest coordinate of a vertex in the box of its leaf, of which each takes so many bits.
+inline constexpr std::uint32_t kLeafPointBits = 10;
+inline constexpr std::uint32_t kMaxLeafPoint = (1U << kLeafPointBits) - 1U;
 
 /// What every ray needs of a mesh.
 struct MeshSpan {
@@ -29,12 +32,13 @@ struct MeshSpan {
   /// Of the box of all nodes, with a step to spare on each side.
   double least[3];
   double most[3];
+  /// Units, and steps times the pace, once more: infinite units where the mesh is so thin that
+  /// these may be too small for float. The last of four is for loads of them all.
+  float float_units[4];
+  float float_inverse[4];
   /// The longest side of that box, and tau for each t.
   double extent;
   double pace;
-  /// What rounding the coordinates of rays to float makes of corners. Everything is in doubt where
-  /// differences of coordinates may leave the range of float.
-  double rounding;
 };
 
 /// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
@@ -52,6 +56,10 @@ struct MeshView {
   /// sixteen are filled up by the last.
   const std::uint32_t* leaf_vertex = nullptr;
   const std::uint32_t* leaf_more = nullptr;
+  /// Where each of them is in the box of its leaf, as nodes have it: at 0 on its lower bounds, at
+  /// kMaxLeafPoint on its upper ones, rounded to the nearest; x in the lowest bits. Null where
+  /// triangles have boxes.
+  const std::uint32_t* leaf_point = nullptr;
   /// Which of them corner k of slot 16 i + l is, at 48 i + 16 k + l.
   const std::uint8_t* leaf_place = nullptr;
   /// The caller's number of the triangle in the low 28 bits, and its active edges.
@@ -105,6 +113,16 @@ struct MeshView {
 [[nodiscard]] inline float coordinate(const MeshView& mesh, std::uint32_t vertex,
                                       std::size_t axis) {
   return mesh.vertex[std::size_t{3} * vertex + axis];
+}
+
+/// The corners of the triangle of a slot.
+inline void put_corners(const MeshView& mesh, std::size_t slot, double (&corner)[3][3]) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t number = corner_of(mesh, k, slot);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[k][axis] = static_cast<double>(coordinate(mesh, number, axis));
+    }
+  }
 }
 
 /// That of a mesh with nothing built has no triangles.

@@ -2,6 +2,8 @@
 
 // Plain structs: kernel files include this.
 
+#include <winnow/pipeline/surface_frame.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -19,18 +21,14 @@ inline constexpr double kMostRayLength = 1e150;
 /// theirs into the world.
 inline constexpr double kRaySlack = 0x1p-46;
 
-/// Rows of a column of vectors: those of a lone ray, whose numbers follow each other, are written
-/// four at a time.
-template <std::uint32_t Room>
-inline constexpr std::uint32_t kVectorRows = Room == 1 ? 4 : 3;
 template <std::uint32_t Room>
 inline constexpr std::size_t kRayAlignment = Room == 1 ? 8 : 64;
 
 /// Rays by component.
 template <std::uint32_t Room>
 struct RayColumns {
-  alignas(kRayAlignment<Room>) double origin[kVectorRows<Room>][Room];
-  alignas(kRayAlignment<Room>) double direction[kVectorRows<Room>][Room];
+  alignas(kRayAlignment<Room>) double origin[3][Room];
+  alignas(kRayAlignment<Room>) double direction[3][Room];
 };
 
 /// A ray in the own frame of a mesh or height field, whose length along it is about that of t.
@@ -68,16 +66,6 @@ struct SurfaceRayColumns {
 
 using SurfaceRays = SurfaceRayColumns<kRaysAtOnce>;
 using LoneSurfaceRay = SurfaceRayColumns<1>;
-
-/// Where a surface stands, and the matrix that takes the world's vectors into its frame. No
-/// coordinate of it is larger than `reach` in that frame, or than `size` in the world's axes.
-struct SurfaceFrame {
-  double position[3];
-  /// By columns.
-  double to_own[3][3];
-  double reach;
-  double size;
-};
 
 enum class Crossing : std::uint8_t { none, found, doubtful };
 

@@ -71,6 +71,7 @@ struct TriangleMesh::State {
   void place_vertices(const PointView& vertices) noexcept;
   void link() noexcept;
   [[nodiscard]] bool list_corners() noexcept;
+  void fit_levels(const Execution& execution) noexcept;
   void fit(const Execution& execution) noexcept;
 
   Column<float> vertex;
@@ -212,7 +213,7 @@ Status TriangleMesh::State::read(ByteReader& in, const Execution& execution) noe
   place_vertices(PointView({first, first + 1, first + 2}, view.vertex_count, 3 * sizeof(float)));
   link();
   if (!list_corners()) return Status::out_of_memory;
-  fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
+  fit_levels(execution);
   return Status::ok;
 }
 
@@ -302,8 +303,13 @@ bool TriangleMesh::State::list_corners() noexcept {
   return true;
 }
 
+void TriangleMesh::State::fit_levels(const Execution& execution) noexcept {
+  fit_mesh_levels(view, nodes.data(), leaf_corners.points(), bounds.min.data(), bounds.max.data(),
+                  execution);
+}
+
 void TriangleMesh::State::fit(const Execution& execution) noexcept {
-  fit_mesh_levels(view, nodes.data(), bounds.min.data(), bounds.max.data(), execution);
+  fit_levels(execution);
   mark_active_edges(view, neighbours, options.active_edge_angle, triangle.data());
 }
 

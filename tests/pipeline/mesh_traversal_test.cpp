@@ -467,6 +467,71 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
   }
 }
 
+/// Whether a ray from `from`, at the pace of `way`, is shown a triangle at which it is aimed.
+bool is_shown(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& way,
+              std::uint32_t aim) {
+  SurfaceRay ray{};
+  Eigen::Vector3d::Map(ray.origin) = from;
+  Eigen::Vector3d::Map(ray.direction) = way * (0.75 / way.cwiseAbs().maxCoeff());
+  ray.slack = 0x1p-46 * (from.cwiseAbs().maxCoeff() + mesh.radius());
+  ray.high = std::numeric_limits<double>::infinity();
+  struct Sought {
+    std::uint32_t slot;
+    bool is_seen;
+  } sought{aim, false};
+  mesh_ray(view_of(mesh), lone(ray), ray.high,
+           {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&, double most) {
+              auto& by = *static_cast<Sought*>(context);
+              by.is_seen = by.is_seen || by.slot == slot;
+              return most;
+            },
+            [](void* context, std::uint32_t, std::uint32_t slot, double most) {
+              auto& by = *static_cast<Sought*>(context);
+              by.is_seen = by.is_seen || by.slot == slot;
+              return most;
+            },
+            &sought});
+  return sought.is_seen;
+}
+
+TEST(MeshRays, are_shown_triangles_of_flat_and_of_thin_meshes_from_near_and_far) {
+  Random random(17);
+  constexpr std::uint32_t kCells = 24;
+  for (const double height : {0.0, 1e-30, 1e-12, 1e-4, 1.0}) {
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t y = 0; y <= kCells; ++y) {
+      for (std::uint32_t x = 0; x <= kCells; ++x) {
+        vertices.emplace_back(x, y, height * random.uniform(0, 1));
+        if (x == kCells || y == kCells) continue;
+        const std::uint32_t i = y * (kCells + 1) + x;
+        const std::uint32_t above = i + kCells + 1;
+        corners.insert(corners.end(), {i, i + 1, above + 1, i, above + 1, above});
+      }
+    }
+    TriangleMesh mesh;
+    ASSERT_EQ(mesh.build(std::span<const Eigen::Vector3d>(vertices),
+                         std::span<const std::uint32_t>(corners)),
+              Status::ok);
+    const auto triangles = twin(view_of(mesh));
+    for (std::size_t k = 0; k < scaled(400); ++k) {
+      const auto aim = static_cast<std::uint32_t>(random.below(triangles.size()));
+      const Eigen::Vector3d at = point_of(triangles[aim], random);
+      Eigen::Vector3d way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (random.chance(0.3)) way[2] *= 1e-9;
+      if (random.chance(0.2)) way.head<2>().setZero();
+      if (random.chance(0.1)) way[2] = 0.0;
+      if (way.isZero()) way[2] = 1.0;
+      const Eigen::Vector3d from = at - random.log_uniform(1e-6, 1e6) * way;
+      for (const Isa isa : available_isas()) {
+        const IsaScope scope(isa);
+        EXPECT_TRUE(is_shown(mesh, from, way, aim))
+            << "height " << height << " from " << from.transpose() << " by " << way.transpose();
+      }
+    }
+  }
+}
+
 /// What each of several rays is shown, in any order: where it meets triangles, or -1 where that is
 /// in doubt.
 struct SeenByRays {

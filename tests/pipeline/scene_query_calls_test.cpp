@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
 
+#include <Eigen/Core>
 #include <cstring>
 
 #include "tests/pipeline/query_world.h"
@@ -170,6 +171,63 @@ std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
     for (const SceneDistance& one : near) mix(one.key.id), mix(one.part), mix(one.distance);
   }
   return sum;
+}
+
+TEST(SceneQueryCalls, rays_meet_a_mesh_where_and_as_it_is_now) {
+  ShapePool shapes;
+  CompositePool composites(shapes);
+  const std::vector<Eigen::Vector3d> square = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<std::uint32_t> corners = {0, 1, 2, 0, 2, 3};
+  ShapeId floor;
+  ShapeId high;
+  const auto add = [&](std::span<const Eigen::Vector3d> at, ShapeId& shape) {
+    ASSERT_EQ(composites.add_mesh(at, std::span<const std::uint32_t>(corners), shape), Status::ok);
+  };
+  add(square, floor);
+  std::vector<Eigen::Vector3d> raised = square;
+  for (Eigen::Vector3d& corner : raised) corner.z() = 0.5;
+  add(raised, high);
+  Scene scene(shapes, {.composites = &composites});
+  Key key;
+  ASSERT_EQ(scene.add({.shape = floor, .data = 7}, key), Status::ok);
+  SceneQueries queries(scene);
+  ShapeRay ray;
+  ray.origin[0] = 0.25;
+  ray.origin[2] = 10.0;
+  ray.direction[0] = 0.0;
+  ray.direction[2] = -1.0;
+  ray.max_t = kInfinity;
+  const auto expect_at = [&](double t) {
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    for (int again = 0; again < 2; ++again) {
+      SceneHit hit;
+      ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+      EXPECT_EQ(hit.key != Key{}, std::isfinite(t));
+      if (!std::isfinite(t)) continue;
+      EXPECT_EQ(hit.data, 7U);
+      EXPECT_NEAR(hit.t, t, 1e-12);
+      EXPECT_NEAR(hit.point[2], 10.0 - t, 1e-12);
+      SceneHit any;
+      ASSERT_EQ(queries.any(ray, any), Status::ok);
+      EXPECT_EQ(any.t, hit.t);
+    }
+  };
+  expect_at(10.0);
+  ASSERT_EQ(scene.move(key, Pose::at(0.0, 0.0, 2.0)), Status::ok);
+  expect_at(8.0);
+  ASSERT_EQ(scene.set_shape(key, high), Status::ok);
+  expect_at(7.5);
+  const double half = std::sqrt(0.5);
+  ASSERT_EQ(scene.move(key, {{0.0, 0.0, 2.0}, {half, half, 0.0, 0.0}}), Status::ok);
+  expect_at(kInfinity);
+  ASSERT_EQ(scene.move(key, {{0.0, 0.0, 2.0}, {0.0, 1.0, 0.0, 0.0}}), Status::ok);
+  expect_at(8.5);
+  ASSERT_EQ(scene.set_shape(key, floor), Status::ok);
+  expect_at(8.0);
+  ASSERT_EQ(composites.refit_mesh(floor, std::span<const Eigen::Vector3d>(raised)), Status::ok);
+  expect_at(8.5);
+  ASSERT_EQ(composites.set_one_sided(floor, true), Status::ok);
+  expect_at(kInfinity);
 }
 
 TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_threads) {

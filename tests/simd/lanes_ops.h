@@ -48,6 +48,7 @@ struct LanesOps {
   unsigned (*emit_sorted_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                                 std::uint32_t* out);
   /// Of 16 and of 32 floats.
+  void (*load_packed)(const std::uint32_t* p, float (*axis)[16]);
   void (*pick_of_16)(const float* from, const std::uint8_t* place, float* out);
   void (*pick_of_32)(const float* from, const std::uint8_t* place, float* out);
   /// Of 48 numbers.

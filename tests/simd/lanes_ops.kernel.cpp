@@ -1,6 +1,7 @@
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/lanes.h"
+#include "simd/lanes/packed.h"
 #include "simd/lanes/places.h"
 #include "simd/lanes/positive.h"
 #include "simd/lanes/rows.h"
@@ -98,6 +99,11 @@ unsigned emit_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q
   return emit_pairs<Sorted>(mask, Uints::load_unaligned(in), q, out);
 }
 
+void load_packed_points(const std::uint32_t* p, float (*axis)[kLanes]) {
+  Floats point[3];
+  load_packed(p, point);
+  for (int k = 0; k < 3; ++k) point[k].store_unaligned(axis[k]);
+}
 template <int Blocks>
 void pick_lanes(const float* from, const std::uint8_t* place, float* out) {
   Floats block[Blocks];
@@ -154,6 +160,7 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .compress_store_floats = isa::compress_float_lanes,
     .emit_pairs = isa::emit_lanes<false>,
     .emit_sorted_pairs = isa::emit_lanes<true>,
+    .load_packed = isa::load_packed_points,
     .pick_of_16 = isa::pick_lanes<1>,
     .pick_of_32 = isa::pick_lanes<2>,
     .are_below_16 = isa::are_below_limit<16>,

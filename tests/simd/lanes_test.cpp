@@ -196,6 +196,21 @@ TEST_P(LaneOps, reductions_find_the_extreme_lane_wherever_it_is) {
   }
 }
 
+TEST_P(LaneOps, packed_points_have_ten_bits_for_each_axis) {
+  for (int round = 0; round < 1000; ++round) {
+    alignas(64) std::uint32_t packed[16];
+    for (auto& p : packed) p = static_cast<std::uint32_t>(random_.below(1U << 30U));
+    packed[0] = round == 0 ? (1U << 30U) - 1U : packed[0];
+    float axis[3][16];
+    ops().load_packed(packed, axis);
+    for (std::size_t i = 0; i < 16; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(axis[k][i], static_cast<float>(packed[i] >> (10 * k) & 1023U));
+      }
+    }
+  }
+}
+
 TEST_P(LaneOps, picked_lanes_are_those_that_the_places_say) {
   std::array<float, 32> from;
   for (std::size_t i = 0; i < 32; ++i) from[i] = static_cast<float>(i);

@@ -423,6 +423,111 @@ Status CastQuestion::all_in_crowds(std::size_t before) {
   return Status::ok;
 }
 
+/// Where a ray meets a body: kNoObject if it meets none.
+struct RayMeetsBody {
+  std::uint32_t body;
+  std::uint32_t part;
+  double t;
+  double normal[3];
+
+  [[nodiscard]] static RayMeetsBody at(std::uint32_t body, std::uint32_t part, double t,
+                                       const double (&normal)[3]) noexcept {
+    return {body, part, t, {normal[0], normal[1], normal[2]}};
+  }
+  /// Takes another meeting if it is the first one by the limit, up to which the ray goes on then;
+  /// with `any`, no farther.
+  void improve(const RayMeetsBody& other, bool any, double& limit) noexcept {
+    if (other.t > limit) return;
+    // Equal t are ordered by the bodies' ids, then by part.
+    if (body != kNoObject && other.t == t &&
+        (body != other.body ? body < other.body : part < other.part)) {
+      return;
+    }
+    *this = other;
+    limit = any ? -1.0 : other.t;
+  }
+};
+
+/// One ray in a scene, where a surface is met depends on it alone.
+struct RayInScene {
+  const QueryState& state;
+  const ShapeRay& ray;
+
+  /// Whether it meets a convex part of a body by then.
+  [[nodiscard]] bool meets(std::uint32_t body, const ConvexPart& part, double most,
+                           RayMeetsBody& meeting) const {
+    const RaySweep swept(state.scene.shapes, ray);
+    const Difference from = difference(ray.origin, state.scene.pose[body].position);
+    SweepMeeting found;
+    if (!swept.meets(from.difference, part, most, nullptr, found)) return false;
+    meeting = RayMeetsBody::at(body, part.part, found.t, found.normal);
+    return true;
+  }
+  /// Writes a hit, which is a null one.
+  void show(const RayMeetsBody& best, SceneHit& hit) const noexcept {
+    if (best.body == kNoObject) return;
+    hit.key = state.scene.keys.key_of(best.body);
+    hit.data = state.scene.keys.client_data(best.body);
+    hit.part = best.part;
+    hit.t = best.t;
+    // Summed so that a body that is far away loses nothing by it.
+    const double* const base = state.scene.pose[best.body].position;
+    const Difference from = difference(ray.origin, base);
+    for (int k = 0; k < 3; ++k) {
+      hit.normal[k] = best.normal[k];
+      hit.point[k] = base[k] + (from.difference[k] + best.t * ray.direction[k]);
+    }
+  }
+};
+
+/// What a ray meets in crowds; the hit, of what it met before, is left alone if nothing is better.
+[[nodiscard]] Status ask_crowds(QueryState& state, const ShapeRay& ray, const Filter& filter,
+                                const RayMeetsBody& best, bool any, SceneHit& hit) {
+  if (any && best.body != kNoObject) return Status::ok;
+  const RaySweep swept(state.scene.shapes, ray);
+  CastQuestion question(state, swept, filter);
+  return any ? question.any_in_crowds(hit) : question.closest_in_crowds(best.body, best.t, hit);
+}
+
+/// One ray by itself: its first hit, or `any`. It must be valid.
+Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
+                 SceneHit& hit) {
+  const RayInScene asked{state, ray};
+  RayMeetsBody best;
+  best.body = kNoObject;
+  double limit = ray.max_t;
+  auto look = [&](std::uint32_t body) {
+    const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
+      best.improve(RayMeetsBody::at(body, part, found.t, found.normal), any, limit);
+      return limit;
+    };
+    const auto look_at = [&](std::size_t, const ConvexPart& part, double most) {
+      RayMeetsBody meeting;
+      if (!asked.meets(body, part, std::min(most, limit), meeting)) return std::min(most, limit);
+      best.improve(meeting, any, limit);
+      return limit;
+    };
+    if (const RaySurface* const mesh = state.surfaces.find(state.parts, state.scene, body)) {
+      state.parts.met_by_ray(*mesh, ray, limit, meet, look_at);
+    } else {
+      const double end = limit;
+      state.parts.met_by_rays(state.placed(body), {&ray, 1}, &end, meet, look_at);
+    }
+    return false;
+  };
+  const bool has_crowd = look_at_few(state.scene, filter, look);
+  if (!has_crowd) {
+    hit = SceneHit{};
+    asked.show(best, hit);
+    return Status::ok;
+  }
+  SceneHit found;
+  asked.show(best, found);
+  const Status status = ask_crowds(state, ray, filter, best, any, found);
+  if (status == Status::ok) hit = found;
+  return status;
+}
+
 /// Up to `Room` rays that are asked together, which costs less than to ask one after the other
 /// wherever they come to the same surfaces, and what each of them meets first.
 template <std::size_t Room>
@@ -438,18 +543,13 @@ class RaysTogether {
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
 
  private:
-  struct Meeting {
-    std::uint32_t body;
-    std::uint32_t part;
-    double t;
-    double normal[3];
-  };
   void start(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any) noexcept;
   void meet_few(std::uint32_t body);
-  [[nodiscard]] Status ask_crowds(std::size_t i);
-  /// The limit for the ray to go on with.
-  double take(std::size_t i, const Meeting& meeting) noexcept;
-  [[nodiscard]] SceneHit shown(std::size_t i) const noexcept;
+  [[nodiscard]] SceneHit shown(std::size_t i) const noexcept {
+    SceneHit hit;
+    RayInScene{state_, ray_[i]}.show(best_[i], hit);
+    return hit;
+  }
 
   QueryState& state_;
   const Filter& filter_;
@@ -459,68 +559,24 @@ class RaysTogether {
   ShapeRay ray_[Room];
   /// What each has met so far, or its end; with `any`, below zero once it has met something.
   double limit_[Room];
-  Meeting best_[Room];
+  RayMeetsBody best_[Room];
   SceneHit hit_[Room];
 };
 
 template <std::size_t Room>
-double RaysTogether<Room>::take(std::size_t i, const Meeting& meeting) noexcept {
-  Meeting& best = best_[i];
-  if (meeting.t > limit_[i]) return limit_[i];
-  // Equal t are ordered by the bodies' ids, then by part.
-  if (best.body != kNoObject && meeting.t == best.t &&
-      (best.body != meeting.body ? best.body < meeting.body : best.part < meeting.part)) {
-    return limit_[i];
-  }
-  best = meeting;
-  limit_[i] = any_ ? -1.0 : meeting.t;
-  return limit_[i];
-}
-
-template <std::size_t Room>
 void RaysTogether<Room>::meet_few(std::uint32_t body) {
-  const PlacedShape placed = state_.placed(body);
   const auto meet = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
-    return take(i, {body, part, hit.t, {hit.normal[0], hit.normal[1], hit.normal[2]}});
+    best_[i].improve(RayMeetsBody::at(body, part, hit.t, hit.normal), any_, limit_[i]);
+    return limit_[i];
   };
   const auto look = [&](std::size_t i, const ConvexPart& part, double limit) {
-    const RaySweep swept(state_.scene.shapes, ray_[i]);
-    const Difference from = difference(ray_[i].origin, placed.pose.position);
+    RayMeetsBody meeting;
     const double most = std::min(limit, limit_[i]);
-    SweepMeeting found;
-    if (!swept.meets(from.difference, part, most, nullptr, found)) return most;
-    return take(i, {body, part.part, found.t, {found.normal[0], found.normal[1], found.normal[2]}});
+    if (!RayInScene{state_, ray_[i]}.meets(body, part, most, meeting)) return most;
+    best_[i].improve(meeting, any_, limit_[i]);
+    return limit_[i];
   };
-  state_.parts.met_by_rays(placed, {ray_, count_}, limit_, meet, look);
-}
-
-template <std::size_t Room>
-SceneHit RaysTogether<Room>::shown(std::size_t i) const noexcept {
-  SceneHit hit;
-  const Meeting& best = best_[i];
-  if (best.body == kNoObject) return hit;
-  hit.key = state_.scene.keys.key_of(best.body);
-  hit.data = state_.scene.keys.client_data(best.body);
-  hit.part = best.part;
-  hit.t = best.t;
-  // Summed so that a body that is far away loses nothing by it.
-  const double* const base = state_.scene.pose[best.body].position;
-  const Difference from = difference(ray_[i].origin, base);
-  for (int k = 0; k < 3; ++k) {
-    hit.normal[k] = best.normal[k];
-    hit.point[k] = base[k] + (from.difference[k] + best.t * ray_[i].direction[k]);
-  }
-  return hit;
-}
-
-template <std::size_t Room>
-Status RaysTogether<Room>::ask_crowds(std::size_t i) {
-  const std::uint32_t body = best_[i].body;
-  if (any_ && body != kNoObject) return Status::ok;
-  const RaySweep swept(state_.scene.shapes, ray_[i]);
-  CastQuestion question(state_, swept, filter_);
-  return any_ ? question.any_in_crowds(hit_[i])
-              : question.closest_in_crowds(body, best_[i].t, hit_[i]);
+  state_.parts.met_by_rays(state_.placed(body), {ray_, count_}, limit_, meet, look);
 }
 
 template <std::size_t Room>
@@ -547,7 +603,8 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
   for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i);
   if (!has_crowd) return Status::ok;
   for (std::size_t i = 0; i < count; ++i) {
-    if (const Status status = ask_crowds(i); status != Status::ok) return status;
+    const Status status = ask_crowds(state_, ray_[i], filter_, best_[i], any_, hit_[i]);
+    if (status != Status::ok) return status;
   }
   return Status::ok;
 }
@@ -629,12 +686,8 @@ Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filt
 
 Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, SceneHit& hit,
                bool any) {
-  Status status = check(state, ray);
-  if (status != Status::ok) return status;
-  RaysTogether<1> group(*state, filter);
-  status = group.ask(std::span<const ShapeRay>(&ray, 1), 0, 1, any);
-  if (status == Status::ok) hit = group.hit(0);
-  return status;
+  const Status status = check(state, ray);
+  return status == Status::ok ? ask_alone(*state, ray, filter, any, hit) : status;
 }
 
 /// Puts all hits of rays that are valid into the state's `hits`, and where those of each begin.

@@ -6,12 +6,47 @@
 #include "pipeline/composites/parts.h"
 #include "pipeline/scene/scene_state.h"
 
+#include <array>
+#include <bit>
+
 namespace winnow {
 
 /// A hit of one of several rays.
 struct RayHit {
   std::size_t ray;
   SceneHit hit;
+};
+
+/// Meshes that rays came to one by one, each as MidPhase::place made it ready where it stood. Of
+/// two bodies that want the same place the later one is kept.
+class RaySurfaces {
+ public:
+  /// That of a body where it stands now; null if it is no mesh.
+  [[nodiscard]] const RaySurface* find(const PartTraversal& parts, const SceneState& scene,
+                                       std::uint32_t body) {
+    RaySurface& kept = kept_[body % kEntries];
+    const ShapeId shape = scene.shape[body];
+    const Pose& pose = scene.pose[body];
+    if (kept.shape == shape && kept.revision == scene.composites_seen && is_same(kept.pose, pose)) {
+      return &kept;
+    }
+    return parts.place({shape, pose}, kept) ? &kept : nullptr;
+  }
+
+ private:
+  static constexpr std::size_t kEntries = 8;
+
+  /// Bit by bit.
+  [[nodiscard]] static bool is_same(const Pose& a, const Pose& b) noexcept {
+    using Bits = std::array<std::uint64_t, sizeof(Pose) / sizeof(std::uint64_t)>;
+    const auto of_a = std::bit_cast<Bits>(a);
+    const auto of_b = std::bit_cast<Bits>(b);
+    std::uint64_t differ = 0;
+    for (std::size_t i = 0; i < of_a.size(); ++i) differ |= of_a[i] ^ of_b[i];
+    return differ == 0;
+  }
+
+  RaySurface kept_[kEntries];
 };
 
 struct QueryState {
@@ -31,6 +66,7 @@ struct QueryState {
 
   const SceneState& scene;
   PartTraversal parts;
+  RaySurfaces surfaces;
   /// What partitions find; bodies that they show are looked at at once, by their predicates.
   HitBuffer boxes;
   OverlapBuffer objects;
