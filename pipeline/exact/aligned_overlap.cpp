@@ -336,8 +336,44 @@ class FlatTriangle {
   PlanePoint vertex_[3];
 };
 
+/// A point and a triangle in any plane. Points asked for what is nearest to them lie on corners of
+/// terrains, each of which is one of many triangles. Undecided of triangles without area.
+[[nodiscard]] ExactVerdict point_on_triangle(const TriangleShape& triangle, const Pose& pose,
+                                             const Pose& point_pose) noexcept {
+  QuarterTurns turns;
+  if (!quarter_turns(pose, turns)) return ExactVerdict::undecided;
+  ExactVector vertex[3];
+  BitSpan lengths;
+  for (int k = 0; k < 3; ++k) {
+    const Dyadic between = Dyadic(pose.position[k]) - point_pose.position[k];
+    for (int i = 0; i < 3; ++i) {
+      vertex[i].x[k] = between + turns.sign[k] * triangle.vertex[i][turns.axis[k]];
+      lengths.include(vertex[i].x[k]);
+    }
+  }
+  if (std::any_of(vertex, vertex + 3, is_zero)) return ExactVerdict::touching;
+  constexpr int kSums = 6;
+  if (!fits_dyadic(4, lengths.bits() + kSums)) return ExactVerdict::undecided;
+  const ExactVector normal = cross(vertex[1] - vertex[0], vertex[2] - vertex[0]);
+  if (is_zero(normal)) return ExactVerdict::undecided;
+  if (dot(normal, vertex[0]).sign() != 0) return ExactVerdict::separated;
+  for (int i = 0; i < 3; ++i) {
+    const ExactVector area = cross(vertex[i], vertex[(i + 1) % 3]);
+    if (dot(normal, area).sign() < 0) return ExactVerdict::separated;
+  }
+  return ExactVerdict::touching;
+}
+
+[[nodiscard]] bool is_point(const AlignedShape& shape) noexcept {
+  return shape.half[0] == 0.0 && shape.half[1] == 0.0 && shape.half[2] == 0.0 &&
+         shape.rounding == 0.0;
+}
+
 [[nodiscard]] ExactVerdict on_triangle(const TriangleShape& triangle, const Pose& pose,
                                        const AlignedShape& shape, const Pose& shape_pose) noexcept {
+  if (is_point(shape) && triangle.rounding == 0.0) {
+    return point_on_triangle(triangle, pose, shape_pose);
+  }
   FlatTriangle flat;
   return flat.place(triangle, pose, shape, shape_pose) ? flat.verdict() : ExactVerdict::undecided;
 }

@@ -11,7 +11,7 @@ namespace winnow {
 /// touches in every frame. They are products of segments and discs along the axes of the world, so
 /// that closed forms of degree 4 at most decide; undecided for everything else, and for rounded
 /// cylinders whose axes cross. Triangles that lie across an axis are decided where no more than
-/// touched. O(1), some 100 ns.
+/// touched, and in any plane against a point. O(1), some 100 ns.
 [[nodiscard]] ExactVerdict aligned_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                            ShapeId b, const Pose& pose_b) noexcept;
 

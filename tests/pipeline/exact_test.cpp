@@ -292,6 +292,43 @@ TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero
   for (const int count : seen) EXPECT_GT(count, 0);
 }
 
+TEST(ExactOverlap, points_touch_the_corners_sides_and_insides_of_triangles) {
+  Random random(31);
+  for (int round = 0; round < 300; ++round) {
+    Pair pair{};
+    TriangleShape& triangle = pair.triangles[0];
+    for (auto& vertex : triangle.vertex) {
+      for (double& x : vertex) x = 4.0 * digit(random, -5, 5);
+    }
+    const double first = digit(random, 0, 4);
+    const double second = digit(random, 0, 4 - static_cast<int>(first));
+    const double weight[3] = {first, second, 4.0 - first - second};
+    for (int k = 0; k < 3; ++k) {
+      pair.poses[0].position[k] = digit(random, -4, 4);
+      double sum = 0.0;
+      for (int i = 0; i < 3; ++i) sum += weight[i] * triangle.vertex[i][k] / 4.0;
+      pair.poses[1].position[k] = pair.poses[0].position[k] + sum;
+    }
+    EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
+    EXPECT_EQ(pair.mirrored(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
+    // Out of the plane, by one unit in the last place of what lies in it.
+    const int k = static_cast<int>(random.below(3));
+    double across[3];
+    for (int i = 0; i < 3; ++i) {
+      const auto edge = [&](int c, int axis) {
+        return triangle.vertex[c][axis] - triangle.vertex[0][axis];
+      };
+      const int next = (i + 1) % 3;
+      const int last = (i + 2) % 3;
+      across[i] = edge(1, next) * edge(2, last) - edge(1, last) * edge(2, next);
+    }
+    if (across[k] == 0.0) continue;
+    double& moved = pair.poses[1].position[k];
+    moved = std::nextafter(moved, 100.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::separated);
+  }
+}
+
 TEST(ExactOverlap, discs_without_radius_are_segments) {
   Pair pair;
   pair.cylinders[0] = {0.0, 2.0, 0.0};
