@@ -7,6 +7,8 @@
 #include <set>
 
 #include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
+#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
@@ -49,6 +51,31 @@ TEST(HierarchicalGrid, has_one_level_for_objects_of_one_size) {
   World world(kConfig);
   world.insert(uniform_boxes(3000));
   EXPECT_EQ(levels_of(world), 1U);
+}
+
+// Scenes of few lines, whose number varies the most from build to build.
+TEST(HierarchicalGrid, asks_for_no_memory_where_frames_repeat_each_other) {
+  for (std::uint64_t stream = 0; stream < 40; ++stream) {
+    SCOPED_TRACE(stream);
+    CountingMemory memory;
+    World world({"HierarchicalGrid", active_isa(), 1}, &memory);
+    Random random(stream);
+    std::vector<std::vector<Aabb>> frames{mixed_boxes(800, stream)};
+    while (frames.size() < 4) {
+      frames.push_back(frames.back());
+      move(Motion::much, frames.back(), random);
+    }
+    const std::vector<Key> keys = world.insert(frames[0]);
+    PairBuffer buffer;
+    const auto play = [&](std::size_t frame) {
+      world.update(keys, frames[frame % frames.size()]);
+      ASSERT_EQ(world.self_pairs(buffer), Status::ok);
+    };
+    for (std::size_t frame = 0; frame < 12; ++frame) play(frame);
+    const std::size_t requests = memory.requests();
+    for (std::size_t frame = 12; frame < 40; ++frame) play(frame);
+    EXPECT_EQ(memory.requests(), requests);
+  }
 }
 
 TEST(HierarchicalGrid, meets_each_pair_once_whatever_the_sizes) {

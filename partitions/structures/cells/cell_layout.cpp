@@ -2,6 +2,7 @@
 
 #include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_layout.kernel.h"
+#include "partitions/structures/roots.h"
 
 #include <algorithm>
 #include <bit>
@@ -148,7 +149,7 @@ struct CellLayout::Trial {
     small_share = static_cast<double>(small) / static_cast<double>(s.count);
     const double n = std::max(1.0, small_share * static_cast<double>(s.objects));
     double total = 1.0;
-    int free_axes = 0;
+    unsigned free_axes = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       cells[a] = 1.0;
       width[a] = 0.0;
@@ -162,7 +163,7 @@ struct CellLayout::Trial {
     const double most = d.most_cells(n);
     // Of cells that are widened some axes soon have one alone, and others have to do more.
     for (double least = 1.0; total > most || least == 1.0; least = kLeastWidening) {
-      const double widen = total > most ? std::pow(total / most, 1.0 / free_axes) : 1.0;
+      const double widen = total > most ? root(free_axes, total / most) : 1.0;
       total = 1.0;
       for (std::size_t a = 0; a < 3; ++a) {
         if (width[a] == 0.0) continue;
@@ -176,14 +177,12 @@ struct CellLayout::Trial {
   // Edge of a cube that holds a block of n objects spread evenly.
   [[nodiscard]] double block_edge(const SceneSample& s, const CellDemand& d, double n) const {
     if (d.rows_per_block == 0.0) return 0.0;
-    double sum = std::log(d.rows_per_block / n);
-    int axes = 0;
+    std::array<double, 4> factor{d.rows_per_block / n};
+    unsigned axes = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      if (!divided[a]) continue;
-      sum += std::log(s.range(a));
-      ++axes;
+      if (divided[a]) factor[++axes] = s.range(a);
     }
-    return std::exp(sum / axes);
+    return root_of_product(axes, std::span(factor).first(axes + 1));
   }
 
   // Tests of 16 that the whole scene is expected to cost.

@@ -12,6 +12,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace winnow {
 
@@ -198,6 +199,9 @@ class HierarchicalGrid final : public CellStructure {
   };
 
   [[nodiscard]] Planned begin_plan(const RowPlan& plan) noexcept;
+  template <typename T>
+  [[nodiscard]] bool make_room(Column<T>& column, std::size_t count) noexcept;
+  [[nodiscard]] bool leave_spare(std::size_t objects) noexcept;
   void sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept;
   /// What is done to a level, one after the other.
   enum class Step : std::uint8_t { places, sort, lines };
@@ -228,6 +232,7 @@ class HierarchicalGrid final : public CellStructure {
   std::size_t all_levels_ = 0;
   std::size_t level_ = 0;
   Step step_ = Step::places;
+  bool grew_ = false;  // columns of lines and cells, since one was planned to its end
   Sorted sorted_;
 };
 
@@ -250,8 +255,12 @@ LinePlace place_on(const GridLevel& g, const Structure::Place& box) noexcept {
 // Fewer are compared with each other sooner than a digit's values are counted.
 constexpr std::size_t kFewToSort = 128;
 
-// Every object may have a line and a cell to itself; a level's table of lines has at most half as
-// many entries as objects, and some more.
+// A level's table of lines has at most half as many entries as objects, and some more.
+constexpr std::size_t most_ranks(std::size_t objects) noexcept {
+  return objects / 2 + kMostLevels * (kMoreLines + 1);
+}
+
+// Every object may have a line and a cell to itself.
 bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
   const std::size_t objects = room.objects;
   return reserve_cells(room, objects, objects + kMostHoles) &&
@@ -260,7 +269,7 @@ bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
          planned_.level.reserve(kMostLevels, room.pages) &&
          planned_.line.reserve(objects, room.pages) &&
          planned_.number.reserve(objects, room.pages) &&
-         planned_.rank.reserve(objects / 2 + kMostLevels * (kMoreLines + 1), room.pages);
+         planned_.rank.reserve(most_ranks(objects), room.pages);
 }
 
 Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
@@ -272,9 +281,31 @@ Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   }
   if (level_ < all_levels_) return Planned::goes_on;
   key_.set_size(plan.regular.size() + kBlockRows);
-  return planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()))
-             ? Planned::done
-             : Planned::out_of_memory;
+  if (!make_room(planned_start_, planned_start_.size() + 1) || !leave_spare(plan.objects)) {
+    return Planned::out_of_memory;
+  }
+  (void)planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
+  return Planned::done;
+}
+
+// Room for so many elements, of which it is noted if memory was asked for it.
+template <typename T>
+bool HierarchicalGrid::make_room(Column<T>& column, std::size_t count) noexcept {
+  if (count <= column.capacity()) return true;
+  grew_ = true;
+  return column.grow(count);
+}
+
+// Room for the lines and cells that later builds may have more: a scene in motion now has more of
+// them, now fewer.
+bool HierarchicalGrid::leave_spare(std::size_t objects) noexcept {
+  if (!std::exchange(grew_, false)) return true;
+  const auto leave = [](auto& column, std::size_t most) {
+    const std::size_t size = column.size();
+    return column.reserve(std::min(most, size + size / 4 + 64));
+  };
+  return leave(planned_start_, objects + 1) && leave(planned_.line, objects) &&
+         leave(planned_.number, objects) && leave(planned_.rank, most_ranks(objects));
 }
 
 Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
@@ -478,7 +509,7 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   while ((length >> line.shift) >= most) ++line.shift;
   line.last_cell = length >> line.shift;
   const std::size_t cells = std::size_t{line.last_cell} + 1;
-  if (!starts.grow(starts.size() + cells)) return false;
+  if (!make_room(starts, starts.size() + cells)) return false;
   starts.set_size(starts.size() + cells);
   const std::size_t before = plan.regular.size();
   std::uint32_t* const start = starts.data() + line.cell;
@@ -498,6 +529,8 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
     starts.set_size(line.cell);
     return true;
   }
+  const std::size_t lines = planned_.line.size() + 1;
+  if (!make_room(planned_.line, lines) || !make_room(planned_.number, lines)) return false;
   return planned_.line.push_back(line) && planned_.number.push_back(sorted_.line(begin));
 }
 
@@ -509,7 +542,8 @@ bool HierarchicalGrid::rank_lines(GridLevel& level) {
   level.first_rank = static_cast<std::uint32_t>(ranks.size());
   level.ranked = lines <= (level.end_row - level.first_row) / 2 + kMoreLines;
   if (!level.ranked) return true;
-  if (!ranks.resize(ranks.size() + lines + 1)) return false;
+  if (!make_room(ranks, ranks.size() + lines + 1)) return false;
+  ranks.set_size(ranks.size() + lines + 1);
   std::uint32_t* const rank = ranks.data() + level.first_rank;
   std::size_t number = 0;
   for (std::uint32_t line = level.first_line; line < level.end_line; ++line) {

@@ -1,6 +1,7 @@
 #include "partitions/structures/levels/level_layout.h"
 
 #include "core/sort/stretches.h"
+#include "partitions/structures/roots.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -143,7 +144,7 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
   for (int i = 0; i < 6 && width > 0.0; ++i) {
     const double found = company(pool, rows, range, width);
     if (found < 1.6 * kRowsOfBlock) break;
-    width *= std::cbrt(kRowsOfBlock / found);
+    width *= root(3, kRowsOfBlock / found);
   }
   width *= kLineWidth;
   std::array<std::uint32_t, 3> by_length{0, 1, 2};

@@ -1,6 +1,7 @@
 #include "partitions/structures/levels/size_classes.h"
 
 #include "core/sort/stretches.h"
+#include "partitions/structures/roots.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -42,12 +43,11 @@ std::array<double, 3> spread_of(const std::array<double, 3>& sum,
 double edge_for(double wanted, double count, const std::array<double, 3>& range) noexcept {
   std::array<double, 3> sorted = range;
   std::sort(sorted.begin(), sorted.end());
-  double share = wanted / count;
-  for (std::size_t a = 0; a < 3; ++a) {
-    // Logarithms: a product of ranges may overflow.
-    double sum = std::log(share);
-    for (std::size_t b = a; b < 3; ++b) sum += std::log(std::max(sorted[b], DBL_MIN));
-    const double edge = std::exp(sum / static_cast<double>(3 - a));
+  std::array<double, 4> factor{wanted / count};
+  for (std::size_t a = 0; a < 3; ++a) factor[3 - a] = std::max(sorted[a], DBL_MIN);
+  for (unsigned a = 0; a < 3; ++a) {
+    const unsigned axes = 3 - a;
+    const double edge = root_of_product(axes, std::span(factor).first(axes + 1));
     if (edge <= sorted[a] || a == 2) return edge;
   }
   return 0.0;

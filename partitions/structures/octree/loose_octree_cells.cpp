@@ -1,6 +1,7 @@
 #include "partitions/structures/octree/loose_octree_cells.h"
 
 #include "partitions/structures/octree/hilbert_curve.h"
+#include "partitions/structures/roots.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +18,14 @@ constexpr std::uint32_t kCodeMask = (1U << kLevelShift) - 1U;
 /// count for nothing.
 double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objects) {
   for (;; --axes) {
-    double volume = 1.0;
+    std::array<double, 4> factor{1.0 / objects};
     std::size_t least = 0;
     for (std::size_t k = 0; k < axes; ++k) {
-      volume *= range[k];
+      factor[k + 1] = range[k];
       if (range[k] < range[least]) least = k;
     }
-    const double edge = std::pow(volume / objects, 1.0 / static_cast<double>(axes));
+    const double edge =
+        root_of_product(static_cast<unsigned>(axes), std::span(factor).first(axes + 1));
     if (axes == 1 || edge <= range[least]) return edge;
     range[least] = range[axes - 1];
   }
@@ -92,9 +94,10 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
   const double edge = edge_of_cells(range, axes_, cells);
   // So that every place has a finite scale, whatever the axis.
   if (!(edge > longest * 1e-9) || !(longest > 1e-30) || !(longest < 1e30)) return false;
-  const double halvings = std::max(0.0, std::ceil(std::log2(longest / edge)));
-  finest_ = std::min(bits_, static_cast<std::uint32_t>(halvings));
-  edge_ = std::max(longest, edge * std::exp2(static_cast<double>(finest_)));
+  finest_ = 0;
+  double doubled = edge;
+  for (; finest_ < bits_ && doubled < longest; ++finest_) doubled *= 2.0;
+  edge_ = std::max(longest, doubled);
   scale_ = static_cast<double>(1U << bits_) / edge_;
   for (std::size_t k = 0; k < axes_; ++k) {
     origin_[k] = static_cast<double>(sample.low[axis_[k]]) - 0.5 * (edge_ - range[k]);
