@@ -63,9 +63,6 @@ class BlockPairs {
     return true;
   }
 
-  /// What is added from here on may hold what filters do not let meet all of the block.
-  void use_filters() { filtered_ = Filtered; }
-
   /// Tests the block. False if the sink is full.
   bool finish() { return test_blocks() && test_rows(); }
 

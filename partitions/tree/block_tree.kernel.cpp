@@ -198,49 +198,30 @@ class LeafFilter {
  public:
   LeafFilter(const TreeView& tree, std::uint32_t leaf) : tree_(tree) {
     if constexpr (!Filtered) return;
-    const NodeFilters& leaves = tree.filters[0];
-    own_ = range_of(leaves, leaf);
-    every_layers_ = leaves.every_layers[leaf];
-    every_mask_ = leaves.every_mask[leaf];
-    meets_all_ = surely_meet(span_of(leaves, leaf), tree.rows.span);
-    decides_ = !meets_all_ && (every_layers_ & every_mask_) == 0;
+    own_ = range_of(tree.filters[0], leaf);
+    meets_all_ = surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
   }
 
   /// No row of the leaf may meet another of it.
-  [[nodiscard]] bool apart() const { return Filtered && !meets_all_ && !may_meet(own_, own_); }
+  [[nodiscard]] bool apart() const { return decides() && !may_meet(own_, own_); }
 
-  /// Hits among the rows of the leaf and of what was let through have to be looked at.
-  [[nodiscard]] bool decides() const { return Filtered && decides_; }
+  /// Hits of the rows of the leaf have to be looked at. Which of them need not is harder to foresee
+  /// than looking at them takes.
+  [[nodiscard]] bool decides() const { return Filtered && !meets_all_; }
 
-  /// Those of the nodes `met` among 16 that may hold something to meet.
-  Mask16 let_through(std::uint32_t level, std::uint32_t first_node, Mask16 met) {
-    // What lies above the groups is told apart by place: looking at each costs more.
-    if (!Filtered || meets_all_ || level > 1) return met;
-    if (level == 0 && (sure_groups_ >> first_node / kLanes % kLanes & 1U) != 0) return met;
-    const Mask16 sure = decides_ ? Mask16{0} : surely_meeting(level, first_node);
-    if (level == 1) sure_groups_ = sure;
-    if ((met & ~sure) == 0) return met;
-    const Mask16 passed = passing_nodes(tree_, level, first_node, met, own_);
-    if (level == 0) decides_ = decides_ || (passed & ~sure) != 0;
-    return passed;
+  /// Those of the nodes `met` among 16 that may hold something to meet. What lies above the groups
+  /// is told apart by place: looking at each costs more.
+  [[nodiscard]] Mask16 let_through(std::uint32_t level, std::uint32_t first_node,
+                                   Mask16 met) const {
+    if (!decides() || level > 1) return met;
+    const NodeFilters& nodes = tree_.filters[level];
+    return met & matching_lanes(nodes.layers, nodes.mask, first_node, own_);
   }
 
  private:
-  /// The nodes of which all that is in one has a layer in common that all of the leaf want, and the
-  /// other way round.
-  [[nodiscard]] Mask16 surely_meeting(std::uint32_t level, std::uint32_t first_node) const {
-    const NodeFilters& nodes = tree_.filters[level];
-    return sharing(Uints::load(nodes.every_layers + first_node), every_mask_) &
-           sharing(Uints::load(nodes.every_mask + first_node), every_layers_);
-  }
-
   const TreeView& tree_;
   FilterRange own_{};
-  std::uint32_t every_layers_ = 0;
-  std::uint32_t every_mask_ = 0;
   bool meets_all_ = false;
-  bool decides_ = false;
-  Mask16 sure_groups_ = 0;  // of those looked at last, in all of which everything meets the leaf
 };
 
 /// Pairs of rows without filters, or of one environment, leaf by leaf.
@@ -251,7 +232,7 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
-    LeafFilter<Filtered> filter(tree, leaf);
+    const LeafFilter<Filtered> filter(tree, leaf);
     if (!pairs.start(row, row + kLanes, filter.apart(), filter.decides())) continue;
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink.tests;
@@ -260,7 +241,6 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
     };
     const auto visit = [&](std::uint32_t group) {
       Mask16 leaves = test(0, group * kLanes);
-      if (filter.decides()) pairs.use_filters();
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
