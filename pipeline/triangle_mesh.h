@@ -27,9 +27,9 @@ struct MeshOptions {
 
 /// A triangle mesh with its tree: indexed float vertices in the caller's order, triangles
 /// ordered by median cuts, above every 16 of them a box of 16-bit bounds, above every 16 boxes
-/// another. Where neighbours share most of their vertices, as in a closed mesh, 11 to 12 bytes per
-/// triangle, 12 per vertex, and about 0.8 per triangle for the tree: under 20 bytes a triangle.
-/// Elsewhere 16 bytes per triangle instead of 11. Of more vertices than triangles few are shared,
+/// another. Where neighbours share most of their vertices, as in a closed mesh, 15 to 17 bytes per
+/// triangle, 12 per vertex, and about 0.8 per triangle for the tree: under 24 bytes a triangle.
+/// Elsewhere 16 bytes per triangle instead of 15. Of more vertices than triangles few are shared,
 /// and every triangle has a box of its own, of 12 bytes more. Triangles are two-sided, unless
 /// CompositePool::set_one_sided says otherwise, and may be degenerate.
 class WINNOW_API TriangleMesh {

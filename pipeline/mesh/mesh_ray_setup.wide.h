@@ -24,9 +24,10 @@ inline constexpr double kMostSlack = 1e200;
 
 /// It begins no more units away along any axis, so that it leaves the mesh before tau = 200.
 inline constexpr float kNearUnits = 0x1p22F;
-/// What rounding makes of its place, as a share of it and of the largest bound: 14 u.
-inline constexpr float kNearShare = 0x1p-20F;
-inline constexpr float kNearDoubt = 0.3F;
+/// What roundings make of its place and of its way to a bound, as a share of where it is, and of
+/// the largest bound: 32 u, where 12 are met, or 24 in a mode that rounds to one side.
+inline constexpr float kNearShare = 0x1p-19F;
+inline constexpr float kNearDoubt = 0.5F;
 inline constexpr float kNearStandingRate = 1e-4F;
 
 /// Three numbers of one vector.

@@ -25,7 +25,7 @@ struct CornersAcross {
 };
 
 /// Which of those triangles the line of the ray may meet, if coordinates are wrong by less than
-/// `wrong`, less 0.03 units for roundings of products, of 3 u of a coordinate of 2^17.
+/// `wrong`, less 0.05 units for roundings of products, of 6 u of a coordinate of 2^17.
 ///
 /// The product of two corners is wrong by less than `wrong` times the coordinates of both and twice
 /// its square.
@@ -73,7 +73,7 @@ class RayLine {
 
  private:
   /// For those of coordinates from here on, of 65536 units or their products.
-  static constexpr float kRoundings = 0.06F;
+  static constexpr float kRoundings = 0.12F;
 
   [[gnu::always_inline]] static float larger(float a, float b) { return a > b ? a : b; }
 

@@ -146,13 +146,39 @@ TEST(TriangleMeshes, list_the_vertices_of_leaves_where_neighbours_share_them) {
   EXPECT_NE(view_of(apart).corner[0], nullptr);
 }
 
-TEST(TriangleMeshes, take_at_most_20_bytes_a_triangle_and_account_for_each) {
+TEST(TriangleMeshes, tell_where_listed_vertices_are_in_the_boxes_of_their_leaves) {
+  for (const MeshData& data : {torus(100, 50), terrain(30), littered_terrain(16)}) {
+    TriangleMesh mesh;
+    ASSERT_EQ(data.build(mesh), Status::ok);
+    const MeshView& view = view_of(mesh);
+    ASSERT_NE(view.leaf_point, nullptr) << data.name;
+    const auto expect_there = [&](std::uint32_t leaf, std::size_t at) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double low = bound_of(view, 0, leaf, axis);
+        const double step = (bound_of(view, 0, leaf, 3 + axis) - low) / kMaxLeafPoint;
+        const auto x = static_cast<double>(coordinate(view, view.leaf_vertex[at], axis));
+        const std::uint32_t point = view.leaf_point[at] >> (kLeafPointBits * axis) & kMaxLeafPoint;
+        EXPECT_NEAR(low + point * step, mesh_units(view, axis, x), 0.501 * step) << data.name;
+      }
+    };
+    for (std::uint32_t leaf = 0; leaf < view.count[0]; ++leaf) {
+      for (std::size_t i = 0; i < kMeshFanout; ++i) expect_there(leaf, leaf * kMeshFanout + i);
+      if (view.leaf_more == nullptr) continue;
+      for (std::size_t block = view.leaf_more[leaf]; block < view.leaf_more[leaf + 1]; ++block) {
+        const std::size_t first = (view.count[0] + block) * kMeshFanout;
+        for (std::size_t i = 0; i < kMeshFanout; ++i) expect_there(leaf, first + i);
+      }
+    }
+  }
+}
+
+TEST(TriangleMeshes, take_at_most_24_bytes_a_triangle_and_account_for_each) {
   for (const MeshData& data : {torus(100, 50), terrain(70)}) {
     CountingMemory memory;
     TriangleMesh mesh(&memory);
     ASSERT_EQ(data.build(mesh), Status::ok);
     EXPECT_EQ(mesh.footprint().total().reserved, memory.outstanding());
-    EXPECT_LE(memory.outstanding(), 20 * mesh.triangles()) << data.name;
+    EXPECT_LE(memory.outstanding(), 24 * mesh.triangles()) << data.name;
     const std::size_t requests = memory.requests();
     ASSERT_EQ(mesh.refit(data.points()), Status::ok);
     EXPECT_EQ(mesh.footprint().total().reserved, memory.outstanding());
