@@ -576,6 +576,11 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
     best_[i].improve(meeting, any_, limit_[i]);
     return limit_[i];
   };
+  if constexpr (Room == 1) {
+    if (const RaySurface* const mesh = state_.surfaces.find(state_.parts, state_.scene, body)) {
+      return state_.parts.met_by_ray(*mesh, ray_[0], limit_[0], meet, look);
+    }
+  }
   state_.parts.met_by_rays(state_.placed(body), {ray_, count_}, limit_, meet, look);
 }
 
