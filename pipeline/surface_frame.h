@@ -4,14 +4,13 @@
 
 namespace winnow {
 
-/// Where a surface stands, and the matrix that takes the world's vectors into its frame. No
-/// coordinate of it is larger than `reach` in that frame, or than `size` in the world's axes.
+/// Where a surface stands.
 struct SurfaceFrame {
-  double position[3];
-  double to_own[3][3];  ///< by columns
+  double position[3];   ///< of its own origin, in the world
+  double to_own[3][3];  ///< columns of the matrix that takes the world's vectors into its frame
   bool is_turned;       ///< false: that changes nothing
-  double reach;
-  double size;
+  double reach;         ///< no coordinate of it is larger in its frame
+  double size;          ///< nor in the world's axes, about its origin
 };
 
 }  // namespace winnow
