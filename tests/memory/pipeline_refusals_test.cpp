@@ -290,7 +290,7 @@ const CompositeWorld& shapes_of_scenes() {
     Random random(5);
     made->add_shapes(random);
     // The largest compounds and the soup of triangles take long and show nothing new.
-    for (const std::size_t i : {14U, 12U, 11U}) made->ids.erase(made->ids.begin() + i);
+    for (const std::ptrdiff_t i : {14, 12, 11}) made->ids.erase(made->ids.begin() + i);
     return made;
   }();
   return *world;

@@ -98,18 +98,23 @@ void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t 
   EXPECT_LT(contacts.data_a()[i], world.bodies.size());
 }
 
+/// Bodies have their number as client data.
+const BodyDefinition& body_of(const SceneWorld& world, ClientData data) {
+  return world.bodies[static_cast<std::size_t>(data)];
+}
+
 /// Every pair that is near by its own gap is shown, and no other.
 void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTier tier) {
   std::set<Names> near;
   for (const auto& [pair, distance] : world.touching(kMargin + 0.9)) {
-    const BodyDefinition& a = world.bodies[pair.first];
-    const BodyDefinition& b = world.bodies[pair.second];
+    const BodyDefinition& a = body_of(world, pair.first);
+    const BodyDefinition& b = body_of(world, pair.second);
     if (distance <= kMargin + a.offsets.contact + b.offsets.contact) near.insert(pair);
   }
   EXPECT_EQ(shown(contacts), near);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const PairTwin twin(world, world.bodies[contacts.data_a()[i]],
-                        world.bodies[contacts.data_b()[i]], tier, contacts.level());
+    const PairTwin twin(world, body_of(world, contacts.data_a()[i]),
+                        body_of(world, contacts.data_b()[i]), tier, contacts.level());
     expect_pair(world, contacts, i, twin);
   }
 }

@@ -57,7 +57,7 @@ FieldBox box_of(const TriangleShape& t) {
 Slots field_overlap(const HeightField& field, const double min[3], const double max[3]) {
   SlotSink sink;
   height_overlap(grid_of(field), min, max, sink);
-  Slots found(sink.size);
+  Slots found(static_cast<std::size_t>(sink.size));
   sink = {found.data(), found.size(), 0};
   height_overlap(grid_of(field), min, max, sink);
   EXPECT_EQ(sink.size, found.size());

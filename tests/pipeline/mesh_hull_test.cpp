@@ -80,7 +80,7 @@ struct HullOnMesh {
     SlotSink sink{slots.data(), slots.size(), 0};
     mesh_overlap(view_of(mesh), low, high, center.data(), infinity, &asked, sink);
     EXPECT_LE(sink.size, slots.size());
-    slots.resize(sink.size);
+    slots.resize(static_cast<std::size_t>(sink.size));
     return slots;
   }
 

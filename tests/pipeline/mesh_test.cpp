@@ -26,7 +26,7 @@ Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max
   Slots slots(mesh.triangles());
   SlotSink sink{slots.data(), slots.size(), 0};
   mesh_overlap(view_of(mesh), min, max, sink);
-  slots.resize(sink.size);
+  slots.resize(static_cast<std::size_t>(sink.size));
   for (auto& slot : slots) slot = view_of(mesh).triangle[slot] & kTriangleNumberMask;
   std::sort(slots.begin(), slots.end());
   return slots;

@@ -136,7 +136,7 @@ template <typename Traverse>
 Slots collect(Traverse&& traverse) {
   SlotSink sink;
   traverse(sink);
-  Slots slots(sink.size);
+  Slots slots(static_cast<std::size_t>(sink.size));
   sink = {slots.data(), slots.size(), 0};
   traverse(sink);
   EXPECT_EQ(sink.size, slots.size());
@@ -151,8 +151,8 @@ SlotPairs overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacemen
                         const double margin[3]) {
   SlotPairSink sink;
   mesh_overlap_pairs(a, b, placement, margin, sink);
-  Slots first(sink.size);
-  Slots second(sink.size);
+  Slots first(static_cast<std::size_t>(sink.size));
+  Slots second(first.size());
   sink = {first.data(), second.data(), first.size(), 0};
   mesh_overlap_pairs(a, b, placement, margin, sink);
   EXPECT_EQ(sink.size, first.size());

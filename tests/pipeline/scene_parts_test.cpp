@@ -580,7 +580,7 @@ TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound
     for (std::size_t i = 0; i < truth.size(); ++i) {
       if (truth.data_b()[i] != 1000) continue;
       for (auto m = truth.manifold_first()[i]; m < truth.manifold_first()[i + 1]; ++m) {
-        const ClientData body = truth.data_a()[i];
+        const auto body = static_cast<std::size_t>(truth.data_a()[i]);
         const std::uint32_t triangle = truth.part_b()[m];
         if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
         EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);

@@ -43,7 +43,7 @@ inline void seal(std::vector<std::byte>& bytes) {
     std::memcpy(&size, bytes.data() + at, sizeof size);
     if (size == 0 || size > bytes.size() - at - 16) return;
     Digest digest;
-    digest.add(std::span<const std::byte>(bytes).subspan(at + 16, size));
+    digest.add(std::span<const std::byte>(bytes).subspan(at + 16, static_cast<std::size_t>(size)));
     const std::uint64_t value = digest.value();
     std::memcpy(bytes.data() + at + 8, &value, sizeof value);
     at += 16 + size;
