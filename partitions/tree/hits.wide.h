@@ -195,11 +195,11 @@ struct AskingFilters {
 };
 
 /// Reports the hits `mask` among the ids at `ids` for query q; there must be room.
-template <HitMode Mode>
-inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairSink& sink) {
-  if constexpr (Mode == HitMode::query_first) {
+inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uint32_t q,
+                   PairSink& sink) {
+  if (mode == HitMode::query_first) {
     sink.cursor += 2 * emit_pairs<false>(mask, Uints::load_unaligned(ids), q, sink.cursor);
-  } else if constexpr (Mode == HitMode::query_second) {
+  } else if (mode == HitMode::query_second) {
     for (; mask != 0; mask &= mask - 1) {
       sink.cursor[0] = ids[first(mask)];
       sink.cursor[1] = q;
@@ -210,21 +210,13 @@ inline void report(Mask16 mask, const std::uint32_t* ids, std::uint32_t q, PairS
   }
 }
 
-/// Calls Kernel::run<Mode, Filtered>(view, batch, sink) with the batch's mode, and whether filters
-/// are in use, as constants.
+/// Calls Kernel::run<Moved, Filtered>(view, batch, sink) with what every test asks as constants:
+/// whether the batch's mode is HitMode::moved, and whether filters are in use. Not inlined: it is
+/// called for whole batches and for parts of them.
 template <typename Kernel, bool Filtered, typename View>
-inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
-  switch (batch.mode) {
-    case HitMode::unordered:
-      return Kernel::template run<HitMode::unordered, Filtered>(view, batch, sink);
-    case HitMode::query_first:
-      return Kernel::template run<HitMode::query_first, Filtered>(view, batch, sink);
-    case HitMode::query_second:
-      return Kernel::template run<HitMode::query_second, Filtered>(view, batch, sink);
-    case HitMode::moved:
-      return Kernel::template run<HitMode::moved, Filtered>(view, batch, sink);
-  }
-  return true;
+[[gnu::noinline]] bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
+  return batch.mode == HitMode::moved ? Kernel::template run<true, Filtered>(view, batch, sink)
+                                      : Kernel::template run<false, Filtered>(view, batch, sink);
 }
 
 /// The lanes whose sets of bits, if they are not empty, surely share one with each of some others
@@ -360,7 +352,7 @@ inline bool has_more_to_test(const RowView& rows) {
 
 /// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
 /// append without a branch, and filters are looked up and pairs written in one long loop.
-template <HitMode Mode, bool Filtered>
+template <bool Moved, bool Filtered>
 class HitList {
  public:
   HitList(const RowView& rows, const QueryBatch& batch, PairSink& sink)
@@ -368,6 +360,7 @@ class HitList {
         query_(batch.column),
         more_to_test_(!batch.is_box && has_more_to_test(rows)),
         query_id_(batch.id),
+        mode_(batch.mode),
         moved_(batch.moved),
         filters_(batch),
         sink_(sink) {}
@@ -377,6 +370,7 @@ class HitList {
         query_(rows.column),
         more_to_test_(has_more_to_test(rows)),
         query_id_(rows.id),
+        mode_(HitMode::unordered),
         moved_(nullptr),
         filters_(rows),
         sink_(sink) {}
@@ -384,7 +378,7 @@ class HitList {
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
   /// There must be room.
   void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
-    if constexpr (Mode == HitMode::moved) mask &= reported_lanes(moved_, r, at);
+    if constexpr (Moved) mask &= reported_lanes(moved_, r, at);
     row_[size_] = r;
     at_[size_] = at;
     mask_[size_] = mask;
@@ -404,7 +398,7 @@ class HitList {
         mask = passing_rows(rows_, at_[i], mask, filters_.of(row_[i]));
       }
       if (!has_room(sink_)) return false;
-      report<Mode>(mask, rows_.id + at_[i], q, sink_);
+      report(mode_, mask, rows_.id + at_[i], q, sink_);
     }
     size_ = 0;
     return true;
@@ -417,6 +411,7 @@ class HitList {
   const float* const* query_;
   bool more_to_test_;
   const std::uint32_t* query_id_;
+  const HitMode mode_;
   const std::uint64_t* moved_;
   const AskingFilters filters_;
   PairSink& sink_;
@@ -434,11 +429,11 @@ struct ToTheEnd {
 /// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
 /// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
 /// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
-template <HitMode Mode, bool Filtered, typename GoesOn>
+template <bool Moved, bool Filtered, typename GoesOn>
 class RunList {
  public:
   /// `query` holds the columns of the boxes that ask.
-  RunList(const RowView& rows, const float* const* query, HitList<Mode, Filtered>& hits,
+  RunList(const RowView& rows, const float* const* query, HitList<Moved, Filtered>& hits,
           const GoesOn& goes_on, PairSink& sink)
       : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
 
@@ -480,7 +475,7 @@ class RunList {
 
   const RowView& rows_;
   const float* const* query_;
-  HitList<Mode, Filtered>& hits_;
+  HitList<Moved, Filtered>& hits_;
   const GoesOn goes_on_;
   PairSink& sink_;
   unsigned size_ = 0;

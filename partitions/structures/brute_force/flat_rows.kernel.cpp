@@ -226,7 +226,7 @@ bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, Pa
 }
 
 /// Writes the hits of a row of a batch that filters let pass.
-template <HitMode Mode, bool Filtered>
+template <bool Filtered>
 bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t row,
                   const NotedHits& noted, const FilterRange& range, PairSink& sink) {
   for (std::uint32_t k = 0; k < noted.size; ++k) {
@@ -234,7 +234,7 @@ bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t r
     Mask16 hits = noted.mask[k];
     if constexpr (Filtered) hits = passing_rows(view.rows, at, hits, range);
     if (!has_room(sink)) return false;
-    report<Mode>(hits, view.rows.id + at, batch.id[row], sink);
+    report(batch.mode, hits, view.rows.id + at, batch.id[row], sink);
   }
   return true;
 }
@@ -244,7 +244,7 @@ struct FlatQuery {
   /// A few blocks are tested sooner than a run is ended.
   static constexpr std::uint32_t kGap = 8;
 
-  template <HitMode Mode, bool Filtered>
+  template <bool Moved, bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
     const AskingFilters filters(batch);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
@@ -261,11 +261,10 @@ struct FlatQuery {
           for (std::uint32_t b = begin; b < some; ++b) {
             const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
             const Mask16 hits = Test::test(block, q);
-            const bool moved = Mode == HitMode::moved;
             noted.add(b * kLanes,
-                      moved ? hits & reported_lanes(batch.moved, row, b * kLanes) : hits);
+                      Moved ? hits & reported_lanes(batch.moved, row, b * kLanes) : hits);
           }
-          if (!report_noted<Mode, Filtered>(view, batch, row, noted, range, sink)) return false;
+          if (!report_noted<Filtered>(view, batch, row, noted, range, sink)) return false;
           begin = some;
         }
         return true;

@@ -17,9 +17,9 @@ struct CellFunctions {
                                    : Cells::template find_pairs<false>(view, begin, end, sink);
   }
 
-  template <HitMode Mode, bool Filtered>
+  template <bool Moved, bool Filtered>
   static bool run(const View& view, const QueryBatch& batch, PairSink& sink) {
-    HitList<Mode, Filtered> hits(view.rows, batch, sink);
+    HitList<Moved, Filtered> hits(view.rows, batch, sink);
     RunList list(view.rows, batch.column, hits, Cells::goes_on(view), sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;

@@ -114,11 +114,16 @@ template <typename T>
   off = bits(out > near);
 }
 
-// Answers about the cores of a block. Lanes that are apart get their distance if it is `wanted`,
-// else the separation.
-template <int L, typename T>
-[[gnu::always_inline]] inline CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
-                                                    const LaneMask<T>& wanted) {
+template <typename T>
+WINNOW_SHARED_BY_LEVELS BoxPair<T> box_pair(const NarrowJob& job, const PairBlock<T>& block) {
+  return BoxPair<T>(job, block);
+}
+
+// Answers about the cores of a block, with points if level distance asks for them. Lanes that are
+// apart get their distance if it is `wanted`, else the separation.
+template <typename T>
+WINNOW_SHARED_BY_LEVELS CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
+                                              const LaneMask<T>& wanted, bool with_points) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
@@ -126,14 +131,14 @@ template <int L, typename T>
   answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
   Lanes<T> gap = abs(axis.most - axis.separation);
   Lanes<T> normal[3] = {axis.normal[0], axis.normal[1], axis.normal[2]};
-  Lanes<T> point[3];
+  Lanes<T> point[3] = {normal[0], normal[1], normal[2]};
   Mask16 off = 0;
   const LaneMask<T> measured = apart & wanted;
   const bool any_measured = bits(measured) != 0;
-  if (L == kDistance || any_measured) {
+  if (with_points || any_measured) {
     BoxReach<T> reach = reach_along(pair, axis);
     move_along_edges(pair, axis, reach);
-    if constexpr (L == kDistance) touching_point(pair, axis, reach, point, off);
+    if (with_points) touching_point(pair, axis, reach, point, off);
     if (any_measured) {
       const BoxPoints<T> points = closest_points(pair, axis, reach);
       Lanes<T> away[3];
@@ -144,14 +149,14 @@ template <int L, typename T>
       gap = select(measured, away_gap, gap);
       for (int r = 0; r < 3; ++r) {
         normal[r] = select(measured, away[r], normal[r]);
-        if constexpr (L == kDistance) point[r] = select(measured, points.a[r], point[r]);
+        if (with_points) point[r] = select(measured, points.a[r], point[r]);
       }
     }
   }
   answer.error_bound = gap + slack;
   answer.normal = pair.to_world(normal);
   answer.point = answer.normal;
-  if constexpr (L == kDistance) {
+  if (with_points) {
     answer.point = pair.to_world(point);
     off &= ~bits(apart);
     if (off != 0) correct_points<BoxStage<T>>(pair, answer, off);
@@ -164,7 +169,7 @@ struct BoxBox {
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
     if constexpr (L == kBoolean) return overlap<T>(job, given);
     const OrderedBlock<T> ordered(job, given);
-    const BoxPair<T> pair(job, ordered.block);
+    const BoxPair<T> pair = box_pair(job, ordered.block);
     const BoxAxis<T> axis = best_axis(pair);
     const Lanes<T> reach = pair.rounding_a + pair.rounding_b;
     LaneMask<T> wanted = pair.scale == pair.scale;
@@ -172,7 +177,7 @@ struct BoxBox {
       const Lanes<T> margin(static_cast<T>(job.margin));
       wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
     }
-    CoreAnswer<T> core = measure<L>(pair, axis, wanted);
+    CoreAnswer<T> core = measure(pair, axis, wanted, L == kDistance);
     const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
     const Lanes<T> sign = Lanes<T>::load(ordered.sign);
     write_answer<L>(job, given, turned_back(core, pair.offset, sign));
@@ -186,9 +191,19 @@ struct BoxBox {
     return ~certified;
   }
 
+  // The lanes that what is measured tells apart or together, and those of boxes that overlap: for
+  // the few blocks with boxes that hardly touch or hardly miss each other.
+  template <typename T>
+  [[gnu::noinline, gnu::cold]] static Mask16 settle(const BoxPair<T>& pair, Mask16& over) {
+    CoreAnswer<T> core = measure(pair, best_axis(pair), pair.scale == pair.scale, false);
+    const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
+    over = bits(core.distance <= Lanes<T>(T(0)));
+    return certified;
+  }
+
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
-    const BoxPair<T> pair(job, block);
+    const BoxPair<T> pair = box_pair(job, block);
     const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
     const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
     const Mask16 valid = bits(in_range(pair.scale * pair.scale));
@@ -202,9 +217,9 @@ struct BoxBox {
     }
     const Mask16 unknown = ~known & valid & block.lanes();
     if (unknown != 0) {
-      CoreAnswer<T> core = measure<kManifold>(pair, best_axis(pair), pair.scale == pair.scale);
-      known |= with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale) & unknown;
-      over |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
+      Mask16 settled_over = 0;
+      known |= settle(pair, settled_over) & unknown;
+      over |= settled_over & unknown;
     }
     write_overlap(job, block, over);
     return ~(known & valid);

@@ -1,5 +1,6 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/kernels/shared_by_levels.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -40,34 +41,59 @@ template <typename T>
           select(outside, length, min(best - second, beside))};
 }
 
+template <typename T>
+struct SphereBoxSolution {
+  Rotation<T> axes;
+  BoxView<T> view;
+  Lanes<T> sphere_radius;
+  Lanes<T> distance;
+  Lanes<T> scale;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline SphereBoxSolution<T> solve(const NarrowJob& job,
+                                                         const PairBlock<T>& block) {
+  const Vec3<T> c = load_offset(job, block);
+  const Turn<T> turn = load_turn<SideB>(job, block);
+  const BoxLanes<T> box = load_box<SideB>(job, block);
+  SphereBoxSolution<T> r;
+  r.sphere_radius = load_sphere<SideA>(job, block);
+  // The signed distance changes by no more than its argument, so this is as good as the centre.
+  r.axes = rotation(turn);
+  r.view = view_box(-r.axes.to_local(c), box.half);
+  const Lanes<T> radius = r.sphere_radius + box.rounding;
+  r.scale = taxicab(c) + taxicab(box.half) + radius + doubt(turn);
+  r.distance = r.view.distance - radius;
+  return r;
+}
+
+template <typename T>
+WINNOW_SHARED_BY_LEVELS SphereBoxSolution<T> solve_all(const NarrowJob& job,
+                                                       const PairBlock<T>& block) {
+  return solve(job, block);
+}
+
 struct SphereBox {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
-    const Lanes<T> ra = load_sphere<SideA>(job, block);
-    const BoxLanes<T> box = load_box<SideB>(job, block);
-
-    // The signed distance changes by no more than its argument, so this is as good as the centre.
-    const Rotation<T> axes = rotation(turn);
-    const BoxView<T> view = view_box(-axes.to_local(c), box.half);
-    const Lanes<T> radius = ra + box.rounding;
-    const Lanes<T> scale = taxicab(c) + taxicab(box.half) + radius + doubt(turn);
-    const Lanes<T> distance = view.distance - radius;
-    const Lanes<T> bound = scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+    const Lanes<T> roundings(T(kRoundings) * kEpsilon<T>);
     if constexpr (L == kBoolean) {
-      return answer_sign(job, block, distance, bound, scale);
+      // Inlined, which leaves out what only further levels need.
+      const SphereBoxSolution<T> r = solve(job, block);
+      return answer_sign(job, block, r.distance, r.scale * roundings, r.scale);
     } else {
-      const LaneMask<T> unique = view.lead > scale * Lanes<T>(kShortest<T>);
-      const CertifiedLanes<T> answer{distance, bound, axes.to_world(view.towards),
-                                     certified_lanes(distance, bound, scale, unique)};
+      const SphereBoxSolution<T> r = solve_all(job, block);
+      const Lanes<T> bound = r.scale * roundings;
+      const LaneMask<T> unique = r.view.lead > r.scale * Lanes<T>(kShortest<T>);
+      const CertifiedLanes<T> answer{r.distance, bound, r.axes.to_world(r.view.towards),
+                                     certified_lanes(r.distance, bound, r.scale, unique)};
       const Lanes<T> zero(T(0));
       const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, ra);
+      write_certified<L>(job, block, answer, foot, r.sphere_radius);
       if constexpr (L == kManifold) {
-        write_contacts(
-            job, block,
-            {witness_contact(job, block, answer, foot, ra, zero, box_feature(view.towards))});
+        write_contacts(job, block,
+                       {witness_contact(job, block, answer, foot, r.sphere_radius, zero,
+                                        box_feature(r.view.towards))});
       }
       return ~answer.certified;
     }
