@@ -238,6 +238,7 @@ class RayWalk {
       if (mesh.box == nullptr) {
         if (step == kEnd) return;
         step = kTakeNext;
+        if (mesh.leaf_vertex != nullptr) fetch_some_vertices(mesh, node_);
         if (enter_leaf(mesh) && find_triangles(mesh) && !cross_triangles(mesh, visitor)) return;
         continue;
       }
@@ -398,6 +399,17 @@ class RayWalk {
     Floats in;
     asked_.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
     if (!Alone && asked_.triangles != 0) fetch_corners(mesh, leaf);
+  }
+
+  /// Asks for vertices of a leaf that lists them, before it is known which of its triangles are to
+  /// be looked at: they are neighbours.
+  static void fetch_some_vertices(const MeshView& mesh, std::uint32_t leaf) {
+    constexpr std::uint32_t kApart = 2;
+    const std::uint32_t* const vertex = mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout;
+    for (std::uint32_t i = 0; i < kMeshFanout; i += kApart) {
+      __builtin_prefetch(mesh.vertex + std::size_t{3} * vertex[i]);
+    }
+    __builtin_prefetch(mesh.triangle + std::size_t{leaf} * kMeshFanout);
   }
 
   /// Asks for their vertices, once their corners are there.
