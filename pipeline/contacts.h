@@ -107,8 +107,8 @@ class WINNOW_API Contacts {
   /// All manifolds of all pairs.
   [[nodiscard]] std::size_t manifolds() const noexcept;
   /// The parts that touch, of a region those of its deepest manifold: numbers of triangles or
-  /// children, kWholeShape of convex shapes. Scenes without SceneOptions::composites keep no column
-  /// of them.
+  /// children, kWholeShape of convex shapes. Of scenes in which all are convex no column of them is
+  /// kept.
   [[nodiscard]] PartColumn part_a() const noexcept;
   /// The same of body b.
   [[nodiscard]] PartColumn part_b() const noexcept;

@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::uint32_t kLeafCorners = 3 * kMeshFanout;
 
+/// Where vertices are in their leaves is kept where there are no more blocks of them than so many
+/// for each leaf: a mesh then takes no more than 24 bytes a triangle.
+constexpr double kBlocksWithPoints = 1.25;
+
 /// The vertices of one leaf, in the order in which its corners come to them.
 class LeafVertices {
  public:
@@ -58,9 +62,10 @@ bool LeafCorners::take(const MeshView& view) noexcept {
     crowded += vertices.more_blocks() != 0 ? 1U : 0U;
     if (crowded > leaves / 4 * 3) return true;
   }
+  const bool with_points = view.box == nullptr && blocks <= kBlocksWithPoints * leaves;
   LeafCorners fresh(vertex_.memory());
   if (!fresh.vertex_.resize(std::size_t{blocks} * kMeshFanout) ||
-      !fresh.point_.resize(view.box == nullptr ? std::size_t{blocks} * kMeshFanout : 0) ||
+      !fresh.point_.resize(with_points ? fresh.vertex_.size() : 0) ||
       !fresh.more_.resize(crowded != 0 ? leaves + std::size_t{1} : 0) ||
       !fresh.place_.resize(std::size_t{leaves} * kLeafCorners)) {
     return false;

@@ -21,7 +21,7 @@ class LeafCorners {
   [[nodiscard]] bool take(const MeshView& view) noexcept;
   [[nodiscard]] bool empty() const noexcept { return place_.empty(); }
   void link(MeshView& view) const noexcept;
-  /// Where the vertices are in the boxes of their leaves, to be written; null if it has none.
+  /// Where the vertices are in the boxes of their leaves, to be written; null if that is not kept.
   [[nodiscard]] std::uint32_t* points() noexcept { return point_.data(); }
   [[nodiscard]] Bytes bytes() const noexcept;
 

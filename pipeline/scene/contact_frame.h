@@ -37,7 +37,7 @@ struct ContactFrame {
   Column<std::uint32_t> point_first;
   ContactColumns points;
   std::size_t manifolds = 0;
-  /// There may be composite shapes.
+  /// There are, or were a while ago, composite shapes.
   bool with_parts = false;
 
   [[nodiscard]] std::size_t pairs() const noexcept { return event.size(); }
@@ -50,9 +50,11 @@ struct ContactFrame {
   /// Room for what a level has, and no more. False if memory is refused.
   [[nodiscard]] bool resize(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
                             std::size_t point_count) noexcept;
-  /// Room for so much at a level, and for every run there may be. False if memory is refused.
-  [[nodiscard]] bool reserve(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
-                             std::size_t point_count, Pages pages) noexcept;
+  /// Room for so much at a level, for every run there may be, and for parts if there may be any.
+  /// False if memory is refused.
+  [[nodiscard]] bool reserve(ContactLevel level, bool parts, std::size_t pair_count,
+                             std::size_t manifold_count, std::size_t point_count,
+                             Pages pages) noexcept;
   /// As much room as another frame has, so that the two can change places.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
@@ -84,7 +86,7 @@ struct ContactFrame {
  private:
   /// Calls make(column, count) for every column but those of runs and of points, until it is false.
   template <typename Make>
-  [[nodiscard]] bool make_columns(ContactLevel level, std::size_t pair_count,
+  [[nodiscard]] bool make_columns(ContactLevel level, bool parts, std::size_t pair_count,
                                   std::size_t manifold_count, Make&& make) noexcept;
   void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
                    const Place& to) noexcept;

@@ -37,13 +37,13 @@ ContactFrame::ContactFrame(std::pmr::memory_resource* memory) noexcept
       points(memory) {}
 
 template <typename Make>
-bool ContactFrame::make_columns(ContactLevel level, std::size_t pair_count,
+bool ContactFrame::make_columns(ContactLevel level, bool parts, std::size_t pair_count,
                                 std::size_t manifold_count, Make&& make) noexcept {
   const bool with_manifolds = level != ContactLevel::pairs;
   const bool with_points = level == ContactLevel::manifold;
   bool good = make(event, pair_count) && make(manifold_first, with_manifolds ? pair_count + 1 : 0);
   for (int side = 0; side < 2; ++side) {
-    good = good && make(key[side], pair_count) && make(part[side], with_parts ? manifold_count : 0);
+    good = good && make(key[side], pair_count) && make(part[side], parts ? manifold_count : 0);
   }
   const std::size_t distances = level >= ContactLevel::distance ? manifold_count : 0;
   good = good && make(distance, distances) && make(error_bound, distances) &&
@@ -60,7 +60,8 @@ bool ContactFrame::resize(ContactLevel level, std::size_t pair_count, std::size_
   const auto resize_one = [](auto& column, std::size_t count) {
     return resize_steadily(column, count);
   };
-  if (!make_columns(level, pair_count, manifold_count, resize_one) || !points.grow(point_count)) {
+  if (!make_columns(level, with_parts, pair_count, manifold_count, resize_one) ||
+      !points.grow(point_count)) {
     return false;
   }
   manifolds = manifold_count;
@@ -75,13 +76,15 @@ bool ContactFrame::has_room(ContactLevel level, std::size_t pair_count, std::siz
          point_count <= points.depth.capacity();
 }
 
-bool ContactFrame::reserve(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
-                           std::size_t point_count, Pages pages) noexcept {
+bool ContactFrame::reserve(ContactLevel level, bool parts, std::size_t pair_count,
+                           std::size_t manifold_count, std::size_t point_count,
+                           Pages pages) noexcept {
   const auto reserve_one = [pages](auto& column, std::size_t count) {
     return column.reserve(count, pages);
   };
   const std::size_t most_runs = std::min<std::size_t>(pair_count, KindPairs::kCount);
-  if (!runs.reserve(most_runs) || !make_columns(level, pair_count, manifold_count, reserve_one) ||
+  if (!runs.reserve(most_runs) ||
+      !make_columns(level, parts, pair_count, manifold_count, reserve_one) ||
       !points.grow(point_count)) {
     return false;
   }
@@ -192,8 +195,12 @@ void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uin
   for (std::uint32_t i = 0; i < count; ++i) {
     manifold_first[to.pair + i] = other.manifold_first[first + i] - begin + to.manifold;
   }
-  for (int side = 0; side < 2; ++side) {
-    copy_range(other.part[side], begin, copied, part[side], to.manifold);
+  for (int side = 0; with_parts && side < 2; ++side) {
+    if (other.with_parts) {
+      copy_range(other.part[side], begin, copied, part[side], to.manifold);
+    } else {
+      std::fill_n(part[side].data() + to.manifold, copied, kWholeShape);
+    }
   }
   copy_range(other.distance, begin, copied, distance, to.manifold);
   copy_range(other.error_bound, begin, copied, error_bound, to.manifold);

@@ -168,13 +168,14 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const std::size_t shown = shown_pairs(room);
   const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
-  if (!frame.reserve(room.level, shown, room.manifolds, room.points, pages)) return false;
+  const bool parts = options.composites != nullptr;
+  if (!frame.reserve(room.level, parts, shown, room.manifolds, room.points, pages)) return false;
   // Of the last frame nothing is kept, and of pairs that sleep pairs alone, unless more is read.
   const bool has_more = carries || remembers_places;
   const std::size_t manifolds = has_more ? room.manifolds : 0;
   const std::size_t points_kept = has_more ? room.points : 0;
-  if ((has_more && !before.reserve(room.level, shown, manifolds, points_kept, pages)) ||
-      (may_sleep && !dormant.reserve(room.level, shown, manifolds, points_kept, pages)) ||
+  if ((has_more && !before.reserve(room.level, parts, shown, manifolds, points_kept, pages)) ||
+      (may_sleep && !dormant.reserve(room.level, parts, shown, manifolds, points_kept, pages)) ||
       !known.reserve(bodies_of(room), pages)) {
     return false;
   }

@@ -55,6 +55,11 @@ Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
   return at.is_valid() ? Status::ok : Status::invalid_pose;
 }
 
+bool SceneState::has_composites() const noexcept {
+  return options.composites != nullptr &&
+         std::any_of(shape.begin(), shape.end(), [](ShapeId id) { return id.is_composite(); });
+}
+
 Status SceneState::make_partition_of(Motion which) {
   SceneSet& target = set(which);
   if (target.partition.has_value()) return Status::ok;

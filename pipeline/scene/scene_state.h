@@ -158,6 +158,8 @@ struct SceneState {
   [[nodiscard]] const SceneSet& set(Motion which) const noexcept {
     return sets[static_cast<std::size_t>(which)];
   }
+  /// False if no body has a composite shape; true also a while after the last one that had.
+  [[nodiscard]] bool has_composites() const noexcept;
   [[nodiscard]] bool is_fresh() const noexcept { return stale.empty() && has_one_origin(); }
   /// True unless some set's boxes are still measured from another point.
   [[nodiscard]] bool has_one_origin() const noexcept;

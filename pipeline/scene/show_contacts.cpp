@@ -31,7 +31,7 @@ bool Collision::open_frame() {
     c.carried.swap(c.carried_before);
   }
   const std::size_t records = carries_ ? pair_count() : 0;
-  c.frame.with_parts = scene_.options.composites != nullptr;
+  c.frame.with_parts = scene_.has_composites();
   if (!c.frame.resize(level_, 0, 0, 0) || !resize_steadily(c.records.bits, records) ||
       !resize_steadily(c.records.shown, records) || !c.carried.resize(records) ||
       !resize_steadily(c.shown_again, known_last_)) {
@@ -71,8 +71,8 @@ bool Collision::grow_frame(const Place& end) {
       const double all = static_cast<double>(taken) * pair_count() / batch_end_;
       return static_cast<std::size_t>(all * kProjectionSlack);
     };
-    if (!frame.reserve(level_, projected(end.pair), projected(end.manifold), projected(end.point),
-                       Pages::untouched)) {
+    if (!frame.reserve(level_, frame.with_parts, projected(end.pair), projected(end.manifold),
+                       projected(end.point), Pages::untouched)) {
       return false;
     }
   }

@@ -195,8 +195,8 @@ TEST(SceneBatches, of_bodies_that_leave_take_only_these) {
   EXPECT_EQ(contacts.size(), 0U);
 }
 
-// Of what is shown a contact at this level takes 85 bytes, and 8 where shapes may be composite; the
-// rest is what bodies, pairs and partitions hold.
+// Of what is shown a contact at this level takes 85 bytes, and 8 where there are composite shapes;
+// the rest is what bodies, pairs and partitions hold.
 TEST(SceneBatches, take_few_bytes_a_contact) {
   ShapePool pool;
   ShapeId ball;
@@ -207,14 +207,18 @@ TEST(SceneBatches, take_few_bytes_a_contact) {
   for (BodyDefinition& body : bodies) {
     for (double& p : body.pose.position) p = random.uniform(0.0, side);
   }
-  const CompositePool composites(pool);
+  bodies.back().pose = Pose::at(-50.0, 0.0, 0.0);
+  CompositePool composites(pool);
+  const MeshData data = torus(7, 5);
+  ShapeId mesh;
+  ASSERT_EQ(composites.add_mesh(data.points(), data.indices(), mesh), Status::ok);
   std::size_t results[2];
   for (int with = 0; with < 2; ++with) {
     CountingMemory memory;
-    Scene scene(pool, {.memory = &memory,
-                       .execution = Execution::serial(),
-                       .composites = with == 1 ? &composites : nullptr});
+    Scene scene(pool,
+                {.memory = &memory, .execution = Execution::serial(), .composites = &composites});
     Contacts contacts(&memory);
+    bodies.back().shape = with == 1 ? mesh : ball;
     std::vector<Key> keys(bodies.size());
     ASSERT_EQ(scene.add(bodies, keys), Status::ok);
     for (int frame = 0; frame < 3; ++frame) {
