@@ -154,7 +154,7 @@ TEST(SceneMeetings, the_pairs_shown_are_those_that_are_not_ignored) {
     const auto truth = world.touching();
     for (const auto& [pair, distance] : truth) {
       if (world.random.chance(0.7)) continue;
-      told.push_back({world.keys[pair.first], world.keys[pair.second]});
+      told.push_back({world.key(pair.first), world.key(pair.second)});
       if (heed) {
         ignored.erase(pair);
       } else {
@@ -191,8 +191,8 @@ TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
       ASSERT_EQ(scene.set_layer(world.keys[i], world.bodies[i].layer), Status::ok);
     }
     for (const auto& [pair, distance] : world.touching()) {
-      const std::uint16_t a = world.bodies[pair.first].layer;
-      const std::uint16_t b = world.bodies[pair.second].layer;
+      const std::uint16_t a = world.body(pair.first).layer;
+      const std::uint16_t b = world.body(pair.second).layer;
       const bool meet = world.random.chance(0.6);
       ASSERT_EQ(scene.set_layers_meet(b, a, meet), Status::ok);
       EXPECT_EQ(scene.layers_meet(a, b), meet);
@@ -207,8 +207,7 @@ TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
     ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
     std::set<Names> expected;
     for (const auto& [pair, distance] : world.touching()) {
-      const auto layers_of =
-          std::pair(world.bodies[pair.first].layer, world.bodies[pair.second].layer);
+      const auto layers_of = std::pair(world.body(pair.first).layer, world.body(pair.second).layer);
       if (apart.count(layers_of) == 0) expected.insert(pair);
     }
     EXPECT_EQ(shown(contacts), expected);

@@ -36,7 +36,8 @@ TEST(SceneQueryCalls, filters_and_predicates_choose_among_bodies) {
   filter.mask = 0b101;
   filter.predicate = {[](void* given, Key key, ClientData data) {
                         auto& c = *static_cast<Context*>(given);
-                        c.right = c.right && c.world.keys[data - 1000] == key;
+                        c.right =
+                            c.right && c.world.keys[static_cast<std::size_t>(data) - 1000] == key;
                         return data % 2 == 0;
                       },
                       &context};

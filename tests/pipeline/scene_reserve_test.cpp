@@ -31,7 +31,7 @@ void widen(SceneRoom& room, const Scene& scene, const Contacts& contacts) {
   for (std::size_t i = 0; i < kMotions; ++i) {
     room.bodies[i] = std::max(room.bodies[i], scene.size(static_cast<Motion>(i)));
   }
-  room.pairs = std::max<std::size_t>(room.pairs, scene.statistics().body_pairs);
+  room.pairs = std::max(room.pairs, static_cast<std::size_t>(scene.statistics().body_pairs));
   room.touching = std::max(room.touching, contacts.size());
   room.manifolds = std::max(room.manifolds, contacts.manifolds());
   room.points = std::max(room.points, contacts.points());
@@ -208,9 +208,9 @@ TEST(SceneReserve, of_more_than_there_can_be_is_refused) {
   Contacts contacts(&memory);
   const std::size_t before = memory.requests();
   EXPECT_EQ(scene.reserve({.bodies = {1U << 27U, 1U << 27U, 0}}), Status::too_many_objects);
-  EXPECT_EQ(scene.reserve({.pairs = std::size_t{1} << 40U}), Status::too_many_objects);
+  EXPECT_EQ(scene.reserve({.pairs = ~std::size_t{0}}), Status::too_many_objects);
   EXPECT_EQ(scene.reserve({.level = static_cast<ContactLevel>(7)}), Status::invalid_argument);
-  EXPECT_EQ(scene.reserve_contacts(contacts, {.points = std::size_t{1} << 61U}),
+  EXPECT_EQ(scene.reserve_contacts(contacts, {.points = ~std::size_t{0}}),
             Status::too_many_objects);
   EXPECT_EQ(memory.requests(), before);
   Scene wrong(world.pool, {.margin = -1});

@@ -325,8 +325,9 @@ TEST(MotionCasts, meet_what_every_body_says_by_itself) {
     EXPECT_EQ(hits.size(), static_cast<std::size_t>(std::ranges::count(truth.hit(), 1)));
     double last = 0.0;
     for (const SceneHit& hit : hits) {
-      EXPECT_TRUE(truth.hits(hit.data));
-      EXPECT_NEAR(hit.t, truth.time()[hit.data], 1e-5);
+      const auto body = static_cast<std::size_t>(hit.data);
+      EXPECT_TRUE(truth.hits(body));
+      EXPECT_NEAR(hit.t, truth.time()[body], 1e-5);
       EXPECT_LE(last, hit.t);
       last = hit.t;
     }

@@ -28,6 +28,10 @@ struct SceneWorld {
   /// Gives every body a new place no farther than `step` and another turn.
   void stir(double step);
   [[nodiscard]] Pose random_pose();
+  [[nodiscard]] const BodyDefinition& body(ClientData name) const {
+    return bodies[static_cast<std::size_t>(name)];
+  }
+  [[nodiscard]] Key key(ClientData name) const { return keys[static_cast<std::size_t>(name)]; }
 
   /// Pairs that may touch by their sets and filters, judged one by one by the solver. Names and
   /// distances of those no farther apart than `margin`.
