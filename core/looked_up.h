@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/export.h>
+
 #include <compare>
 #include <cstddef>
 #include <iterator>
