@@ -2,6 +2,8 @@
 
 // Plain structs: kernel files include this.
 
+#include <winnow/core/export.h>
+
 namespace winnow {
 
 /// Where a surface stands.
