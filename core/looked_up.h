@@ -4,7 +4,7 @@
 
 #include <compare>
 #include <cstddef>
-#include <iterator>
+#include <span>  // tells of iterators at a third of what <iterator> costs whoever includes this
 #include <utility>
 
 namespace winnow {
