@@ -1,6 +1,6 @@
 #pragma once
 
-// Every operation of simd/lanes/rows.h, corners.h and axes.h behind plain pointers.
+// Every operation of simd/lanes/rows.h and corners.h behind plain pointers.
 
 #include "simd/kernels/kernels.h"
 
@@ -24,13 +24,6 @@ struct RowsOps {
   void (*load_corners)(const float* const* corners, bool next, double* out);
   /// Three numbers to four lanes.
   void (*join_corners)(const double* in, double* out);
-  /// Four numbers, or three that are joined, to all of up to eight lanes.
-  void (*load_axes)(const double* in, double* out);
-  void (*load_axes_of_floats)(const float* in, double* out);
-  void (*join_axes)(const double* in, double* out);
-  /// Four numbers; lanes are joined of three.
-  void (*store_axes)(const double* in, double* out);
-  void (*store_axes_as_floats)(const double* in, float* out);
 };
 
 WINNOW_KERNELS(RowsOps, rows_ops);

@@ -1,6 +1,5 @@
 #include "tests/simd/rows_ops.h"
 
-#include "simd/lanes/axes.h"
 #include "simd/lanes/corners.h"
 #include "simd/lanes/rows.h"
 
@@ -59,24 +58,6 @@ void joined_corners(const double* in, double* out) {
   join_corners(in[0], in[1], in[2]).store(lane);
   for (int i = 0; i < 4; ++i) out[i] = lane[i];
 }
-Axes joined(const double* in) {
-  return join_axes(in[0], in[1], in[2]);
-}
-void loaded_axes(const double* in, double* out) {
-  load_axes(in).store_unaligned(out);
-}
-void loaded_axes_of_floats(const float* in, double* out) {
-  load_axes(in).store_unaligned(out);
-}
-void joined_axes(const double* in, double* out) {
-  joined(in).store_unaligned(out);
-}
-void stored_axes(const double* in, double* out) {
-  store_axes(joined(in), out);
-}
-void stored_axes_as_floats(const double* in, float* out) {
-  store_axes(joined(in), out);
-}
 
 }  // namespace
 }  // namespace winnow::WINNOW_ISA_NAME
@@ -97,11 +78,6 @@ const RowsOps WINNOW_KERNEL_TABLE(rows_ops){
     .negate = isa::negative,
     .load_corners = isa::corners,
     .join_corners = isa::joined_corners,
-    .load_axes = isa::loaded_axes,
-    .load_axes_of_floats = isa::loaded_axes_of_floats,
-    .join_axes = isa::joined_axes,
-    .store_axes = isa::stored_axes,
-    .store_axes_as_floats = isa::stored_axes_as_floats,
 };
 
 }  // namespace winnow::test

@@ -1,5 +1,5 @@
-// Rows, corners and axes into lanes, and lanes into other precisions, against scalar loops, on
-// every instruction set.
+// Rows and corners into lanes, and lanes into other precisions, against scalar loops, on every
+// instruction set.
 
 #include <gtest/gtest.h>
 
@@ -127,42 +127,6 @@ TEST_P(RowsToLanes, corners_that_are_joined_come_in_their_order) {
   std::array<double, 4> out{};
   rows_ops().join_corners(corner.data(), out.data());
   for (std::size_t lane = 0; lane < 4; ++lane) EXPECT_EQ(out[lane], corner[lane % 3]) << lane;
-}
-
-TEST_P(RowsToLanes, axes_come_in_their_order_and_nothing_but_zeros_behind) {
-  for (int round = 0; round < 500; ++round) {
-    std::array<double, 4> in{};
-    std::array<float, 4> single_in{};
-    for (double& x : in) x = random_.uniform(-1.0, 1.0) * random_.log_uniform(1e-300, 1e300);
-    for (float& x : single_in) x = static_cast<float>(random_.uniform(-1.0, 1.0));
-    std::array<double, 8> loaded{};
-    std::array<double, 8> of_floats{};
-    std::array<double, 8> joined{};
-    rows_ops().load_axes(in.data(), loaded.data());
-    rows_ops().load_axes_of_floats(single_in.data(), of_floats.data());
-    rows_ops().join_axes(in.data(), joined.data());
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      ASSERT_EQ(loaded[lane], lane < 3 ? in[lane] : 0.0) << lane;
-      ASSERT_EQ(joined[lane], lane < 3 ? in[lane] : 0.0) << lane;
-      ASSERT_EQ(of_floats[lane], lane < 4 ? static_cast<double>(single_in[lane]) : 0.0) << lane;
-    }
-  }
-}
-
-TEST_P(RowsToLanes, axes_are_stored_as_four_numbers_and_rounded_to_the_nearest_float) {
-  for (int round = 0; round < 500; ++round) {
-    std::array<double, 3> in{};
-    for (double& x : in) x = random_.uniform(-1.0, 1.0) * random_.log_uniform(1e-44, 1e40);
-    std::array<double, 4> out{1.0, 1.0, 1.0, 1.0};
-    std::array<float, 4> single{1.0F, 1.0F, 1.0F, 1.0F};
-    rows_ops().store_axes(in.data(), out.data());
-    rows_ops().store_axes_as_floats(in.data(), single.data());
-    for (std::size_t axis = 0; axis < 4; ++axis) {
-      const double number = axis < 3 ? in[axis] : 0.0;
-      ASSERT_EQ(out[axis], number) << axis;
-      ASSERT_EQ(single[axis], static_cast<float>(number)) << axis;
-    }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RowsToLanes,
