@@ -221,7 +221,7 @@ static inline const TriangleShape* table_of(const ShapeTables& t, const Triangle
 template <typename Shape, bool Before>
 class CoreAndHull {
  public:
-  static constexpr std::uint32_t kRoom = 32;
+  static constexpr std::uint32_t kRoom = 64;
   static constexpr bool kSimpleSecond = true;
   static constexpr bool kPointSecond = __is_same(Shape, SphereShape);
 
