@@ -204,6 +204,26 @@ class CoreHull {
   alignas(64) float plane_[4][kLanes] = {};
 };
 
+/// How a shape's supports are found.
+template <typename Shape>
+struct SecondsOf;
+template <>
+struct SecondsOf<SphereShape> {
+  using Type = CenteredSeconds<0>;
+};
+template <>
+struct SecondsOf<CapsuleShape> {
+  using Type = CenteredSeconds<1>;
+};
+template <>
+struct SecondsOf<BoxShape> {
+  using Type = CenteredSeconds<3>;
+};
+template <>
+struct SecondsOf<TriangleShape> {
+  using Type = TriangleSeconds;
+};
+
 static inline const SphereShape* table_of(const ShapeTables& t, const SphereShape*) {
   return t.spheres;
 }
@@ -224,6 +244,7 @@ class CoreAndHull {
   static constexpr std::uint32_t kRoom = 64;
   static constexpr bool kSimpleSecond = true;
   static constexpr bool kPointSecond = __is_same(Shape, SphereShape);
+  using Seconds = typename SecondsOf<Shape>::Type;
 
   bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t slot, HullPair& pair) {
     const std::uint32_t simple = Before ? bodies.a : bodies.b;

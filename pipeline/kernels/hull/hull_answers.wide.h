@@ -11,8 +11,8 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
 /// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
-/// by `kSimpleSecond` whether their second is a simple shape, and by `kPointSecond` whether the
-/// core of that is a point, at its origin.
+/// by `kSimpleSecond` whether their second is a simple shape, by `kPointSecond` whether the core of
+/// that is a point, at its origin, and by `Seconds` how the search finds its supports.
 template <typename Shapes, typename T, int Level>
 class HullAnswers {
  public:
@@ -50,7 +50,7 @@ class HullAnswers {
     HullLimits limits{0.0, Level == 0};
     if (Level == 1) limits.far = __builtin_inf();
     if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
-    HullSearch<Shapes::kPointSecond>(pair_, placed, limits).run();
+    HullSearch<typename Shapes::Seconds>(pair_, placed, limits).run();
     for (std::uint32_t i = 0; i < placed; ++i) {
       if (!answer(pair_[i])) give_up(pair_[i].index);
     }

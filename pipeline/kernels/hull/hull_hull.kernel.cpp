@@ -7,6 +7,7 @@ struct HullAndHull {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr bool kSimpleSecond = false;
   static constexpr bool kPointSecond = false;
+  using Seconds = HullSeconds;
 
   static bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t /*slot*/, HullPair& pair) {
     const HullShape& a = job.tables.hulls[job.shapes[bodies.a].index()];

@@ -1,14 +1,13 @@
 #pragma once
 
 // Closest features of pairs of hulls in float: the algorithm of Gilbert, Johnson and Keerthi (1988)
-// one pair per lane, with supports sixteen vertices at a time. A lane that is done takes the next
-// pair, so that a hard pair does not hold fifteen easy ones. Where the origin is inside, the
+// one pair per lane. A lane that is done takes the next pair, so that a hard pair does not hold
+// fifteen easy ones. Where the origin is inside, the
 // search begins again from a point just outside, and finds a face of the difference that is a good
 // guess for the nearest one. Nothing here has to be right: the stages after it prove what they use.
 
-#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/hull/hull_supports.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
-#include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
@@ -20,8 +19,8 @@ struct HullLimits {
   bool verdict;
 };
 
-/// `PointSecond`: the second's core is a point at its origin.
-template <bool PointSecond>
+/// Seconds: HullSeconds, CenteredSeconds or TriangleSeconds.
+template <typename Seconds>
 class HullSearch {
  public:
   HullSearch(HullPair* pairs, std::uint32_t count, const HullLimits& limits)
@@ -30,7 +29,6 @@ class HullSearch {
   void run() {
     for (int lane = 0; lane < kLanes; ++lane) refill(lane);
     while (active_ != 0) {
-      find_supports();
       Mask16 done = step();
       for (; done != 0; done &= done - 1) {
         const int lane = static_cast<int>(first(done));
@@ -62,8 +60,8 @@ class HullSearch {
     HullPair& pair = *next_++;
     active_ |= 1U << lane;
     pair_[lane] = &pair;
-    for (int i = 0; i < 9 && !PointSecond; ++i) turn_[i][lane] = pair.scaled_turn[i];
-    for (int i = 0; i < 3; ++i) shift_[i][lane] = pair.scaled_shift[i];
+    firsts_.put(lane, *pair.first);
+    seconds_.put(lane, pair);
     scale_[lane] = pair.scale;
     const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
     const float far = scaled(limits_.far + pair.rounding) + kDoubt;
@@ -101,57 +99,14 @@ class HullSearch {
     }
   }
 
-  /// The vertex of the first that lies farthest against the gap, and of the second along it.
-  void find_supports() {
-    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
-    (-gap).x.store(toward_[0][0]);
-    (-gap).y.store(toward_[0][1]);
-    (-gap).z.store(toward_[0][2]);
-    Floats t[9];
-    for (int i = 0; i < 9 && !PointSecond; ++i) t[i] = Floats::load(turn_[i]);
-    for (int i = 0; i < 3 && !PointSecond; ++i) {
-      (t[i] * gap.x + t[3 + i] * gap.y + t[6 + i] * gap.z).store(toward_[1][i]);
-    }
-    for (int side = 0; side < (PointSecond ? 1 : 2); ++side) {
-      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
-        const int lane = static_cast<int>(first(rest));
-        const float direction[3] = {toward_[side][0][lane], toward_[side][1][lane],
-                                    toward_[side][2][lane]};
-        heights(hull(side, lane), direction, height_ + lane * kLanes, block_ + lane * kLanes);
-      }
-      alignas(64) float highest[kLanes];
-      reduce_max_rows(height_).store_unaligned(highest);
-      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
-        const int lane = static_cast<int>(first(rest));
-        const HullShape& h = hull(side, lane);
-        const std::uint32_t vertex = vertex_of(h, highest[lane], block_ + lane * kLanes);
-        number_[side][lane] = vertex;
-        for (int i = 0; i < 3; ++i) vertex_[side][i][lane] = h.vertex_float[i][vertex];
-      }
-    }
-    for (int lane = 0; lane < kLanes; ++lane) {
-      name_[lane] = __builtin_bit_cast(float, number_[0][lane] | number_[1][lane] << 16U);
-    }
-  }
-
-  [[nodiscard]] const HullShape& hull(int side, int lane) const {
-    return side == 0 ? *pair_[lane]->first : *pair_[lane]->second;
-  }
-
-  [[nodiscard]] Vec3<float> support() const {
-    const auto vertex = [&](int side, int i) { return Floats::load(vertex_[side][i]); };
-    const Floats scale = Floats::load(scale_);
-    Floats w[3];
-    for (int i = 0; i < 3; ++i) {
-      Floats b = Floats::load(shift_[i]);
-      if constexpr (!PointSecond) {
-        b = Floats::load(turn_[3 * i]) * vertex(1, 0) +
-            Floats::load(turn_[3 * i + 1]) * vertex(1, 1) +
-            Floats::load(turn_[3 * i + 2]) * vertex(1, 2) + b;
-      }
-      w[i] = vertex(0, i) * scale - b - Floats::load(goal_[i]);
-    }
-    return {w[0], w[1], w[2]};
+  /// The point of the difference that lies farthest against a direction, and in `name` which
+  /// vertices it is made of.
+  Vec3<float> support(const Vec3<float>& gap, Floats& name) {
+    firsts_.find(-gap, active_);
+    const SecondSupport second = seconds_.find(gap, active_);
+    name = firsts_.numbers(0) | second.number;
+    const Vec3<float> goal{Floats::load(goal_[0]), Floats::load(goal_[1]), Floats::load(goal_[2])};
+    return firsts_.vertex() * Floats::load(scale_) - second.point - goal;
   }
 
   /// One step of all lanes; returns those that are done.
@@ -167,7 +122,8 @@ class HullSearch {
     const Floats square = Floats::load(square_);
     const LaneMask<float> fresh = Floats::load(fresh_) > zero;
     const LaneMask<float> sinking = Floats::load(sinking_) > zero;
-    const Vec3<float> w = support();
+    Floats name;
+    const Vec3<float> w = support(gap, name);
     const Floats height = dot(gap, w);
     const LaneMask<float> ahead = height > zero;
     const LaneMask<float> far = ahead & (height * height > Floats::load(far_) * square) & !sinking;
@@ -184,7 +140,7 @@ class HullSearch {
                                   (!(nearest.inside | far));
     const LaneMask<float> inside = nearest.inside & !far;
     const LaneMask<float> moves = !(far | stuck | inside);
-    keep(simplex, nearest, moves, w, gap, next_square);
+    keep(simplex, nearest, moves, w, name, gap, next_square);
     const Mask16 sinking_bits = bits(sinking);
     const Mask16 far_bits = bits(far) & active_;
     const Mask16 stuck_bits = bits(stuck) & active_;
@@ -276,11 +232,10 @@ class HullSearch {
 
   /// Where `moves`: the nearest feature becomes the simplex.
   void keep(const Simplex<float>& simplex, const SimplexNearest<float>& nearest,
-            const LaneMask<float>& moves, const Vec3<float>& w, const Vec3<float>& gap,
-            const Floats& next_square) {
+            const LaneMask<float>& moves, const Vec3<float>& w, const Floats& name,
+            const Vec3<float>& gap, const Floats& next_square) {
     const Floats zero(0.0F);
     const Floats one(1.0F);
-    const Floats name = Floats::load(name_);
     LaneMask<float> placed = !moves;
     for (int s = 0; s < kSlots; ++s) {
       const LaneMask<float> take = (!placed) & (!nearest.keep[s]);
@@ -321,11 +276,10 @@ class HullSearch {
   HullPair* end_;
   HullLimits limits_;
   Mask16 active_ = 0;
+  FarthestVertices firsts_;
+  Seconds seconds_;
   HullPair* pair_[kLanes] = {};
   std::uint32_t steps_[kLanes] = {};
-  std::uint32_t number_[2][kLanes] = {};
-  alignas(64) float turn_[9][kLanes] = {};
-  alignas(64) float shift_[3][kLanes] = {};
   alignas(64) float scale_[kLanes] = {};
   alignas(64) float far_[kLanes] = {};
   alignas(64) float near_[kLanes] = {};
@@ -341,11 +295,6 @@ class HullSearch {
   alignas(64) float slot_[kSlots][3][kLanes] = {};
   alignas(64) float slot_name_[kSlots][kLanes] = {};
   alignas(64) float present_[kSlots][kLanes] = {};
-  alignas(64) float toward_[2][3][kLanes] = {};
-  alignas(64) float vertex_[2][3][kLanes] = {};
-  alignas(64) float name_[kLanes] = {};
-  alignas(64) float height_[kLanes * kLanes] = {};
-  alignas(64) float block_[kLanes * kLanes] = {};
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull
