@@ -340,12 +340,13 @@ class Chosen {
 /// One about pairs of shapes: of some kinds, at some levels, by some tiers.
 class PairsCommand : public RowsCommand {
  protected:
-  PairsCommand(std::vector<std::string> levels, std::vector<std::string> tiers)
-      : levels_(std::move(levels)), tiers_(std::move(tiers)) {}
+  PairsCommand(std::span<const PairKind> all, std::vector<std::string> levels,
+               std::vector<std::string> tiers)
+      : all_(all), levels_(std::move(levels)), tiers_(std::move(tiers)) {}
 
   void add_pair_options(CLI::App& app) {
     std::vector<std::string> kinds;
-    for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
+    for (const PairKind& kind : all_) kinds.emplace_back(kind.name);
     kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
     levels_.add_to(app, "--level", {kLevelNames.begin(), kLevelNames.end()},
                    "How much is asked of a pair");
@@ -356,7 +357,7 @@ class PairsCommand : public RowsCommand {
     add_rows_options(app);
   }
   [[nodiscard]] std::vector<PairKind> kinds() const {
-    return kinds_.of(pair_kinds(), [](const PairKind& kind) { return kind.name; });
+    return kinds_.of(all_, [](const PairKind& kind) { return kind.name; });
   }
   [[nodiscard]] std::vector<ContactLevel> levels() const {
     return levels_.of(std::span<const ContactLevel>(kLevels), [](auto l) { return to_text(l); });
@@ -371,6 +372,7 @@ class PairsCommand : public RowsCommand {
   std::uint64_t seed_ = 1;
 
  private:
+  std::span<const PairKind> all_;
   Chosen kinds_{{"all"}};
   Chosen levels_;
   Chosen tiers_;
@@ -378,7 +380,7 @@ class PairsCommand : public RowsCommand {
 
 class Narrow final : public PairsCommand {
  public:
-  Narrow() : PairsCommand({"all"}, {"fast", "robust"}) {}
+  Narrow() : PairsCommand(pair_kinds(), {"all"}, {"fast", "robust"}) {}
 
   void add_options(CLI::App& app) {
     number(app, "--pairs", pairs_, 1, 1e7,
@@ -419,7 +421,7 @@ class Narrow final : public PairsCommand {
 
 class AccuracyCommand final : public PairsCommand {
  public:
-  AccuracyCommand() : PairsCommand({"distance"}, {"all"}) {}
+  AccuracyCommand() : PairsCommand(main_pair_kinds(), {"distance"}, {"all"}) {}
 
   void add_options(CLI::App& app) {
     option(app, "--ratio", ratios_, "Size of the second shape over that of the first")
@@ -541,7 +543,7 @@ class Impacts final : public RowsCommand {
   void add_options(CLI::App& app) {
     what_.add_to(app, "--what", {kPairs, kFeatures, kScene}, "What moves");
     std::vector<std::string> kinds;
-    for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
+    for (const PairKind& kind : main_pair_kinds()) kinds.emplace_back(kind.name);
     kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
     turns_.add_to(app, "--turn", {kPairTurnNames.begin(), kPairTurnNames.end()},
                   "How far bodies of pairs turn");
@@ -579,7 +581,7 @@ class Impacts final : public RowsCommand {
     print("swept_scenes");
   }
   void measure_pairs() {
-    const auto kinds = kinds_.of(pair_kinds(), [](const PairKind& kind) { return kind.name; });
+    const auto kinds = kinds_.of(main_pair_kinds(), [](const PairKind& kind) { return kind.name; });
     const auto turns = turns_.of(std::span<const PairTurn>(kPairTurns),
                                  [](PairTurn turn) { return to_text(turn); });
     for (const PairKind& kind : kinds) {

@@ -291,7 +291,7 @@ void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
 void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
   const auto pairs = options.at("pairs").get<std::map<std::string, std::size_t>>();
   declare_pair_errors(measured.results);
-  for (const PairKind& kind : pair_kinds()) {
+  for (const PairKind& kind : main_pair_kinds()) {
     const auto own = pairs.find(std::string(kind.name));
     AccuracyOptions asked{
         .kind = kind,

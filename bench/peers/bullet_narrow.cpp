@@ -9,6 +9,7 @@
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionDispatch/btSphereBoxCollisionAlgorithm.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include <algorithm>
@@ -23,9 +24,14 @@ using namespace in_bullet;
 constexpr btScalar kFar = 1e9F;
 
 /// Margins are nothing where the shape would grow or lose its corners by them.
-std::unique_ptr<btConvexShape> make_bare_shape(const ShapeTables& tables, ShapeId id) {
+std::unique_ptr<btCollisionShape> make_bare_shape(const ShapeTables& tables, ShapeId id) {
+  if (id.kind() == ShapeKind::half_space) {
+    const HalfSpaceShape& half = tables.half_spaces[id.index()];
+    return std::make_unique<btStaticPlaneShape>(to_bullet(half.normal),
+                                                static_cast<btScalar>(half.offset));
+  }
   std::unique_ptr<btConvexShape> shape = make_shape(tables, id, 0.0);
-  if (id.kind() == ShapeKind::box || id.kind() == ShapeKind::triangle) shape->setMargin(0);
+  if (id.kind() != ShapeKind::sphere && id.kind() != ShapeKind::capsule) shape->setMargin(0);
   if (id.kind() == ShapeKind::hull) {
     static_cast<btConvexHullShape&>(*shape).initializePolyhedralFeatures();
   }
@@ -91,7 +97,10 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     if (kind.a == sphere && kind.b == box)
       return verdict ? &BulletNarrow::ball_in_box<ContactLevel::boolean>
                      : &BulletNarrow::ball_in_box<ContactLevel::distance>;
-    if (kind.a == sphere)
+    if (kind.b == half_space)
+      return verdict ? &BulletNarrow::over_plane<ContactLevel::boolean>
+                     : &BulletNarrow::over_plane<ContactLevel::distance>;
+    if (kind.a == sphere && kind.b == triangle)
       return verdict ? &BulletNarrow::ball_on_triangle<ContactLevel::boolean>
                      : &BulletNarrow::ball_on_triangle<ContactLevel::distance>;
     if (kind.a == box && kind.b == box && verdict) return &BulletNarrow::axes;
@@ -100,11 +109,12 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
 
   void start(const PairSet& set) override {
     set_kind(set.kind);
-    std::vector<btConvexShape*> hulls(set.pool.tables().count[static_cast<int>(ShapeKind::hull)]);
+    std::vector<btCollisionShape*> hulls(
+        set.pool.tables().count[static_cast<int>(ShapeKind::hull)]);
     objects_.resize(set.poses.size());
     for (std::size_t i = 0; i < set.poses.size(); ++i) {
       const ShapeId id = set.shapes[i];
-      btConvexShape* shape = id.kind() == ShapeKind::hull ? hulls[id.index()] : nullptr;
+      btCollisionShape* shape = id.kind() == ShapeKind::hull ? hulls[id.index()] : nullptr;
       if (shape == nullptr) {
         shapes_.push_back(make_bare_shape(set.pool.tables(), id));
         shape = shapes_.back().get();
@@ -215,6 +225,23 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     detect(detector, pair, level, answer);
   }
 
+  /// The lowest point, as btConvexPlaneCollisionAlgorithm finds it.
+  template <ContactLevel level>
+  void over_plane(const BodyPair& pair, NarrowAnswer& answer) {
+    const auto& plane = shape_of<btStaticPlaneShape>(pair.b);
+    const btTransform& a = objects_[pair.a].getWorldTransform();
+    const btTransform& b = objects_[pair.b].getWorldTransform();
+    const btVector3 normal = b.getBasis() * plane.getPlaneNormal();
+    const btVector3 lowest =
+        a(shape_of<btConvexShape>(pair.a).localGetSupportingVertex(-normal * a.getBasis()));
+    const btScalar distance = normal.dot(lowest - b.getOrigin()) - plane.getPlaneConstant();
+    answer.overlap = distance <= 0;
+    if (level == ContactLevel::boolean) return;
+    answer.distance = static_cast<double>(distance);
+    write_vector(answer.normal, -normal.x(), -normal.y(), -normal.z());
+    write_vector(answer.point, lowest.x(), lowest.y(), lowest.z());
+  }
+
   void axes(const BodyPair& pair, NarrowAnswer& answer) {
     btBoxBoxDetector detector(&shape_of<btBoxShape>(pair.a), &shape_of<btBoxShape>(pair.b));
     detect(detector, pair, ContactLevel::boolean, answer);
@@ -272,7 +299,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
   btCollisionAlgorithm* algorithm_ = nullptr;
   btPersistentManifold* manifold_ = nullptr;
   btPersistentManifold* written_ = nullptr;
-  std::vector<std::unique_ptr<btConvexShape>> shapes_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<btCollisionObject> objects_;
 };
 

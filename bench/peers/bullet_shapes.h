@@ -4,7 +4,9 @@
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
@@ -35,6 +37,15 @@ inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, Shap
           static_cast<btScalar>(2.0 * tables.capsules[i].half_length));
     case ShapeKind::box:
       return std::make_unique<btBoxShape>(to_bullet(tables.boxes[i].half));
+    case ShapeKind::cylinder: {
+      const CylinderShape& cylinder = tables.cylinders[i];
+      const double half[3] = {cylinder.radius, cylinder.radius, cylinder.half_length};
+      return std::make_unique<btCylinderShapeZ>(to_bullet(half));
+    }
+    case ShapeKind::cone:
+      return std::make_unique<btConeShapeZ>(
+          static_cast<btScalar>(tables.cones[i].radius),
+          static_cast<btScalar>(2.0 * tables.cones[i].half_length));
     case ShapeKind::triangle: {
       const auto& v = tables.triangles[i].vertex;
       return std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));

@@ -38,27 +38,24 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
-    if (kind.a == triangle) return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
-    if (kind.b == triangle) {
-      switch (kind.a) {
-        case sphere:
-          return of_shapes<SphereGeometry, Corners>(level);
-        case capsule:
-          return of_shapes<CapsuleGeometry, Corners>(level);
-        default:
-          return of_shapes<BoxGeometry, Corners>(level);
-      }
+    if (kind.a == triangle && kind.b == triangle) {
+      return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
     }
-    if (kind.a == capsule) return of_shapes<CapsuleGeometry, CapsuleGeometry>(level);
-    if (kind.a == box) return of_shapes<BoxGeometry, BoxGeometry>(level);
-    if (kind.a == hull) return of_shapes<HullGeometry, HullGeometry>(level);
-    switch (kind.b) {
+    switch (kind.a) {
       case sphere:
-        return of_shapes<SphereGeometry, SphereGeometry>(level);
+        return with_second<SphereGeometry>(kind.b, level);
       case capsule:
-        return of_shapes<SphereGeometry, CapsuleGeometry>(level);
+        return with_second<CapsuleGeometry>(kind.b, level);
+      case box:
+        return with_second<BoxGeometry>(kind.b, level);
+      case cylinder:
+        return with_second<CylinderGeometry>(kind.b, level);
+      case cone:
+        return with_second<ConeGeometry>(kind.b, level);
+      case hull:
+        return with_second<HullGeometry>(kind.b, level);
       default:
-        return of_shapes<SphereGeometry, BoxGeometry>(level);
+        return over_plane<Corners>(level);
     }
   }
 
@@ -102,6 +99,36 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       default:
         return manifold;
     }
+  }
+
+  /// Of a shape and one that does not come before it.
+  template <typename A>
+  static Answerer with_second(ShapeKind b, ContactLevel level) {
+    switch (b) {
+      case ShapeKind::sphere:
+        return of_shapes<A, SphereGeometry>(level);
+      case ShapeKind::capsule:
+        return of_shapes<A, CapsuleGeometry>(level);
+      case ShapeKind::box:
+        return of_shapes<A, BoxGeometry>(level);
+      case ShapeKind::cylinder:
+        return of_shapes<A, CylinderGeometry>(level);
+      case ShapeKind::cone:
+        return of_shapes<A, ConeGeometry>(level);
+      case ShapeKind::hull:
+        return of_shapes<A, HullGeometry>(level);
+      case ShapeKind::triangle:
+        return of_shapes<A, Corners>(level);
+      default:
+        return over_plane<A>(level);
+    }
+  }
+
+  /// FCL has no distances from half-spaces.
+  template <typename A>
+  static Answerer over_plane(ContactLevel level) {
+    return pick(level, &Self::template verdict<A, HalfSpaceGeometry>, nullptr,
+                &Self::template contacts<A, HalfSpaceGeometry>);
   }
 
   template <typename A, typename B>
@@ -156,25 +183,34 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     write_vector(answer.point, deepest->pos.x(), deepest->pos.y(), deepest->pos.z());
   }
 
-  // The solver's functions of two shapes, or of a shape and a triangle, of which B is the corners.
+  template <typename Shape>
+  bool meets_triangle(const Body& body, const Body& triangle, Contacts* contacts) {
+    const auto& [p, q, r] = triangle.corners;
+    fcl::ContactPoint<double> contact;
+    const bool wanted = contacts != nullptr;
+    const bool overlap = ask([&] {
+      return solver_.shapeTriangleIntersect(
+          shape_of<Shape>(body), body.at, p, q, r, triangle.at, wanted ? &contact.pos : nullptr,
+          wanted ? &contact.penetration_depth : nullptr, wanted ? &contact.normal : nullptr);
+    });
+    if (!wanted || !overlap) return overlap;
+    // Of triangles EPA's normals go from b to a.
+    if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
+    contacts->push_back(contact);
+    return true;
+  }
+
+  // The solver's functions of two shapes, or of a shape and a triangle, of which A or B is the
+  // corners.
 
   template <typename A, typename B>
   bool intersect(const Body& a, const Body& b, Contacts* contacts) {
     if constexpr (std::is_same_v<B, Corners>) {
-      const Corners& corners = b.corners;
-      fcl::ContactPoint<double> contact;
-      const bool wanted = contacts != nullptr;
-      const bool overlap = ask([&] {
-        return solver_.shapeTriangleIntersect(shape_of<A>(a), a.at, corners[0], corners[1],
-                                              corners[2], b.at, wanted ? &contact.pos : nullptr,
-                                              wanted ? &contact.penetration_depth : nullptr,
-                                              wanted ? &contact.normal : nullptr);
-      });
-      if (contacts == nullptr || !overlap) return overlap;
-      // Of triangles EPA's normals go from b to a.
-      if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
-      contacts->push_back(contact);
-      return true;
+      return meets_triangle<A>(a, b, contacts);
+    } else if constexpr (std::is_same_v<A, Corners>) {
+      const bool overlap = meets_triangle<B>(b, a, contacts);
+      if (overlap && contacts != nullptr) contacts->back().normal = -contacts->back().normal;
+      return overlap;
     } else {
       return ask([&] {
         return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, contacts);

@@ -4,7 +4,10 @@
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/halfspace.h>
 #include <fcl/geometry/shape/sphere.h>
 
 #include <memory>
@@ -19,9 +22,12 @@ using Geometry = fcl::CollisionGeometry<double>;
 using SphereGeometry = fcl::Sphere<double>;
 using CapsuleGeometry = fcl::Capsule<double>;
 using BoxGeometry = fcl::Box<double>;
+using CylinderGeometry = fcl::Cylinder<double>;
+using ConeGeometry = fcl::Cone<double>;
+using HalfSpaceGeometry = fcl::Halfspace<double>;
 using HullGeometry = fcl::Convex<double>;
 
-/// Null for what is no convex solid.
+/// Null for what is no solid.
 inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
   switch (id.kind()) {
@@ -33,6 +39,17 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
     case ShapeKind::box: {
       const double* half = tables.boxes[i].half;
       return std::make_shared<BoxGeometry>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
+    }
+    case ShapeKind::cylinder:
+      return std::make_shared<CylinderGeometry>(tables.cylinders[i].radius,
+                                                2.0 * tables.cylinders[i].half_length);
+    case ShapeKind::cone:
+      return std::make_shared<ConeGeometry>(tables.cones[i].radius,
+                                            2.0 * tables.cones[i].half_length);
+    case ShapeKind::half_space: {
+      const HalfSpaceShape& half = tables.half_spaces[i];
+      return std::make_shared<HalfSpaceGeometry>(
+          Vector(half.normal[0], half.normal[1], half.normal[2]), half.offset);
     }
     case ShapeKind::hull: {
       const HullShape& hull = tables.hulls[i];

@@ -68,6 +68,28 @@ void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) 
   to_world(body, local, *point);
 }
 
+void of_cylinder(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  const double across = std::hypot(local[0], local[1]);
+  const double reach = across > 0.0 ? body.size[0] / across : 0.0;
+  const double at[3] = {reach * local[0], reach * local[1], std::copysign(body.size[1], local[2])};
+  to_world(body, at, *point);
+}
+
+void of_cone(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  const double across = std::hypot(local[0], local[1]);
+  const double reach = across > 0.0 ? body.size[0] / across : 0.0;
+  const bool apex = 2.0 * body.size[1] * local[2] > body.size[0] * across;
+  const double at[3] = {apex ? 0.0 : reach * local[0], apex ? 0.0 : reach * local[1],
+                        apex ? body.size[1] : -body.size[1]};
+  to_world(body, at, *point);
+}
+
 void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
@@ -99,6 +121,10 @@ ccd_support_fn support_of(ShapeKind kind) {
       return of_capsule;
     case ShapeKind::box:
       return of_box;
+    case ShapeKind::cylinder:
+      return of_cylinder;
+    case ShapeKind::cone:
+      return of_cone;
     default:
       return of_points;
   }
@@ -121,6 +147,14 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
     case ShapeKind::box:
       std::copy_n(tables.boxes[id.index()].half, 3, body.size);
       break;
+    case ShapeKind::cylinder:
+      body.size[0] = tables.cylinders[id.index()].radius;
+      body.size[1] = tables.cylinders[id.index()].half_length;
+      break;
+    case ShapeKind::cone:
+      body.size[0] = tables.cones[id.index()].radius;
+      body.size[1] = tables.cones[id.index()].half_length;
+      break;
     case ShapeKind::triangle:
       for (int axis = 0; axis < 3; ++axis) {
         for (const auto& vertex : tables.triangles[id.index()].vertex) {
@@ -130,9 +164,12 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
       }
       body.vertices = 3;
       break;
-    default:
+    case ShapeKind::hull:
       std::copy_n(tables.hulls[id.index()].vertex, 3, body.vertex);
       body.vertices = tables.hulls[id.index()].vertex_count;
+      break;
+    default:
+      break;
   }
   return body;
 }
@@ -151,7 +188,9 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
 
   [[nodiscard]] std::string name() const override { return portals_ ? "libccd MPR" : "libccd GJK"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind&, ContactLevel level) {
+  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
+    // A half-space has no support points.
+    if (kind.b == ShapeKind::half_space) return nullptr;
     switch (level) {
       case ContactLevel::boolean:
         return &LibccdNarrow::verdict;

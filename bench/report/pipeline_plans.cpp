@@ -17,9 +17,10 @@
 namespace winnow::bench {
 namespace {
 
-std::vector<PairKind> narrow_kinds(bool quick) {
+/// Of a quick report two.
+std::vector<PairKind> reported(std::span<const PairKind> all, bool quick) {
   std::vector<PairKind> kinds;
-  for (const PairKind& kind : pair_kinds()) {
+  for (const PairKind& kind : all) {
     const bool is_quick = kind.name == "sphere-box" || kind.name == "box-box";
     if (is_quick || !quick) kinds.push_back(kind);
   }
@@ -131,13 +132,12 @@ void measure_scene(Results& results, const ReportOptions& options, const std::st
 
 ReportSteps plan_narrow(const ReportOptions& options) {
   ReportSteps steps;
-  const std::vector<PairKind> kinds = narrow_kinds(options.quick);
-  for (const PairKind& kind : kinds) {
+  for (const PairKind& kind : reported(pair_kinds(), options.quick)) {
     steps.push_back({"time of " + std::string(kind.name),
                      options.quick ? 0.1 : kind.hull_vertices * 0.07 + 0.8,
                      [=](Results& results) { measure_narrow_times(results, options, kind); }});
   }
-  for (const PairKind& kind : kinds) {
+  for (const PairKind& kind : reported(main_pair_kinds(), options.quick)) {
     steps.push_back({"errors of " + std::string(kind.name),
                      options.quick ? 0.05 : kind.hull_vertices * 0.02 + 0.5,
                      [=](Results& results) { measure_narrow_errors(results, options, kind); }});
@@ -165,7 +165,7 @@ ReportSteps plan_stability(const ReportOptions& options) {
 
 ReportSteps plan_motion(const ReportOptions& options) {
   ReportSteps steps;
-  for (const PairKind& kind : narrow_kinds(options.quick)) {
+  for (const PairKind& kind : reported(main_pair_kinds(), options.quick)) {
     for (const PairTurn turn : kPairTurns) {
       const ImpactRaceOptions asked{.kind = kind,
                                     .turn = turn,

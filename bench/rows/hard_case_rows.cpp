@@ -65,7 +65,7 @@ struct PeerCase {
 };
 
 const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
-  for (const PairKind& kind : pair_kinds()) {
+  for (const PairKind& kind : main_pair_kinds()) {
     if (kind.a == a && kind.b == b) return &kind;
   }
   return nullptr;

@@ -5,7 +5,9 @@ namespace {
 
 using enum ShapeKind;
 
-constexpr std::array<PairKind, 11> kKinds{{{"sphere-sphere", sphere, sphere},
+constexpr std::size_t kMainKinds = 11;
+
+constexpr std::array<PairKind, 36> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"sphere-capsule", sphere, capsule},
                                            {"capsule-capsule", capsule, capsule},
                                            {"sphere-box", sphere, box},
@@ -15,9 +17,38 @@ constexpr std::array<PairKind, 11> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"box-triangle", box, triangle},
                                            {"triangle-triangle", triangle, triangle},
                                            {"hull16-hull16", hull, hull, 16},
-                                           {"hull64-hull64", hull, hull, 64}}};
+                                           {"hull64-hull64", hull, hull, 64},
+                                           {"sphere-cylinder", sphere, cylinder},
+                                           {"sphere-cone", sphere, cone},
+                                           {"sphere-hull16", sphere, hull, 16},
+                                           {"sphere-half_space", sphere, half_space},
+                                           {"capsule-box", capsule, box},
+                                           {"capsule-cylinder", capsule, cylinder},
+                                           {"capsule-cone", capsule, cone},
+                                           {"capsule-hull16", capsule, hull, 16},
+                                           {"capsule-half_space", capsule, half_space},
+                                           {"box-cylinder", box, cylinder},
+                                           {"box-cone", box, cone},
+                                           {"box-hull16", box, hull, 16},
+                                           {"box-half_space", box, half_space},
+                                           {"cylinder-cylinder", cylinder, cylinder},
+                                           {"cylinder-cone", cylinder, cone},
+                                           {"cylinder-hull16", cylinder, hull, 16},
+                                           {"cylinder-triangle", cylinder, triangle},
+                                           {"cylinder-half_space", cylinder, half_space},
+                                           {"cone-cone", cone, cone},
+                                           {"cone-hull16", cone, hull, 16},
+                                           {"cone-triangle", cone, triangle},
+                                           {"cone-half_space", cone, half_space},
+                                           {"hull16-triangle", hull, triangle, 16},
+                                           {"hull16-half_space", hull, half_space, 16},
+                                           {"triangle-half_space", triangle, half_space}}};
 
 }  // namespace
+
+std::span<const PairKind> main_pair_kinds() noexcept {
+  return std::span(kKinds).first(kMainKinds);
+}
 
 std::span<const PairKind> pair_kinds() noexcept {
   return kKinds;

@@ -19,7 +19,10 @@ struct PairKind {
   std::uint32_t hull_vertices = 0;
 };
 
-/// All kinds, cheapest first.
+/// Those that everything is measured on, cheapest first.
+[[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
+/// All kinds: the main ones, then every other pair of a sphere, capsule, box, cylinder, cone, hull,
+/// triangle and half-space.
 [[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
 /// Null if there is none of the name.
 [[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;

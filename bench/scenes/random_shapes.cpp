@@ -101,6 +101,18 @@ DrawnShape ShapeSource::draw() {
       const Eigen::Vector3d half(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
       return put(BoxShape{{half.x(), half.y(), half.z()}, 0.0}, half.norm());
     }
+    case ShapeKind::cylinder: {
+      const CylinderShape cylinder{length(0.25, 1.0), length(0.25, 1.0), 0.0};
+      return put(cylinder, std::hypot(cylinder.radius, cylinder.half_length));
+    }
+    case ShapeKind::cone: {
+      const ConeShape cone{length(0.25, 1.0), length(0.25, 1.0), 0.0};
+      return put(cone, std::hypot(cone.radius, cone.half_length));
+    }
+    case ShapeKind::half_space: {
+      const Eigen::Vector3d normal = random_unit(random_);
+      return put(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, 0.0}, length(0.25, 1.0));
+    }
     case ShapeKind::triangle:
       return draw_triangle();
     case ShapeKind::hull:

@@ -10,7 +10,8 @@
 
 namespace winnow::bench {
 
-/// A shape and the radius of the ball about its frame's origin that contains it.
+/// A shape and the radius of the ball about its frame's origin that contains it; of a half-space,
+/// whose plane passes through that origin, of one as large as other shapes.
 struct DrawnShape {
   ShapeId id;
   double radius = 0.0;
