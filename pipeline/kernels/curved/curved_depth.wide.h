@@ -3,9 +3,10 @@
 // Penetration depth of two cores: a polytope inside of their difference grows where it is nearest
 // to the origin (van den Bergen, "Proximity queries and penetration depth computation on 3D game
 // objects", 2001). Its nearest face bounds the depth from below, the support along the face's
-// normal from above.
+// normal from above. Where the difference is smooth these come together slowly, and a local minimum
+// that is sure as far around as the polytope leaves it open ends the search.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/curved/curved_minimum.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
@@ -72,10 +73,11 @@ class CurvedDepth {
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
     points_ = 0;
-    for (std::uint32_t block = 0; block < blocks_; ++block) alive_[block] = 0;
-    blocks_ = 0;
+    faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     if (!begin()) return false;
+    is_minimum_ = false;
+    double next = kFirstLook;
     for (;;) {
       face_ = nearest_face();
       lower_ = distance_[face_];
@@ -87,6 +89,10 @@ class CurvedDepth {
         turn_to_foot();
         measure(w, mine);
         if (upper_ - lower_ <= kTolerance) return true;
+      }
+      if (upper_ - lower_ <= next * upper_) {
+        if (end_in_minimum()) return true;
+        next *= kNextLook;
       }
       if (points_ == kMostPoints) return upper_ - lower_ <= kMostDoubt;
       if (!grow(add_point(w, mine))) return false;
@@ -100,6 +106,11 @@ class CurvedDepth {
   /// The unit direction of least depth, from the first to the second, and a point of the first that
   /// is on both once the second has been moved out; false if rounding hides where that is.
   bool answer(double* direction, double* point) const {
+    if (is_minimum_) {
+      for (int k = 0; k < 3; ++k) direction[k] = minimum_.normal()[k];
+      minimum_.write_point(point);
+      return true;
+    }
     double weight[3];
     if (!(foot_weights(face_, weight) >= kInside)) return false;
     for (int k = 0; k < 3; ++k) {
@@ -112,11 +123,20 @@ class CurvedDepth {
 
  private:
   static constexpr std::uint32_t kWidth = Doubles::kCount;
+  /// What the bounds differ by, over the upper one, when a minimum is looked for, and by how much
+  /// less the next time.
+  static constexpr double kFirstLook = 0.1;
+  static constexpr double kNextLook = 0.1;
+  /// What rounding may take from an angle whose cosine is known.
+  static constexpr double kAngleRounding = 1e-7;
+  /// The cosine of the widest angle around a minimum that is looked at.
+  static constexpr double kWidest = 0.5;
   static constexpr std::uint32_t kMostPoints = 64;
   /// A polytope of p points has 2 p - 4 faces.
   static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
-  /// New faces at a time.
-  static constexpr std::uint32_t kMostSides = 32;
+  /// Faces that a point sees; of their sides more are looked at than are kept.
+  static constexpr std::uint32_t kMostSeen = 30;
+  static constexpr std::uint32_t kMostSides = 3 * kMostSeen + 1;
   /// A face is seen from points above its plane and from those that are not below it by more.
   static constexpr double kLevel = 1e-15;
   /// The foot of the origin is in a face if no weight of a corner is below this.
@@ -144,7 +164,7 @@ class CurvedDepth {
   /// An edge of a face: the face's number times four and the edge's.
   static std::uint32_t edge_of(std::uint32_t face, std::uint32_t edge) { return 4 * face + edge; }
 
-  /// What a new face is made of: an edge from p to q, and the edge across it.
+  /// What a new face is made of: an edge from p to q, the edge across it, and the face's number.
   struct Side {
     std::uint32_t p;
     std::uint32_t q;
@@ -164,47 +184,36 @@ class CurvedDepth {
     // Counter-clockwise seen from outside if the fourth point is behind the first face.
     const bool turned = dot3(n, e[2]) > 0.0;
     const std::uint32_t corner[3] = {0, turned ? 2U : 1U, turned ? 1U : 2U};
-    Side base{corner[0], corner[1], 0, 0};
-    if (!add_faces(&base, 1, corner[2])) return false;
+    const Side base{corner[0], corner[1], 0, add_slot()};
+    if (!set_faces(&base, 1, corner[2])) return false;
     Side side[3];
     for (std::uint32_t i = 0; i < 3; ++i) {
-      side[i] = {corner[(i + 1) % 3], corner[i], edge_of(base.face, i), 0};
+      side[i] = {corner[(i + 1) % 3], corner[i], edge_of(base.face, i), add_slot()};
     }
-    return add_faces(side, 3, 3) && join(side, 3);
+    return set_faces(side, 3, 3) && join(side, 3);
   }
 
-  /// A slot for a face.
-  std::uint32_t take_slot() {
-    std::uint32_t block = 0;
-    while (block < blocks_ && alive_[block] == kFull) ++block;
-    if (block == blocks_) {
-      if (blocks_ == kMostFaces / kWidth) return kMostFaces;
-      Doubles(__builtin_inf()).store(distance_ + block * kWidth);
-      ++blocks_;
-    }
-    const unsigned lane = first(static_cast<Mask16>(~alive_[block] & kFull));
-    alive_[block] |= 1U << lane;
-    return block * kWidth + lane;
+  /// The number of one more face.
+  std::uint32_t add_slot() {
+    if (faces_ % kWidth == 0) Doubles(__builtin_inf()).store(distance_ + faces_);
+    seen_by_[faces_] = 0;
+    return faces_++;
   }
 
-  /// Makes the faces of sides with a point; false if one has no normal, the origin is above it, or
-  /// there is no room.
-  bool add_faces(Side* side, std::uint32_t count, std::uint32_t to) {
-    alignas(64) double from[3][kWidth] = {};
-    alignas(64) double end[3][kWidth] = {};
+  /// Makes the faces of sides with a point; false if one has no normal or the origin is above it.
+  bool set_faces(const Side* side, std::uint32_t count, std::uint32_t to) {
     const double* w = point_[to];
     for (std::uint32_t begin = 0; begin < count; begin += kWidth) {
       const std::uint32_t left = count - begin;
       const std::uint32_t batch = left < kWidth ? left : kWidth;
       for (std::uint32_t i = 0; i < batch; ++i) {
         for (int k = 0; k < 3; ++k) {
-          from[k][i] = point_[side[begin + i].p][k];
-          end[k][i] = point_[side[begin + i].q][k];
+          from_point_[k][i] = point_[side[begin + i].p][k];
+          to_point_[k][i] = point_[side[begin + i].q][k];
         }
       }
-      const Vec3<double> p{Doubles::load(from[0]), Doubles::load(from[1]), Doubles::load(from[2])};
-      const Vec3<double> q{Doubles::load(end[0]), Doubles::load(end[1]), Doubles::load(end[2])};
-      const Vec3<double> e = q - p;
+      const Vec3<double> p = load3(from_point_);
+      const Vec3<double> e = load3(to_point_) - p;
       const Vec3<double> g = Vec3<double>{w[0], w[1], w[2]} - p;
       const Vec3<double> n = cross(e, g);
       const Doubles square = dot(n, n);
@@ -213,22 +222,25 @@ class CurvedDepth {
       const LaneMask<double> good =
           (square > Doubles(1e-26) * dot(e, e) * dot(g, g)) & (distance > Doubles(-kLevel));
       if ((~bits(good) & lanes_below(batch)) != 0) return false;
-      unit.x.store(from[0]);
-      unit.y.store(from[1]);
-      unit.z.store(from[2]);
-      distance.store(end[0]);
+      alignas(64) double plane[4][kWidth];
+      unit.x.store(plane[0]);
+      unit.y.store(plane[1]);
+      unit.z.store(plane[2]);
+      distance.store(plane[3]);
       for (std::uint32_t i = 0; i < batch; ++i) {
-        Side& s = side[begin + i];
-        s.face = take_slot();
-        if (s.face == kMostFaces) return false;
-        for (int k = 0; k < 3; ++k) normal_[k][s.face] = from[k][i];
-        distance_[s.face] = end[0][i];
+        const Side& s = side[begin + i];
+        for (int k = 0; k < 3; ++k) normal_[k][s.face] = plane[k][i];
+        distance_[s.face] = plane[3][i];
         vertex_[s.face][0] = s.p;
         vertex_[s.face][1] = s.q;
         vertex_[s.face][2] = to;
       }
     }
     return true;
+  }
+
+  static Vec3<double> load3(const double (*v)[kWidth]) {
+    return {Doubles::load(v[0]), Doubles::load(v[1]), Doubles::load(v[2])};
   }
 
   /// Makes the new faces neighbours of each other and of those across; false unless the sides are
@@ -255,10 +267,59 @@ class CurvedDepth {
     return true;
   }
 
+  /// True if the least depth is that of a local minimum near the nearest face.
+  bool end_in_minimum() {
+    const double* corner[3];
+    const double* mine[3];
+    for (int i = 0; i < 3; ++i) {
+      corner[i] = point_[vertex_[face_][i]];
+      mine[i] = mine_[vertex_[face_][i]];
+    }
+    const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
+    if (!minimum_.find(*pair_, corner, mine, near)) return false;
+    const double cosine = open_cosine(minimum_.normal(), minimum_.height());
+    if (!(cosine > kWidest)) return false;
+    const double tangent = __builtin_sqrt(1.0 - cosine * cosine) / cosine + kAngleRounding;
+    if (!minimum_.holds(tangent)) return false;
+    double w[3];
+    double on_first[3];
+    difference_point(*pair_, minimum_.normal(), w, on_first);
+    const double upper = dot3(minimum_.normal(), w);
+    const double lower = minimum_.height() - minimum_.miss() * tangent;
+    if (!(upper - lower <= kTolerance)) return false;
+    upper_ = upper;
+    lower_ = lower;
+    is_minimum_ = true;
+    return true;
+  }
+
+  /// The cosine of the angle from a direction within which all points are that may be nearer to the
+  /// origin than `height`: on a face at a lesser distance they are around its foot.
+  [[nodiscard]] double open_cosine(const double* direction, double height) const {
+    const Vec3<double> d{direction[0], direction[1], direction[2]};
+    const Doubles zero(0.0);
+    const Doubles one(1.0);
+    Doubles least = one;
+    for (std::uint32_t row = 0; row < faces_; row += kWidth) {
+      const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
+                           Doubles::load(normal_[2] + row)};
+      const Doubles distance = Doubles::load(distance_ + row);
+      const Doubles to_foot = dot(n, d);
+      const Doubles around = min(distance * Doubles(1.0 / height), one);
+      const Doubles sines = sqrt(max((one - to_foot * to_foot) * (one - around * around), zero));
+      const Doubles cosine = to_foot * around - sines;
+      least = min(least, select(distance < Doubles(height), cosine, one));
+    }
+    alignas(64) double value[kWidth];
+    least.store(value);
+    for (std::uint32_t i = 1; i < kWidth; ++i) value[0] = value[i] < value[0] ? value[i] : value[0];
+    return value[0];
+  }
+
   [[nodiscard]] std::uint32_t nearest_face() const {
     Doubles least = Doubles::load(distance_);
-    for (std::uint32_t block = 1; block < blocks_; ++block) {
-      least = min(least, Doubles::load(distance_ + block * kWidth));
+    for (std::uint32_t row = kWidth; row < faces_; row += kWidth) {
+      least = min(least, Doubles::load(distance_ + row));
     }
     alignas(64) double value[kWidth];
     least.store(value);
@@ -268,43 +329,53 @@ class CurvedDepth {
       }
     }
     const Doubles smallest(value[0]);
-    for (std::uint32_t block = 0;; ++block) {
-      const Mask16 at = bits(Doubles::load(distance_ + block * kWidth) == smallest);
-      if (at != 0) return block * kWidth + first(at);
+    for (std::uint32_t row = 0;; row += kWidth) {
+      const Mask16 at = bits(Doubles::load(distance_ + row) == smallest);
+      if (at != 0) return row + first(at);
     }
   }
 
   /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
-  /// their outline.
+  /// their outline. What they leave is a ring of two sides more than there were faces, which take
+  /// their places.
   bool grow(std::uint32_t to) {
-    const double* w = point_[to];
-    const Vec3<double> x{w[0], w[1], w[2]};
-    const Doubles level(kLevel);
-    Mask16 seen[kMostFaces / kWidth];
-    for (std::uint32_t block = 0; block < blocks_; ++block) {
-      const std::uint32_t row = block * kWidth;
-      const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
-                           Doubles::load(normal_[2] + row)};
-      seen[block] = bits(dot(n, x) + level > Doubles::load(distance_ + row)) & alive_[block];
-    }
-    seen[face_ / kWidth] |= 1U << face_ % kWidth;
+    const std::uint32_t count = find_seen(to);
+    if (count == 0) return false;
     Side side[kMostSides];
     std::uint32_t sides = 0;
-    for (std::uint32_t block = 0; block < blocks_; ++block) {
-      for (Mask16 rest = seen[block]; rest != 0; rest &= rest - 1) {
-        const std::uint32_t f = block * kWidth + first(rest);
-        if (sides + 3 > kMostSides) return false;
-        for (std::uint32_t e = 0; e < 3; ++e) {
-          // Without a branch, which would be mispredicted.
-          const std::uint32_t g = across_[f][e] / 4;
-          side[sides] = {vertex_[f][e], vertex_[f][e == 2 ? 0 : e + 1], across_[f][e], 0};
-          sides += (seen[g / kWidth] >> g % kWidth & 1U) == 0 ? 1U : 0U;
-        }
-        distance_[f] = __builtin_inf();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t f = seen_[i];
+      for (std::uint32_t e = 0; e < 3; ++e) {
+        // Without a branch, which would be mispredicted.
+        side[sides] = {vertex_[f][e], vertex_[f][e == 2 ? 0 : e + 1], across_[f][e], 0};
+        sides += seen_by_[across_[f][e] / 4] != to ? 1U : 0U;
       }
-      alive_[block] &= ~seen[block];
     }
-    return add_faces(side, sides, to) && join(side, sides);
+    if (sides != count + 2 || faces_ + 2 > kMostFaces) return false;
+    for (std::uint32_t i = 0; i < sides; ++i) side[i].face = i < count ? seen_[i] : add_slot();
+    return set_faces(side, sides, to) && join(side, sides);
+  }
+
+  /// Lists the faces that a point sees, and the nearest one; returns how many, 0 if they are too
+  /// many.
+  std::uint32_t find_seen(std::uint32_t by) {
+    const double* w = point_[by];
+    const Vec3<double> x{w[0], w[1], w[2]};
+    const Doubles level(kLevel);
+    std::uint32_t count = 0;
+    for (std::uint32_t row = 0; row < faces_; row += kWidth) {
+      const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
+                           Doubles::load(normal_[2] + row)};
+      Mask16 sees = bits(dot(n, x) + level > Doubles::load(distance_ + row));
+      if (row == face_ / kWidth * kWidth) sees |= 1U << face_ % kWidth;
+      for (; sees != 0; sees &= sees - 1) {
+        if (count == kMostSeen) return 0;
+        const std::uint32_t f = row + first(sees);
+        seen_by_[f] = by;
+        seen_[count++] = f;
+      }
+    }
+    return count;
   }
 
   /// Of the corners of a face, for the foot of the origin, none below zero; returns the smallest,
@@ -332,7 +403,7 @@ class CurvedDepth {
     double most = foot_weights(face_, weight);
     if (most >= kInside) return;
     std::uint32_t best = face_;
-    for (std::uint32_t f = 0; f < blocks_ * kWidth; ++f) {
+    for (std::uint32_t f = 0; f < faces_; ++f) {
       if (!(distance_[f] <= upper_)) continue;
       const double here = foot_weights(f, weight);
       if (!(here > most)) continue;
@@ -342,9 +413,9 @@ class CurvedDepth {
     face_ = best;
   }
 
-  static constexpr Mask16 kFull = (1U << kWidth) - 1U;
-
   const CurvedPair* pair_ = nullptr;
+  LocalMinimum minimum_;
+  bool is_minimum_ = false;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
   double upper_ = 0.0;
@@ -354,14 +425,19 @@ class CurvedDepth {
   /// By point: the new face whose first edge begins there, and ends there.
   std::uint32_t from_[kMostPoints];
   std::uint32_t into_[kMostPoints];
-  /// Faces lie in blocks of one per lane. Those that are not there are infinitely far.
-  std::uint32_t blocks_ = 0;
-  Mask16 alive_[kMostFaces / kWidth] = {};
+  /// Distances of numbers from there on are infinite, to the end of a block of one per lane.
+  std::uint32_t faces_ = 0;
   std::uint32_t vertex_[kMostFaces][3];
   /// Across the edge from vertex i to the next.
   std::uint32_t across_[kMostFaces][3];
-  alignas(64) double normal_[3][kMostFaces];
+  /// The last point that saw a face, or 0, which is none that sees faces.
+  std::uint32_t seen_by_[kMostFaces];
+  std::uint32_t seen_[kMostSeen];
+  alignas(64) double normal_[3][kMostFaces] = {};
   alignas(64) double distance_[kMostFaces];
+  /// Ends of the sides of new faces, by lane; lanes without one hold any numbers.
+  alignas(64) double from_point_[3][kWidth] = {};
+  alignas(64) double to_point_[3][kWidth] = {};
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved
