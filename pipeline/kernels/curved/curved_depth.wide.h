@@ -10,57 +10,6 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// The farthest point of a core along d, in its frame.
-static inline void farthest(const Form& form, const double* d, double scale, double* x) {
-  const double* n = form.number;
-  const auto towards = [](double along, double half) { return along < 0.0 ? -half : half; };
-  switch (form.kind) {
-    case ShapeKind::capsule:
-      x[0] = 0.0;
-      x[1] = 0.0;
-      x[2] = towards(d[2], n[2]);
-      return;
-    case ShapeKind::box:
-      for (int k = 0; k < 3; ++k) x[k] = towards(d[k], n[k]);
-      return;
-    case ShapeKind::triangle: {
-      const double h[3] = {dot3(n, d), dot3(n + 3, d), dot3(n + 6, d)};
-      const int best = h[1] > h[0] ? 1 : 0;
-      const int vertex = h[2] > h[best] ? 2 : best;
-      for (int k = 0; k < 3; ++k) x[k] = n[3 * vertex + k];
-      return;
-    }
-    case ShapeKind::cylinder:
-    case ShapeKind::cone: {
-      const double across = __builtin_sqrt(d[0] * d[0] + d[1] * d[1]);
-      const double tip = n[2] * d[2];
-      const bool cone = form.kind == ShapeKind::cone;
-      const bool on_tip = cone && tip >= n[0] * across - tip;
-      const double over = on_tip ? 0.0 : n[0] / largest_of(across, 1e-150);
-      x[0] = d[0] * over;
-      x[1] = d[1] * over;
-      x[2] = cone ? (on_tip ? n[2] : -n[2]) : towards(d[2], n[2]);
-      return;
-    }
-    default:
-      hull_support(*form.hull, d, scale, x);
-  }
-}
-
-/// The point of first - second that is farthest along n, and that of the first in it.
-static inline void difference_point(const CurvedPair& pair, const double* n, double* w,
-                                    double* mine) {
-  double back[3];
-  double local[3];
-  double theirs[3];
-  farthest(pair.first, n, pair.scale, mine);
-  turn_back3(pair.turn, n, back);
-  for (double& x : back) x = -x;
-  farthest(pair.second, back, pair.scale, local);
-  turn3(pair.turn, local, theirs);
-  for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair.shift[k]);
-}
-
 class CurvedDepth {
  public:
   /// What the depth is proved to, relative to the sizes, and how far the polytope may be from that
@@ -88,7 +37,7 @@ class CurvedDepth {
       if (upper_ - lower_ <= kTolerance) {
         turn_to_foot();
         measure(w, mine);
-        if (upper_ - lower_ <= kTolerance) return true;
+        if (upper_ - lower_ <= kTolerance) return has_foot() || end_in_minimum();
       }
       if (upper_ - lower_ <= next * upper_) {
         if (end_in_minimum()) return true;
@@ -125,8 +74,8 @@ class CurvedDepth {
   static constexpr std::uint32_t kWidth = Doubles::kCount;
   /// What the bounds differ by, over the upper one, when a minimum is looked for, and by how much
   /// less the next time.
-  static constexpr double kFirstLook = 0.1;
-  static constexpr double kNextLook = 0.1;
+  static constexpr double kFirstLook = 0.2;
+  static constexpr double kNextLook = 0.2;
   /// What rounding may take from an angle whose cosine is known.
   static constexpr double kAngleRounding = 1e-7;
   /// The cosine of the widest angle around a minimum that is looked at.
@@ -395,6 +344,11 @@ class CurvedDepth {
     }
     for (int i = 0; i < 3; ++i) weight[i] /= total;
     return smallest / sum;
+  }
+
+  [[nodiscard]] bool has_foot() const {
+    double weight[3];
+    return foot_weights(face_, weight) >= kInside;
   }
 
   /// Goes on from the face to one as near, as far as the bounds tell, that the foot is in.

@@ -4,56 +4,160 @@
 // nothing is less deep: a polytope that says roughly where the least depth is needs no more.
 //
 // Near its least depth the difference of two cores is often as simple as a point, discs (of rims)
-// and segments (edges, and sides of cylinders) added up; it contains those, so their heights h
-// bound its own from below. For n = n0 + t, t across n0 and |t| <= T, a disc of radius r whose axis
-// makes the sine s with n0 rises over its tangent by at least r (e . t)^2 / (2 (s + T)), with e
-// across both, and a segment along g, whose ends are at least p away from where it is met, by p |g
-// . t| >= p (g . t)^2 / T. Where these together are not less than h(n0) |t|^2 / 2, h(n) is at least
-// h(n0) |n|.
+// and segments (edges, and lines of sides) added up; it contains those, so their heights h bound
+// its own from below. For n = n0 + t, t across n0 and |t| <= T, a disc of radius r whose axis makes
+// the sine s with n0 rises over its tangent by at least r (e . t)^2 / (2 (s + T)), with e across
+// both, and a segment along g, whose ends are at least p away from where it is met, by p |g . t|,
+// which is not less than p (g . t)^2 / T. Where these together are not less than h(n0) |t|^2 / 2,
+// h(n) is at least h(n0) |n|. A flat part, met at least p inside its border, rises by p |t|.
+//
+// The line of a cone's side turns with the normal. Where it is met the share q of it from the tip,
+// half of q times the cone's disc and half of the distance to the nearer end are as good as a disc
+// and a segment: the cone is at least as high as its tip and its rim in any proportion.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/curved/farthest_points.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
 /// A point, up to two discs and up to two segments from it, added up, in the first's frame.
 struct SimpleSum {
+  struct Disc {
+    double radius;
+    double axis[3];
+  };
+  /// All normals that meet it make an angle with `axis` that has this cosine. Edges: along them and
+  /// 0. Sides of cones: the cone's, `along` turns with the normal, and `radius` is that of the
+  /// disc.
+  struct Segment {
+    double axis[3];
+    double cosine;
+    double length;
+    double radius;
+    double along[3];
+  };
+
   double point[3];
-  std::uint32_t discs;
-  double radius[2];
-  double axis[2][3];
-  std::uint32_t segments;
-  /// Unit, and the segment's length along it.
-  double along[2][3];
-  double length[2];
-  /// Of the first: what it adds to the point, which disc and segment are its own.
+  /// What of it is the first's.
   double mine[3];
+  std::uint32_t discs;
+  std::uint32_t segments;
   std::uint32_t own_discs;
   std::uint32_t own_segments;
+  Disc disc[2];
+  Segment segment[2];
+};
+
+/// Unit directions across n and each other (Duff et al., "Building an orthonormal basis,
+/// revisited", 2017).
+static inline void span_across(const double* n, double (*e)[3]) {
+  const double sign = n[2] < 0.0 ? -1.0 : 1.0;
+  const double a = -1.0 / (sign + n[2]);
+  const double b = n[0] * n[1] * a;
+  const double first[3] = {1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
+  const double second[3] = {b, sign + n[1] * n[1] * a, -n[1]};
+  for (int k = 0; k < 3; ++k) {
+    e[0][k] = first[k];
+    e[1][k] = second[k];
+  }
+}
+
+static inline bool are_same(const double* a, const double* b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/// Three points of one core, in its frame, that were farthest along directions near each other.
+struct NearPoints {
+  const Form* form;
+  double at[3][3];
+
+  [[nodiscard]] bool is_round() const {
+    return form->kind == ShapeKind::cylinder || form->kind == ShapeKind::cone;
+  }
+  /// Of a cylinder or cone: how many are at the upper end.
+  [[nodiscard]] int high() const {
+    int count = 0;
+    for (const double(&x)[3] : at) count += x[2] > 0.0 ? 1 : 0;
+    return count;
+  }
+  /// Points of polytopes that are the same but for rounding become so.
+  void unite() {
+    if (is_round()) return;
+    for (int i = 1; i < 3; ++i) {
+      for (int j = 0; j < i; ++j) {
+        double most = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          most = largest_of(most, __builtin_fabs(at[i][k] - at[j][k]));
+        }
+        if (most > 4.0 * kRoundingError) continue;
+        for (int k = 0; k < 3; ++k) at[i][k] = at[j][k];
+      }
+    }
+  }
+};
+
+/// From the frame of one side to where its points add to the difference.
+class SidePlace {
+ public:
+  SidePlace(const CurvedPair& pair, bool second) : pair_(pair), second_(second) {}
+
+  /// Both keep lengths; directions of the second turn round.
+  void direction(const double* x, double* r) const {
+    if (!second_) {
+      for (int k = 0; k < 3; ++k) r[k] = x[k];
+      return;
+    }
+    turn3(pair_.turn, x, r);
+    for (int k = 0; k < 3; ++k) r[k] = -r[k];
+  }
+  void point(const double* x, double* r) const {
+    direction(x, r);
+    for (int k = 0; k < 3 && second_; ++k) r[k] -= pair_.shift[k];
+  }
+
+ private:
+  const CurvedPair& pair_;
+  bool second_;
 };
 
 class LocalMinimum {
  public:
-  /// Finds the minimum near a unit direction in the difference's simple part there: of the corners
-  /// of a face of the polytope and the points of the first in them. False if there is none.
+  /// Finds the minimum near a unit direction: of the corners of a face of the polytope and the
+  /// points of the first in them. False if there is none.
   bool find(const CurvedPair& pair, const double* const* corner, const double* const* mine,
             const double* near) {
+    pair_ = &pair;
     for (int k = 0; k < 3; ++k) normal_[k] = near[k];
-    return take_first(pair.first, mine) && take_second(pair, corner, mine) && approach() &&
-           meet_segments();
+    take_points(corner, mine);
+    is_flat_ = lie_flat(0) || lie_flat(1);
+    if (is_flat_) return true;
+    for (int k = 0; k < 3; ++k) normal_[k] = near[k];
+    sum_.discs = 0;
+    sum_.segments = 0;
+    if (!add_side(0)) return false;
+    sum_.own_discs = sum_.discs;
+    sum_.own_segments = sum_.segments;
+    return add_side(1) && approach() && meet_segments();
   }
 
   /// Whether nothing is less deep up to the angle from the minimum with this tangent.
   [[nodiscard]] bool holds(double tangent) const {
+    if (is_flat_) return 2.0 * inside_[0] > (1.0 + kMargin) * height_ * tangent;
     double e[2][3];
-    span_across(e);
+    span_across(normal_, e);
     double q[3] = {-height_, 0.0, -height_};
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double across[3];
-      const double sine = sine_of(i, across);
-      add_square(e, across, sum_.radius[i] / (sine + tangent), q);
+      const double sine = sine_of(sum_.disc[i].axis, across);
+      add_square(e, across, sum_.disc[i].radius / (sine + tangent), q);
     }
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
-      add_square(e, sum_.along[i], 2.0 * inside_[i] / tangent, q);
+      const SimpleSum::Segment& s = sum_.segment[i];
+      const double share = s.radius > 0.0 ? 0.5 : 1.0;
+      add_square(e, s.along, 2.0 * share * inside_[i] / tangent, q);
+      if (!(s.radius > 0.0)) continue;
+      double across[3];
+      const double sine = sine_of(s.axis, across);
+      add_square(e, across, 0.5 * s.radius * at_[i] / (s.length * (sine + tangent)), q);
     }
     const double least = kMargin * height_;
     return q[0] > least && q[2] > least && (q[0] - least) * (q[2] - least) > q[1] * q[1];
@@ -68,14 +172,18 @@ class LocalMinimum {
 
   /// The point of the first that is met.
   void write_point(double* point) const {
+    if (is_flat_) {
+      for (int k = 0; k < 3; ++k) point[k] = flat_point_[k];
+      return;
+    }
     for (int k = 0; k < 3; ++k) point[k] = sum_.mine[k];
     for (std::uint32_t i = 0; i < sum_.own_discs; ++i) {
       double rim[3];
-      rim_of(i, rim);
+      rim_of(sum_.disc[i], rim);
       for (int k = 0; k < 3; ++k) point[k] += rim[k];
     }
     for (std::uint32_t i = 0; i < sum_.own_segments; ++i) {
-      for (int k = 0; k < 3; ++k) point[k] += at_[i] * sum_.along[i][k];
+      for (int k = 0; k < 3; ++k) point[k] += at_[i] * sum_.segment[i].along[k];
     }
   }
 
@@ -84,138 +192,208 @@ class LocalMinimum {
   /// A step after which nothing is left to gain, since steps square the error; and one too wide.
   static constexpr double kLastStep = 1e-7;
   static constexpr double kWideStep = 0.5;
-  /// Sines below which discs look flat and segments parallel.
+  /// Sines below which discs look flat and segments parallel; a disc may be met flat below the
+  /// second.
   static constexpr double kLeastSine = 1e-3;
+  static constexpr double kFlatSine = 0.4;
   /// Of curvatures, over the height, for what rounding takes.
   static constexpr double kMargin = 1e-6;
+  /// Heights that are the same but for rounding.
+  static constexpr double kLevel = 1e-13;
 
-  /// The cores' simple parts at three points, `at` in the frame of the core; `place` puts a point
-  /// where it adds to the sum, `turned` a direction.
-  template <typename Place, typename Turned>
-  bool take(const Form& form, const double (*at)[3], Place&& place, Turned&& turned) {
-    const bool is_cone = form.kind == ShapeKind::cone;
-    if (is_cone || form.kind == ShapeKind::cylinder) {
-      return take_round(form.number[0], form.number[2], is_cone, at, place, turned);
+  void take_points(const double* const* corner, const double* const* mine) {
+    side_[0].form = &pair_->first;
+    side_[1].form = &pair_->second;
+    for (int i = 0; i < 3; ++i) {
+      double x[3];
+      for (int k = 0; k < 3; ++k) {
+        side_[0].at[i][k] = mine[i][k];
+        x[k] = mine[i][k] - corner[i][k] - pair_->shift[k];
+      }
+      turn_back3(pair_->turn, x, side_[1].at[i]);
     }
-    const double* other = nullptr;
-    for (int i = 1; i < 3; ++i) {
-      if (are_same(at[i], at[0])) continue;
-      // Three different points are of a face, which the polytope finds soon.
-      if (other != nullptr && !are_same(at[i], other)) return false;
-      other = at[i];
-    }
-    place(at[0]);
-    if (other == nullptr) return true;
-    const double side[3] = {other[0] - at[0][0], other[1] - at[0][1], other[2] - at[0][2]};
-    return add_segment(side, turned);
+    side_[1].unite();
   }
 
-  template <typename Place, typename Turned>
-  bool take_round(double radius, double half, bool is_cone, const double (*at)[3], Place&& place,
-                  Turned&& turned) {
-    int high = 0;
-    for (int i = 0; i < 3; ++i) high += at[i][2] > 0.0 ? 1 : 0;
-    const bool is_side = high != 0 && high != 3;
-    // A cone's side is no sum of these, and its tip no disc.
-    if (is_cone && high != 0) return false;
-    const double middle[3] = {0.0, 0.0, high == 3 ? half : -half};
-    const double axis[3] = {0.0, 0.0, 1.0};
-    const double side[3] = {0.0, 0.0, 2.0 * half};
-    place(middle);
-    sum_.radius[sum_.discs] = radius;
-    turned(axis, sum_.axis[sum_.discs++]);
-    return !is_side || add_segment(side, turned);
+  // A flat part: a cap, or a face with three of the points.
+
+  bool lie_flat(int side) {
+    const NearPoints& points = side_[side];
+    const SidePlace place(*pair_, side == 1);
+    return points.is_round() ? lie_on_cap(points, place, side) : lie_on_face(points, place, side);
   }
 
-  template <typename Turned>
-  bool add_segment(const double* side, Turned&& turned) {
-    const double length = __builtin_sqrt(dot3(side, side));
-    if (!(length > 0.0)) return false;
-    const double unit[3] = {side[0] / length, side[1] / length, side[2] / length};
-    sum_.length[sum_.segments] = length;
-    turned(unit, sum_.along[sum_.segments++]);
+  bool lie_on_cap(const NearPoints& points, const SidePlace& place, int side) {
+    const int high = points.high();
+    const bool is_cone = points.form->kind == ShapeKind::cone;
+    if (high != 0 && (high != 3 || is_cone)) return false;
+    const double z = high == 3 ? 1.0 : -1.0;
+    const double outward[3] = {0.0, 0.0, z};
+    double n[3];
+    place.direction(outward, n);
+    if (!(dot3(n, normal_) > 1.0 - 0.5 * kFlatSine * kFlatSine)) return false;
+    const double middle[3] = {0.0, 0.0, z * points.form->number[2]};
+    double at[3];
+    place.point(middle, at);
+    return meet_flat(n, side, at, [&](const double* foot) {
+      const double away[3] = {foot[0] - at[0], foot[1] - at[1], foot[2] - at[2]};
+      return points.form->number[0] - __builtin_sqrt(dot3(away, away));
+    });
+  }
+
+  bool lie_on_face(const NearPoints& points, const SidePlace& place, int side) {
+    if (are_same(points.at[0], points.at[1]) || are_same(points.at[1], points.at[2]) ||
+        are_same(points.at[2], points.at[0])) {
+      return false;
+    }
+    double at[3][3];
+    double e[3][3];
+    for (int i = 0; i < 3; ++i) place.point(points.at[i], at[i]);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) e[i][k] = at[(i + 1) % 3][k] - at[i][k];
+    }
+    double n[3];
+    cross3(e[0], e[1], n);
+    const double area = __builtin_sqrt(dot3(n, n));
+    if (!(area > kLeastSine * __builtin_sqrt(dot3(e[0], e[0]) * dot3(e[1], e[1])))) return false;
+    const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
+    for (double& x : n) x *= sign / area;
+    return meet_flat(n, side, at[0], [&](const double* foot) {
+      double least = __builtin_inf();
+      for (int i = 0; i < 3; ++i) {
+        double inward[3];
+        const double out[3] = {foot[0] - at[i][0], foot[1] - at[i][1], foot[2] - at[i][2]};
+        cross3(n, e[i], inward);
+        const double depth = sign * dot3(inward, out) / __builtin_sqrt(dot3(e[i], e[i]));
+        least = depth < least ? depth : least;
+      }
+      return least;
+    });
+  }
+
+  /// Whether the flat part through `at` is met at least a little inside its border, as `inside`
+  /// says of a point in its plane: where the other's farthest point is, or one amid three that are
+  /// as far.
+  template <typename Inside>
+  bool meet_flat(const double* n, int side, const double* at, Inside&& inside) {
+    const SidePlace place(*pair_, side == 0);
+    double w[3];
+    double mine[3];
+    double other[3];
+    difference_point(*pair_, n, w, mine);
+    for (int k = 0; k < 3; ++k) other[k] = side == 0 ? w[k] - mine[k] : mine[k];
+    const double farthest = dot3(n, other);
+    if (meet_flat_at(n, side, at, other, inside)) return true;
+    for (double& x : other) x = 0.0;
+    for (const double(&x)[3] : side_[1 - side].at) {
+      double placed[3];
+      place.point(x, placed);
+      for (int k = 0; k < 3; ++k) other[k] += placed[k] / 3.0;
+    }
+    return dot3(n, other) >= farthest - kLevel && meet_flat_at(n, side, at, other, inside);
+  }
+
+  template <typename Inside>
+  bool meet_flat_at(const double* n, int side, const double* at, const double* other,
+                    Inside&& inside) {
+    height_ = dot3(n, at) + dot3(n, other);
+    double foot[3];
+    for (int k = 0; k < 3; ++k) foot[k] = height_ * n[k] - other[k];
+    inside_[0] = inside(foot);
+    if (!(height_ > 0.0) || !(inside_[0] > 0.0)) return false;
+    for (int k = 0; k < 3; ++k) {
+      normal_[k] = n[k];
+      flat_point_[k] = side == 0 ? foot[k] : other[k];
+    }
+    miss_ = 0.0;
     return true;
   }
 
-  static bool are_same(const double* a, const double* b) {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-  }
+  // Sums of points, discs and segments.
 
-  bool take_first(const Form& form, const double* const* mine) {
-    double at[3][3];
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) at[i][k] = mine[i][k];
-    }
-    sum_.discs = 0;
-    sum_.segments = 0;
-    const auto copy = [](const double* x, double* r) {
-      for (int k = 0; k < 3; ++k) r[k] = x[k];
-    };
-    const bool taken = take(
-        form, at,
-        [&](const double* x) {
-          copy(x, sum_.point);
-          copy(x, sum_.mine);
-        },
-        copy);
-    sum_.own_discs = sum_.discs;
-    sum_.own_segments = sum_.segments;
-    return taken;
-  }
-
-  /// The second is taken away: its points are against the sum's directions.
-  bool take_second(const CurvedPair& pair, const double* const* corner, const double* const* mine) {
-    double at[3][3];
-    for (int i = 0; i < 3; ++i) {
-      double x[3];
-      for (int k = 0; k < 3; ++k) x[k] = mine[i][k] - corner[i][k] - pair.shift[k];
-      turn_back3(pair.turn, x, at[i]);
-    }
-    round_to_vertices(pair.second, at);
-    return take(
-        pair.second, at,
-        [&](const double* x) {
-          double placed[3];
-          turn3(pair.turn, x, placed);
-          for (int k = 0; k < 3; ++k) sum_.point[k] -= placed[k] + pair.shift[k];
-        },
-        [&](const double* x, double* r) {
-          turn3(pair.turn, x, r);
-          for (int k = 0; k < 3; ++k) r[k] = -r[k];
-        });
-  }
-
-  /// Points that are the same but for rounding become so.
-  static void round_to_vertices(const Form& form, double (*at)[3]) {
-    if (form.kind == ShapeKind::cone || form.kind == ShapeKind::cylinder) return;
+  bool add_side(int side) {
+    const NearPoints& points = side_[side];
+    const SidePlace place(*pair_, side == 1);
+    if (points.is_round()) return add_round(points, place, side);
+    const double* other = nullptr;
     for (int i = 1; i < 3; ++i) {
-      for (int j = 0; j < i; ++j) {
-        double most = 0.0;
-        for (int k = 0; k < 3; ++k) {
-          most = largest_of(most, __builtin_fabs(at[i][k] - at[j][k]));
-        }
-        if (most > kRoundingError * 4.0) continue;
-        for (int k = 0; k < 3; ++k) at[i][k] = at[j][k];
-      }
+      if (are_same(points.at[i], points.at[0])) continue;
+      if (other != nullptr && !are_same(points.at[i], other)) return false;
+      other = points.at[i];
+    }
+    add_point(points.at[0], place, side);
+    if (other == nullptr) return true;
+    const double* from = points.at[0];
+    const double along[3] = {other[0] - from[0], other[1] - from[1], other[2] - from[2]};
+    return add_edge(along, place);
+  }
+
+  bool add_round(const NearPoints& points, const SidePlace& place, int side) {
+    const double radius = points.form->number[0];
+    const double half = points.form->number[2];
+    const int high = points.high();
+    const bool is_side = high != 0 && high != 3;
+    const bool is_cone = points.form->kind == ShapeKind::cone;
+    const double end[3] = {0.0, 0.0, high == 3 || (is_cone && is_side) ? half : -half};
+    const double axis[3] = {0.0, 0.0, 1.0};
+    add_point(end, place, side);
+    if (is_cone && is_side) return add_cone_side(radius, half, place);
+    if (!is_cone || high == 0) {
+      SimpleSum::Disc& disc = sum_.disc[sum_.discs++];
+      disc.radius = radius;
+      place.direction(axis, disc.axis);
+    }
+    const double along[3] = {0.0, 0.0, 2.0 * half};
+    return !is_side || add_edge(along, place);
+  }
+
+  void add_point(const double* x, const SidePlace& place, int side) {
+    double placed[3];
+    place.point(x, placed);
+    for (int k = 0; k < 3; ++k) {
+      if (side == 0) sum_.mine[k] = placed[k];
+      sum_.point[k] = side == 0 ? placed[k] : sum_.point[k] + placed[k];
     }
   }
 
-  /// The sine of the angle between disc i's axis and the normal, and the unit direction across
-  /// both.
-  double sine_of(std::uint32_t i, double* across) const {
-    cross3(sum_.axis[i], normal_, across);
+  bool add_edge(const double* along, const SidePlace& place) {
+    const double length = __builtin_sqrt(dot3(along, along));
+    if (!(length > 0.0)) return false;
+    const double unit[3] = {along[0] / length, along[1] / length, along[2] / length};
+    SimpleSum::Segment& s = sum_.segment[sum_.segments++];
+    place.direction(unit, s.axis);
+    for (int k = 0; k < 3; ++k) s.along[k] = s.axis[k];
+    s.cosine = 0.0;
+    s.length = length;
+    s.radius = 0.0;
+    return true;
+  }
+
+  /// From the tip to the rim.
+  bool add_cone_side(double radius, double half, const SidePlace& place) {
+    const double axis[3] = {0.0, 0.0, 1.0};
+    SimpleSum::Segment& s = sum_.segment[sum_.segments++];
+    place.direction(axis, s.axis);
+    s.length = __builtin_sqrt(radius * radius + 4.0 * half * half);
+    s.cosine = radius / s.length;
+    s.radius = radius;
+    return radius > 0.0 && half > 0.0;
+  }
+
+  /// The sine of the angle between an axis and the normal, and the unit direction across both.
+  double sine_of(const double* axis, double* across) const {
+    cross3(axis, normal_, across);
     const double sine = __builtin_sqrt(dot3(across, across));
     const double over = 1.0 / largest_of(sine, kLeastSine);
     for (int k = 0; k < 3; ++k) across[k] *= over;
     return sine;
   }
 
-  /// From the middle of disc i to its point farthest along the normal.
-  void rim_of(std::uint32_t i, double* rim) const {
-    const double* a = sum_.axis[i];
-    const double along = dot3(a, normal_);
-    for (int k = 0; k < 3; ++k) rim[k] = normal_[k] - along * a[k];
-    const double scale = sum_.radius[i] / __builtin_sqrt(dot3(rim, rim));
+  /// From the middle of a disc to its point farthest along the normal.
+  void rim_of(const SimpleSum::Disc& disc, double* rim) const {
+    const double along = dot3(disc.axis, normal_);
+    for (int k = 0; k < 3; ++k) rim[k] = normal_[k] - along * disc.axis[k];
+    const double scale = disc.radius / __builtin_sqrt(dot3(rim, rim));
     for (int k = 0; k < 3; ++k) rim[k] *= scale;
   }
 
@@ -224,22 +402,8 @@ class LocalMinimum {
     for (int k = 0; k < 3; ++k) w[k] = sum_.point[k];
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double rim[3];
-      rim_of(i, rim);
+      rim_of(sum_.disc[i], rim);
       for (int k = 0; k < 3; ++k) w[k] += rim[k];
-    }
-  }
-
-  /// Unit directions across the normal and each other.
-  void span_across(double (*e)[3]) const {
-    const double* n = normal_;
-    const double sign = n[2] < 0.0 ? -1.0 : 1.0;
-    const double a = -1.0 / (sign + n[2]);
-    const double b = n[0] * n[1] * a;
-    const double first[3] = {1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
-    const double second[3] = {b, sign + n[1] * n[1] * a, -n[1]};
-    for (int k = 0; k < 3; ++k) {
-      e[0][k] = first[k];
-      e[1][k] = second[k];
     }
   }
 
@@ -259,34 +423,58 @@ class LocalMinimum {
     return true;
   }
 
-  /// Newton's method across the normal, along no segment.
+  /// Two of discs and segments keep the normal; a cone's side is both.
+  [[nodiscard]] bool is_stiff() const {
+    const bool has_cone_side = sum_.segments > 0 && sum_.segment[0].radius > 0.0;
+    return has_cone_side || sum_.segments + sum_.discs >= 2;
+  }
+
+  /// Newton's method over the normals that meet all segments.
   bool approach() {
-    if (sum_.segments > 2 || sum_.segments + sum_.discs < 2) return false;
-    if (sum_.segments == 2) return stand_across_both();
-    if (sum_.segments == 1) {
-      const double* g = sum_.along[0];
-      const double along = dot3(g, normal_);
-      const double n[3] = {normal_[0] - along * g[0], normal_[1] - along * g[1],
-                           normal_[2] - along * g[2]};
-      if (!set_normal(n)) return false;
-    }
+    if (sum_.segments > 2 || !is_stiff()) return false;
+    if (sum_.segments == 2) return meet_both();
+    if (sum_.segments == 1 && !move_on_circle(normal_)) return false;
     for (int i = 0; i < kMostSteps; ++i) {
       double step[3];
       if (!next_step(step)) return false;
       const double square = dot3(step, step);
       if (!(square < kWideStep * kWideStep)) return false;
       const double n[3] = {normal_[0] + step[0], normal_[1] + step[1], normal_[2] + step[2]};
-      if (!set_normal(n)) return false;
+      if (!(sum_.segments == 1 ? move_on_circle(n) : set_normal(n))) return false;
       if (square < kLastStep * kLastStep) return true;
     }
     return false;
   }
 
-  bool stand_across_both() {
+  /// To the nearest normal that meets the first segment.
+  bool move_on_circle(const double* to) {
+    const SimpleSum::Segment& s = sum_.segment[0];
+    const double along = dot3(s.axis, to);
+    double across[3];
+    for (int k = 0; k < 3; ++k) across[k] = to[k] - along * s.axis[k];
+    const double length = __builtin_sqrt(dot3(across, across));
+    if (!(length > kLeastSine)) return false;
+    const double scale = __builtin_sqrt(1.0 - s.cosine * s.cosine) / length;
+    for (int k = 0; k < 3; ++k) normal_[k] = s.cosine * s.axis[k] + scale * across[k];
+    return true;
+  }
+
+  /// To the normal that meets both segments, of the two that there are the nearer.
+  bool meet_both() {
+    const SimpleSum::Segment& s = sum_.segment[0];
+    const SimpleSum::Segment& t = sum_.segment[1];
+    double out[3];
+    cross3(s.axis, t.axis, out);
+    const double square = dot3(out, out);
+    if (!(square > kLeastSine * kLeastSine)) return false;
+    const double both = dot3(s.axis, t.axis);
+    const double x = (s.cosine - both * t.cosine) / square;
+    const double y = (t.cosine - both * s.cosine) / square;
+    const double rest = 1.0 - (x * s.cosine + y * t.cosine);
+    if (!(rest > 0.0)) return false;
+    const double z = __builtin_sqrt(rest / square) * (dot3(out, normal_) < 0.0 ? -1.0 : 1.0);
     double n[3];
-    cross3(sum_.along[0], sum_.along[1], n);
-    const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
-    for (double& x : n) x *= sign;
+    for (int k = 0; k < 3; ++k) n[k] = x * s.axis[k] + y * t.axis[k] + z * out[k];
     return set_normal(n);
   }
 
@@ -296,22 +484,24 @@ class LocalMinimum {
     met(w);
     const double height = dot3(w, normal_);
     double e[2][3];
-    span_across(e);
-    if (sum_.segments == 1) {
-      // Along the circle across the segment.
-      cross3(normal_, sum_.along[0], e[0]);
-    }
+    span_across(normal_, e);
     double q[3] = {-height, 0.0, -height};
+    if (sum_.segments == 1) {
+      // Along the circle, which bends towards its own middle.
+      const SimpleSum::Segment& s = sum_.segment[0];
+      sine_of(s.axis, e[0]);
+      q[0] = -(height - s.cosine * dot3(w, s.axis)) / (1.0 - s.cosine * s.cosine);
+    }
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double across[3];
-      const double sine = sine_of(i, across);
+      const double sine = sine_of(sum_.disc[i].axis, across);
       if (!(sine > kLeastSine)) return false;
-      add_square(e, across, sum_.radius[i] / sine, q);
+      add_square(e, across, sum_.disc[i].radius / sine, q);
     }
+    if (!(q[0] > 0.0)) return false;
     const double slope[2] = {dot3(e[0], w), dot3(e[1], w)};
     double s = -slope[0] / q[0];
     double t = 0.0;
-    if (!(q[0] > 0.0)) return false;
     if (sum_.segments == 0) {
       const double det = q[0] * q[2] - q[1] * q[1];
       if (!(det > 0.0)) return false;
@@ -322,38 +512,56 @@ class LocalMinimum {
     return true;
   }
 
+  /// The line of a cone's side that is met, from the tip on.
+  void turn_to_normal(SimpleSum::Segment& s) const {
+    const double sine = __builtin_sqrt(1.0 - s.cosine * s.cosine);
+    for (int k = 0; k < 3; ++k) {
+      const double out = (normal_[k] - s.cosine * s.axis[k]) / sine;
+      s.along[k] = s.cosine * out - sine * s.axis[k];
+    }
+  }
+
   /// Where along the segments the foot of the origin is; false if it is beyond an end.
   bool meet_segments() {
+    const std::uint32_t count = sum_.segments;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (sum_.segment[i].radius > 0.0) turn_to_normal(sum_.segment[i]);
+    }
     double w[3];
     met(w);
     height_ = dot3(w, normal_);
     if (!(height_ > 0.0)) return false;
     double across[3];
     for (int k = 0; k < 3; ++k) across[k] = w[k] - height_ * normal_[k];
-    const std::uint32_t count = sum_.segments;
-    const double slope[2] = {count > 0 ? dot3(across, sum_.along[0]) : 0.0,
-                             count > 1 ? dot3(across, sum_.along[1]) : 0.0};
-    const double both = count > 1 ? dot3(sum_.along[0], sum_.along[1]) : 0.0;
+    const double slope[2] = {count > 0 ? dot3(across, sum_.segment[0].along) : 0.0,
+                             count > 1 ? dot3(across, sum_.segment[1].along) : 0.0};
+    const double both = count > 1 ? dot3(sum_.segment[0].along, sum_.segment[1].along) : 0.0;
     const double det = 1.0 - both * both;
+    if (!(det > kLeastSine * kLeastSine)) return false;
     at_[0] = (both * slope[1] - slope[0]) / det;
     at_[1] = (both * slope[0] - slope[1]) / det;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const double rest = sum_.length[i] - at_[i];
+      const double rest = sum_.segment[i].length - at_[i];
       inside_[i] = at_[i] < rest ? at_[i] : rest;
       if (!(inside_[i] > 0.0)) return false;
-      for (int k = 0; k < 3; ++k) across[k] += at_[i] * sum_.along[i][k];
+      for (int k = 0; k < 3; ++k) across[k] += at_[i] * sum_.segment[i].along[k];
     }
     miss_ = __builtin_sqrt(dot3(across, across));
     return true;
   }
 
+  const CurvedPair* pair_;
+  NearPoints side_[2];
   SimpleSum sum_;
   double normal_[3];
   double height_;
   double miss_;
-  /// Along each segment: where it is met, and how far that is from its nearer end.
+  /// Along each segment: where it is met, and how far that is from its nearer end; the second of a
+  /// flat part too, from its border.
   double at_[2];
   double inside_[2];
+  bool is_flat_ = false;
+  double flat_point_[3];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved
