@@ -3,8 +3,9 @@
 // Penetration depth of two cores: a polytope inside of their difference grows where it is nearest
 // to the origin (van den Bergen, "Proximity queries and penetration depth computation on 3D game
 // objects", 2001). Its nearest face bounds the depth from below, the support along the face's
-// normal from above. Where the difference is smooth these come together slowly, and a local minimum
-// that is sure as far around as the polytope leaves it open ends the search.
+// normal from above. Where the difference is smooth these come together slowly: there local minima
+// are found that are sure for some way around, and faces near which only such directions are left
+// are closed. The search ends when no open face is nearer than the least of the minima.
 
 #include "pipeline/kernels/curved/curved_minimum.wide.h"
 
@@ -25,11 +26,19 @@ class CurvedDepth {
     faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     if (!begin()) return false;
-    is_minimum_ = false;
+    minima_ = 0;
+    best_height_ = __builtin_inf();
+    sure_ = __builtin_inf();
     double next = kFirstLook;
     for (;;) {
       face_ = nearest_face();
-      lower_ = distance_[face_];
+      lower_ = open_[face_];
+      is_minimum_ = lower_ >= best_height_ - kTolerance;
+      if (is_minimum_) return end_in_minimum();
+      if (is_closed(face_)) {
+        open_[face_] = __builtin_inf();
+        continue;
+      }
       double w[3];
       double mine[3];
       measure(w, mine);
@@ -37,10 +46,14 @@ class CurvedDepth {
       if (upper_ - lower_ <= kTolerance) {
         turn_to_foot();
         measure(w, mine);
-        if (upper_ - lower_ <= kTolerance) return has_foot() || end_in_minimum();
+        if (upper_ - lower_ <= kTolerance) {
+          if (has_foot()) return true;
+          if (!look_for_minimum()) return false;
+          continue;
+        }
       }
       if (upper_ - lower_ <= next * upper_) {
-        if (end_in_minimum()) return true;
+        if (look_for_minimum() && is_closed(face_)) continue;
         next *= kNextLook;
       }
       if (points_ == kMostPoints) return upper_ - lower_ <= kMostDoubt;
@@ -56,8 +69,8 @@ class CurvedDepth {
   /// is on both once the second has been moved out; false if rounding hides where that is.
   bool answer(double* direction, double* point) const {
     if (is_minimum_) {
-      for (int k = 0; k < 3; ++k) direction[k] = minimum_.normal()[k];
-      minimum_.write_point(point);
+      for (int k = 0; k < 3; ++k) direction[k] = best_.normal()[k];
+      best_.write_point(point);
       return true;
     }
     double weight[3];
@@ -76,10 +89,12 @@ class CurvedDepth {
   /// less the next time.
   static constexpr double kFirstLook = 0.2;
   static constexpr double kNextLook = 0.2;
-  /// What rounding may take from an angle whose cosine is known.
-  static constexpr double kAngleRounding = 1e-7;
-  /// The cosine of the widest angle around a minimum that is looked at.
-  static constexpr double kWidest = 0.5;
+  /// Tangents of the widest and the narrowest angle around a minimum within which it may be sure,
+  /// and what rounding may take from cosines of angles.
+  static constexpr double kWidest = 1.0;
+  static constexpr double kNarrowest = 0x1p-6;
+  static constexpr double kCosineRounding = 1e-12;
+  static constexpr std::uint32_t kMostMinima = 8;
   static constexpr std::uint32_t kMostPoints = 64;
   /// A polytope of p points has 2 p - 4 faces.
   static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
@@ -144,7 +159,10 @@ class CurvedDepth {
 
   /// The number of one more face.
   std::uint32_t add_slot() {
-    if (faces_ % kWidth == 0) Doubles(__builtin_inf()).store(distance_ + faces_);
+    if (faces_ % kWidth == 0) {
+      Doubles(__builtin_inf()).store(distance_ + faces_);
+      Doubles(__builtin_inf()).store(open_ + faces_);
+    }
     seen_by_[faces_] = 0;
     return faces_++;
   }
@@ -180,6 +198,7 @@ class CurvedDepth {
         const Side& s = side[begin + i];
         for (int k = 0; k < 3; ++k) normal_[k][s.face] = plane[k][i];
         distance_[s.face] = plane[3][i];
+        open_[s.face] = plane[3][i];
         vertex_[s.face][0] = s.p;
         vertex_[s.face][1] = s.q;
         vertex_[s.face][2] = to;
@@ -216,8 +235,15 @@ class CurvedDepth {
     return true;
   }
 
-  /// True if the least depth is that of a local minimum near the nearest face.
   bool end_in_minimum() {
+    upper_ = best_height_;
+    lower_ = lower_ < sure_ ? lower_ : sure_;
+    return true;
+  }
+
+  /// True if there is a local minimum near the nearest face, which is kept.
+  bool look_for_minimum() {
+    if (minima_ == kMostMinima) return false;
     const double* corner[3];
     const double* mine[3];
     for (int i = 0; i < 3; ++i) {
@@ -225,50 +251,50 @@ class CurvedDepth {
       mine[i] = mine_[vertex_[face_][i]];
     }
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
-    if (!minimum_.find(*pair_, corner, mine, near)) return false;
-    const double cosine = open_cosine(minimum_.normal(), minimum_.height());
-    if (!(cosine > kWidest)) return false;
-    const double tangent = __builtin_sqrt(1.0 - cosine * cosine) / cosine + kAngleRounding;
-    if (!minimum_.holds(tangent)) return false;
+    LocalMinimum found;
+    if (!found.find(*pair_, corner, mine, near)) return false;
+    double tangent = kWidest;
+    while (!found.holds(tangent)) {
+      tangent *= 0.5;
+      if (tangent < kNarrowest) return false;
+    }
     double w[3];
     double on_first[3];
-    difference_point(*pair_, minimum_.normal(), w, on_first);
-    const double upper = dot3(minimum_.normal(), w);
-    const double lower = minimum_.height() - minimum_.miss() * tangent;
-    if (!(upper - lower <= kTolerance)) return false;
-    upper_ = upper;
-    lower_ = lower;
-    is_minimum_ = true;
+    difference_point(*pair_, found.normal(), w, on_first);
+    const double height = dot3(found.normal(), w);
+    const double sure = found.height() - found.miss() * tangent;
+    if (!(height - sure <= kTolerance)) return false;
+    keep(found, tangent, height, sure);
     return true;
   }
 
-  /// The cosine of the angle from a direction within which all points are that may be nearer to the
-  /// origin than `height`: on a face at a lesser distance they are around its foot.
-  [[nodiscard]] double open_cosine(const double* direction, double height) const {
-    const Vec3<double> d{direction[0], direction[1], direction[2]};
-    const Doubles zero(0.0);
-    const Doubles one(1.0);
-    Doubles least = one;
-    for (std::uint32_t row = 0; row < faces_; row += kWidth) {
-      const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
-                           Doubles::load(normal_[2] + row)};
-      const Doubles distance = Doubles::load(distance_ + row);
-      const Doubles to_foot = dot(n, d);
-      const Doubles around = min(distance * Doubles(1.0 / height), one);
-      const Doubles sines = sqrt(max((one - to_foot * to_foot) * (one - around * around), zero));
-      const Doubles cosine = to_foot * around - sines;
-      least = min(least, select(distance < Doubles(height), cosine, one));
+  void keep(const LocalMinimum& found, double tangent, double height, double sure) {
+    for (int k = 0; k < 3; ++k) sure_around_[minima_][k] = found.normal()[k];
+    sure_cosine_[minima_] = 1.0 / __builtin_sqrt(1.0 + tangent * tangent) + kCosineRounding;
+    ++minima_;
+    sure_ = sure < sure_ ? sure : sure_;
+    if (!(height < best_height_)) return;
+    best_height_ = height;
+    best_ = found;
+  }
+
+  /// Whether all points on a face that are nearer than the least minimum are in directions in which
+  /// one of the minima is sure: they are around the face's foot.
+  [[nodiscard]] bool is_closed(std::uint32_t face) const {
+    const double around = distance_[face] / best_height_;
+    for (std::uint32_t i = 0; i < minima_; ++i) {
+      const double to_foot = dot_normal(face, sure_around_[i]);
+      const double squares = (1.0 - to_foot * to_foot) * (1.0 - around * around);
+      const double sines = squares > 0.0 ? __builtin_sqrt(squares) : 0.0;
+      if (to_foot * around - sines >= sure_cosine_[i]) return true;
     }
-    alignas(64) double value[kWidth];
-    least.store(value);
-    for (std::uint32_t i = 1; i < kWidth; ++i) value[0] = value[i] < value[0] ? value[i] : value[0];
-    return value[0];
+    return false;
   }
 
   [[nodiscard]] std::uint32_t nearest_face() const {
-    Doubles least = Doubles::load(distance_);
+    Doubles least = Doubles::load(open_);
     for (std::uint32_t row = kWidth; row < faces_; row += kWidth) {
-      least = min(least, Doubles::load(distance_ + row));
+      least = min(least, Doubles::load(open_ + row));
     }
     alignas(64) double value[kWidth];
     least.store(value);
@@ -279,7 +305,7 @@ class CurvedDepth {
     }
     const Doubles smallest(value[0]);
     for (std::uint32_t row = 0;; row += kWidth) {
-      const Mask16 at = bits(Doubles::load(distance_ + row) == smallest);
+      const Mask16 at = bits(Doubles::load(open_ + row) == smallest);
       if (at != 0) return row + first(at);
     }
   }
@@ -368,7 +394,14 @@ class CurvedDepth {
   }
 
   const CurvedPair* pair_ = nullptr;
-  LocalMinimum minimum_;
+  /// Of the minima: the least, its height, a lower bound of all, and around which directions, up to
+  /// the angle of which cosine, each is sure.
+  LocalMinimum best_;
+  double best_height_;
+  double sure_;
+  std::uint32_t minima_ = 0;
+  double sure_around_[kMostMinima][3];
+  double sure_cosine_[kMostMinima];
   bool is_minimum_ = false;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
@@ -389,6 +422,8 @@ class CurvedDepth {
   std::uint32_t seen_[kMostSeen];
   alignas(64) double normal_[3][kMostFaces] = {};
   alignas(64) double distance_[kMostFaces];
+  /// The same, but infinite where a face is closed.
+  alignas(64) double open_[kMostFaces];
   /// Ends of the sides of new faces, by lane; lanes without one hold any numbers.
   alignas(64) double from_point_[3][kWidth] = {};
   alignas(64) double to_point_[3][kWidth] = {};
