@@ -232,7 +232,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   template <typename A, typename B>
   void verdict(const BodyPair& pair, NarrowAnswer& answer) {
-    answer.overlap = intersect<A, B>(bodies_[pair.a], bodies_[pair.b], nullptr);
+    answer.overlap = intersect<A, B>(bodies_[pair.a], bodies_[pair.b], no_contacts_);
   }
 
   template <typename A, typename B>
@@ -302,6 +302,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   std::vector<std::shared_ptr<Geometry>> geometries_;
   std::vector<Body> bodies_;
   Contacts contacts_;
+  /// Null. Where the compiler knows that, it warns of code of FCL that is not reached then.
+  Contacts* no_contacts_ = nullptr;
 };
 
 }  // namespace

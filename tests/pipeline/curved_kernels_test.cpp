@@ -122,6 +122,76 @@ TEST(CurvedKernels, crossed_drums_are_as_far_as_their_sides) {
   EXPECT_NEAR(answer.normal[0], 1.0, 1e-7);
 }
 
+/// The depth and normal of a pair that lanes answer alone, to the last digits.
+void expect_depth(const PairScene& scene, double depth, const double (&normal)[3]) {
+  NarrowPhase narrow;
+  NarrowResult result;
+  ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs,
+                           {.level = ContactLevel::distance}, result),
+            Status::ok);
+  EXPECT_EQ(narrow.statistics().recomputed, 0U);
+  EXPECT_NEAR(result.distance()[0], -depth, 2e-15);
+  EXPECT_LE(result.error_bound()[0], 1e-12);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(result.normal(axis)[0], normal[axis], 1e-14);
+}
+
+TEST(CurvedKernels, drums_that_cross_are_as_deep_as_their_sides) {
+  Pose across = turned_about_x(kRightAngle, 0.25);
+  across.position[0] = 0.75;
+  const CylinderShape drum{0.5, 2.0, 0.0};
+  expect_depth(pair_of(drum, drum, Pose{}, across), 0.25, {1.0, 0.0, 0.0});
+}
+
+TEST(CurvedKernels, a_drum_in_a_wall_is_as_deep_as_its_cap) {
+  expect_depth(pair_of(BoxShape{{4, 4, 1}, 0.0}, CylinderShape{1.0, 1.0, 0.0}, Pose{},
+                       Pose::at(0.5, 0.125, 1.75)),
+               0.25, {0.0, 0.0, 1.0});
+}
+
+TEST(CurvedKernels, logs_side_by_side_are_as_deep_as_their_sides) {
+  Pose beside = Pose::at(0.6, 0.8, 1.0);
+  expect_depth(pair_of(CylinderShape{0.75, 2.0, 0.0}, CylinderShape{0.5, 4.0, 0.0}, Pose{}, beside),
+               0.25, {0.6, 0.8, 0.0});
+}
+
+TEST(CurvedKernels, a_cone_in_the_edge_of_a_box_is_as_deep_as_its_side) {
+  // The cone's side has a slope of 45 degrees. The edge of the box along y is met where the line of
+  // the side towards it passes, 0.125 / sqrt(2) inside.
+  const ConeShape cone{1.0, 0.5, 0.0};
+  const double slope = std::sqrt(0.5);
+  Pose corner = Pose::at(-1.0 - 0.5 + 0.125, 0.0, 1.0);
+  const PairScene scene = pair_of(BoxShape{{1.0, 4.0, 1.0}, 0.0}, cone, corner, Pose{});
+  expect_depth(scene, 0.125 * slope, {slope, 0.0, -slope});
+}
+
+TEST(CurvedKernels, a_rim_in_an_edge_is_as_deep_as_it_reaches_in) {
+  // A coin that stands on the edge of a box, turned by 45 degrees about y, with its rim along x
+  // and leaning by a degree: its lower rim is the deeper one.
+  Pose on_edge;
+  on_edge.orientation[0] = std::cos(0.25 * kRightAngle);
+  on_edge.orientation[2] = std::sin(0.25 * kRightAngle);
+  const double lean = kRightAngle / 90.0;
+  const CylinderShape coin{1.0, 0.125, 0.0};
+  const double reach = std::cos(lean) + 0.125 * std::sin(lean);
+  const double top = std::sqrt(2.0);
+  const PairScene scene = pair_of(BoxShape{{1.0, 4.0, 1.0}, 0.0}, coin, on_edge,
+                                  turned_about_x(kRightAngle - lean, top + reach - 0.0625));
+  expect_depth(scene, 0.0625, {0.0, 0.0, 1.0});
+}
+
+TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
+  // Both drums look the same from either side.
+  const CylinderShape drum{0.5, 2.0, 0.0};
+  const PairScene scene = pair_of(drum, drum, Pose{}, turned_about_x(kRightAngle, 0.0));
+  NarrowPhase narrow;
+  NarrowResult result;
+  ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs,
+                           {.level = ContactLevel::distance}, result),
+            Status::ok);
+  EXPECT_NEAR(result.distance()[0], -1.0, 2e-15);
+  EXPECT_NEAR(std::abs(result.normal(0)[0]), 1.0, 1e-14);
+}
+
 struct CurvedKind {
   ShapeKind a;
   ShapeKind b;

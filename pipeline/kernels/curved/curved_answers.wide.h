@@ -92,7 +92,7 @@ class CurvedAnswers {
   }
 
  private:
-  static constexpr std::uint32_t kChunk = 32;
+  static constexpr std::uint32_t kChunk = 64;
   /// Beyond all distances that occur, scaled.
   static constexpr double kFarthest = 1e10;
   /// What bounds of a distance may differ by, over it, before they are looked at again.
@@ -117,10 +117,30 @@ class CurvedAnswers {
     CurvedLimits limits{0.0, Level == 0};
     if (Level == 1) limits.far = __builtin_inf();
     if (Level == 2) limits.far = job_.margin;
-    CurvedSearch(pair_, placed, limits).run();
+    if constexpr (Level == 0) {
+      CurvedSearch<float>(pair_, placed, limits).run();
+      placed = keep_doubtful(placed);
+      if (placed == 0) return;
+    }
+    CurvedSearch<double>(pair_, placed, limits).run();
     for (std::uint32_t i = 0; i < placed; ++i) {
       if (!answer(pair_[i])) give_up(pair_[i].index);
     }
+  }
+
+  /// Answers what float is sure about; moves the others to the front and returns how many.
+  std::uint32_t keep_doubtful(std::uint32_t count) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const CurvedState state = pair_[i].state;
+      if (state == CurvedState::far || state == CurvedState::inside) {
+        job_.overlap[pair_[i].index] = state == CurvedState::inside ? 1 : 0;
+      } else {
+        if (kept != i) pair_[kept] = pair_[i];
+        ++kept;
+      }
+    }
+    return kept;
   }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }

@@ -432,8 +432,9 @@ class LocalMinimum {
   /// Newton's method over the normals that meet all segments.
   bool approach() {
     if (sum_.segments > 2 || !is_stiff()) return false;
+    if (sum_.segments > 0 && !move_on_circle(normal_)) return false;
+    if (sum_.segments == 2 && are_parallel()) take_amid_second();
     if (sum_.segments == 2) return meet_both();
-    if (sum_.segments == 1 && !move_on_circle(normal_)) return false;
     for (int i = 0; i < kMostSteps; ++i) {
       double step[3];
       if (!next_step(step)) return false;
@@ -444,6 +445,29 @@ class LocalMinimum {
       if (square < kLastStep * kLastStep) return true;
     }
     return false;
+  }
+
+  /// Of two edges or sides of cylinders.
+  [[nodiscard]] bool are_parallel() const {
+    const SimpleSum::Segment& s = sum_.segment[0];
+    const SimpleSum::Segment& t = sum_.segment[1];
+    double out[3];
+    cross3(s.axis, t.axis, out);
+    return !(s.radius > 0.0) && !(t.radius > 0.0) && dot3(out, out) <= kLeastSine * kLeastSine;
+  }
+
+  /// Puts a point of the second segment in its place, that which the other meets nearest to its
+  /// middle.
+  void take_amid_second() {
+    const SimpleSum::Segment& s = sum_.segment[0];
+    const SimpleSum::Segment& t = sum_.segment[1];
+    double w[3];
+    met(w);
+    const double wanted = -(0.5 * s.length + dot3(w, s.axis)) / dot3(t.axis, s.axis);
+    const double least = wanted > 0.0 ? wanted : 0.0;
+    const double at = least < t.length ? least : t.length;
+    for (int k = 0; k < 3; ++k) sum_.point[k] += at * t.axis[k];
+    sum_.segments = 1;
   }
 
   /// To the nearest normal that meets the first segment.

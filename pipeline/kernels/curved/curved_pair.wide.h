@@ -184,47 +184,53 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
 }
 
 /// Cores of one kind, one per lane.
+template <typename T>
 struct FormLanes {
-  Doubles number[Form::kNumbers];
+  Lanes<T> number[Form::kNumbers];
   ShapeKind kind;
 };
 
+/// Directions whose part across an axis is shorter are along it.
+template <typename T>
+inline constexpr T kLeastAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
+
 /// The point of a rim in the direction of d, at z; where d is along the axis the rim's middle.
-[[gnu::always_inline]] static inline Vec3<double> rim_point(const Doubles& radius,
-                                                            const Vec3<double>& d,
-                                                            const Doubles& across,
-                                                            const Doubles& z) {
-  const Doubles over = radius / max(across, Doubles(1e-150));
+template <typename T>
+[[gnu::always_inline]] static inline Vec3<T> rim_point(const Lanes<T>& radius, const Vec3<T>& d,
+                                                       const Lanes<T>& across, const Lanes<T>& z) {
+  const Lanes<T> over = radius / max(across, Lanes<T>(kLeastAcross<T>));
   return {d.x * over, d.y * over, z};
 }
 
 /// The farthest point of a core along d, in its frame; `of_hull` finds that of hulls.
-template <typename OfHull>
-[[gnu::always_inline]] static inline Vec3<double> support(const FormLanes& form,
-                                                          const Vec3<double>& d, OfHull&& of_hull) {
-  const Doubles zero(0.0);
-  const Doubles* n = form.number;
-  const auto towards = [&](const Doubles& x, const Doubles& h) { return select(x < zero, -h, h); };
+template <typename T, typename OfHull>
+[[gnu::always_inline]] static inline Vec3<T> support(const FormLanes<T>& form, const Vec3<T>& d,
+                                                     OfHull&& of_hull) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T>* n = form.number;
+  const auto towards = [&](const Lanes<T>& x, const Lanes<T>& h) {
+    return select(x < zero, -h, h);
+  };
   switch (form.kind) {
     case ShapeKind::capsule:
       return {zero, zero, towards(d.z, n[2])};
     case ShapeKind::box:
       return {towards(d.x, n[0]), towards(d.y, n[1]), towards(d.z, n[2])};
     case ShapeKind::triangle: {
-      const Vec3<double> v[3] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}};
-      const Doubles h[3] = {dot(v[0], d), dot(v[1], d), dot(v[2], d)};
-      const LaneMask<double> second = h[1] > h[0];
-      const LaneMask<double> third = h[2] > max(h[0], h[1]);
+      const Vec3<T> v[3] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}};
+      const Lanes<T> h[3] = {dot(v[0], d), dot(v[1], d), dot(v[2], d)};
+      const LaneMask<T> second = h[1] > h[0];
+      const LaneMask<T> third = h[2] > max(h[0], h[1]);
       return select(third, v[2], select(second, v[1], v[0]));
     }
     case ShapeKind::cylinder:
       return rim_point(n[0], d, sqrt(d.x * d.x + d.y * d.y), towards(d.z, n[2]));
     case ShapeKind::cone: {
-      const Doubles across = sqrt(d.x * d.x + d.y * d.y);
-      const Doubles tip = n[2] * d.z;
-      const LaneMask<double> on_tip = tip >= n[0] * across - tip;
-      const Vec3<double> rim = rim_point(n[0], d, across, -n[2]);
-      return select(on_tip, Vec3<double>{zero, zero, n[2]}, rim);
+      const Lanes<T> across = sqrt(d.x * d.x + d.y * d.y);
+      const Lanes<T> tip = n[2] * d.z;
+      const LaneMask<T> on_tip = tip >= n[0] * across - tip;
+      const Vec3<T> rim = rim_point(n[0], d, across, -n[2]);
+      return select(on_tip, Vec3<T>{zero, zero, n[2]}, rim);
     }
     default:
       return of_hull(d);
@@ -232,36 +238,39 @@ template <typename OfHull>
 }
 
 /// A rotation or its inverse, of one matrix per lane.
-[[gnu::always_inline]] static inline Vec3<double> turned(const Doubles* m, const Vec3<double>& v) {
+template <typename T>
+[[gnu::always_inline]] static inline Vec3<T> turned(const Lanes<T>* m, const Vec3<T>& v) {
   return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
           m[6] * v.x + m[7] * v.y + m[8] * v.z};
 }
-[[gnu::always_inline]] static inline Vec3<double> turned_back(const Doubles* m,
-                                                              const Vec3<double>& v) {
+template <typename T>
+[[gnu::always_inline]] static inline Vec3<T> turned_back(const Lanes<T>* m, const Vec3<T>& v) {
   return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
           m[2] * v.x + m[5] * v.y + m[8] * v.z};
 }
 
 /// The vertex of a hull that is farthest along d, times `scale`.
-static inline void hull_support(const HullShape& shape, const double* d, double scale, double* x) {
-  constexpr std::uint32_t kWidth = Doubles::kCount;
-  const Vec3<double> direction{d[0], d[1], d[2]};
-  Doubles best = hull::along(shape.vertex, 0, direction);
-  Doubles where(0.0);
+template <typename T>
+static inline void hull_support(const HullShape& shape, const T* d, T scale, T* x) {
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+  const T* const* vertices = hull::columns_of(shape, T());
+  const Vec3<T> direction{d[0], d[1], d[2]};
+  Lanes<T> best = hull::along(vertices, 0, direction);
+  Lanes<T> where(T(0));
   for (std::uint32_t row = kWidth; row < shape.vertex_count; row += kWidth) {
-    const Doubles value = hull::along(shape.vertex, row, direction);
-    const LaneMask<double> higher = value > best;
+    const Lanes<T> value = hull::along(vertices, row, direction);
+    const LaneMask<T> higher = value > best;
     best = select(higher, value, best);
-    where = select(higher, Doubles(static_cast<double>(row)), where);
+    where = select(higher, Lanes<T>(static_cast<T>(row)), where);
   }
-  alignas(64) double height[kWidth];
-  alignas(64) double row[kWidth];
+  alignas(64) T height[kWidth];
+  alignas(64) T row[kWidth];
   best.store(height);
   where.store(row);
   std::uint32_t lane = 0;
   for (std::uint32_t i = 1; i < kWidth; ++i) lane = height[i] > height[lane] ? i : lane;
   const std::uint32_t vertex = static_cast<std::uint32_t>(row[lane]) + lane;
-  for (int k = 0; k < 3; ++k) x[k] = shape.vertex[k][vertex] * scale;
+  for (int k = 0; k < 3; ++k) x[k] = vertices[k][vertex] * scale;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

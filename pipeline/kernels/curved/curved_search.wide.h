@@ -20,6 +20,8 @@ struct CurvedLimits {
   bool verdict;
 };
 
+/// In double, or in float, whose states far and inside are sure too.
+template <typename T>
 class CurvedSearch {
  public:
   /// Of at least one pair; all are of the same kinds.
@@ -30,26 +32,33 @@ class CurvedSearch {
         kind_{pairs->first.kind, pairs->second.kind} {}
 
   void run() {
-    for (int lane = 0; lane < Doubles::kCount; ++lane) refill(lane);
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) refill(lane);
     while (active_ != 0) {
       Mask16 done = step();
       for (; done != 0; done &= done - 1) {
         const int lane = static_cast<int>(first(done));
-        hand_back(lane);
-        refill(lane);
+        if (goes_again(lane)) {
+          start(lane, kAskew);
+        } else {
+          hand_back(lane);
+          refill(lane);
+        }
       }
     }
   }
 
  private:
-  static constexpr int kWidth = Doubles::kCount;
-  static constexpr std::uint32_t kMostSteps = 60;
+  static constexpr bool kIsDouble = sizeof(T) == sizeof(double);
+  static constexpr int kWidth = Lanes<T>::kCount;
+  static constexpr std::uint32_t kMostSteps = kIsDouble ? 60 : 20;
   /// A difference of the bounds that is as good as none; squares of angles likewise.
-  static constexpr double kNoGain = 2e-15;
-  static constexpr double kNoTurn = 1e-13;
+  static constexpr T kNoGain = kIsDouble ? T(2e-15) : T(4e-7F);
+  static constexpr T kNoTurn = kIsDouble ? T(1e-13) : T(1e-5F);
   /// Below this the origin counts as on the simplex.
-  static constexpr double kTouching = 1e-13;
-  static constexpr double kDoubt = 1e-14;
+  static constexpr T kTouching = kIsDouble ? T(1e-13) : T(2e-6F);
+  static constexpr double kDoubt = kIsDouble ? 1e-14 : 8e-6;
+
+  static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
 
   void refill(int lane) {
     if (next_ == end_) {
@@ -61,60 +70,76 @@ class CurvedSearch {
     pair_[lane] = &pair;
     const Form* const forms[2] = {&pair.first, &pair.second};
     for (int side = 0; side < 2; ++side) {
-      for (int i = 0; i < Form::kNumbers; ++i) number_[side][i][lane] = forms[side]->number[i];
+      for (int i = 0; i < Form::kNumbers; ++i)
+        number_[side][i][lane] = static_cast<T>(forms[side]->number[i]);
       hull_[side][lane] = forms[side]->hull;
     }
-    for (int i = 0; i < 9; ++i) turn_[i][lane] = pair.turn[i];
-    for (int i = 0; i < 3; ++i) shift_[i][lane] = pair.shift[i];
+    for (int i = 0; i < 9; ++i) turn_[i][lane] = static_cast<T>(pair.turn[i]);
+    for (int i = 0; i < 3; ++i) shift_[i][lane] = static_cast<T>(pair.shift[i]);
     const double far = limits_.far * pair.scale + pair.rounding + kDoubt;
-    far_[lane] = far * far;
+    far_[lane] = static_cast<T>(far * far);
     const double near = pair.rounding - kDoubt;
-    near_[lane] = limits_.verdict && near > 0.0 ? near * near : -1.0;
-    for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0;
-    fresh_[lane] = 1.0;
+    near_[lane] = limits_.verdict && near > 0.0 ? static_cast<T>(near * near) : T(-1);
+    is_askew_[lane] = false;
+    constexpr double straight[3] = {0.0, 0.0, 0.0};
+    start(lane, straight);
+  }
+
+  /// Where shapes are aligned the origin may lie on an edge or a face of the simplex though the
+  /// cores overlap. From elsewhere it does not.
+  bool goes_again(int lane) {
+    if (pair_[lane]->state != CurvedState::close || is_askew_[lane]) return false;
+    is_askew_[lane] = true;
+    return true;
+  }
+
+  /// From a point of the difference, moved by `aside` times the sizes.
+  void start(int lane, const double* aside) {
+    const CurvedPair& pair = *pair_[lane];
+    for (int s = 0; s < kSlots; ++s) present_[s][lane] = T(0);
+    fresh_[lane] = T(1);
     steps_[lane] = 0;
-    // A point of the difference.
     double middle[3];
     turn3(pair.turn, pair.second.center, middle);
     double square = 0.0;
     for (int i = 0; i < 3; ++i) {
-      const double x = pair.first.center[i] - (middle[i] + pair.shift[i]);
-      gap_[i][lane] = x;
+      const double x = pair.first.center[i] - (middle[i] + pair.shift[i]) + aside[i] * pair.size;
+      gap_[i][lane] = static_cast<T>(x);
       square += x * x;
     }
-    if (!(square > kTouching * kTouching)) {
-      gap_[0][lane] = 1.0;
+    if (!(square > static_cast<double>(kTouching * kTouching))) {
+      gap_[0][lane] = T(1);
       square += 1.0;
     }
-    square_[lane] = square;
+    square_[lane] = static_cast<T>(square);
   }
 
-  static Vec3<double> load3(const double (*v)[kWidth]) {
-    return {Doubles::load(v[0]), Doubles::load(v[1]), Doubles::load(v[2])};
+  static Vec3<T> load3(const T (*v)[kWidth]) {
+    return {Lanes<T>::load(v[0]), Lanes<T>::load(v[1]), Lanes<T>::load(v[2])};
   }
-  static void store3(const Vec3<double>& v, double (*to)[kWidth]) {
+  static void store3(const Vec3<T>& v, T (*to)[kWidth]) {
     v.x.store(to[0]);
     v.y.store(to[1]);
     v.z.store(to[2]);
   }
 
   /// The farthest point of the cores of one side along d.
-  [[gnu::always_inline]] Vec3<double> support_of(int side, const Vec3<double>& d) {
-    FormLanes form;
+  [[gnu::always_inline]] Vec3<T> support_of(int side, const Vec3<T>& d) {
+    FormLanes<T> form;
     form.kind = kind_[side];
-    for (int i = 0; i < Form::kNumbers; ++i) form.number[i] = Doubles::load(number_[side][i]);
-    return support(form, d, [&](const Vec3<double>& along) { return hull_supports(side, along); });
+    for (int i = 0; i < Form::kNumbers; ++i) form.number[i] = Lanes<T>::load(number_[side][i]);
+    return support(form, d, [&](const Vec3<T>& along) { return hull_supports(side, along); });
   }
 
-  [[gnu::noinline]] Vec3<double> hull_supports(int side, const Vec3<double>& along) {
-    alignas(64) double d[3][kWidth];
-    alignas(64) double x[3][kWidth] = {};
+  [[gnu::noinline]] Vec3<T> hull_supports(int side, const Vec3<T>& along) {
+    alignas(64) T d[3][kWidth];
+    alignas(64) T x[3][kWidth] = {};
     store3(along, d);
     for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
       const unsigned lane = first(rest);
-      const double direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
-      double point[3];
-      hull_support(*hull_[side][lane], direction, pair_[lane]->scale, point);
+      const T direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
+      T point[3];
+      hull_support(*hull_[side][lane], direction, static_cast<T>(pair_[lane]->scale), point);
       for (int k = 0; k < 3; ++k) x[k][lane] = point[k];
     }
     return load3(x);
@@ -122,44 +147,43 @@ class CurvedSearch {
 
   /// One step of all lanes; returns those that are done.
   Mask16 step() {
-    const Doubles zero(0.0);
-    Doubles turn[9];
-    for (int i = 0; i < 9; ++i) turn[i] = Doubles::load(turn_[i]);
-    hull::Simplex<double> simplex;
+    const Lanes<T> zero(T(0));
+    Lanes<T> turn[9];
+    for (int i = 0; i < 9; ++i) turn[i] = Lanes<T>::load(turn_[i]);
+    hull::Simplex<T> simplex;
     for (int s = 0; s < kSlots; ++s) {
       simplex.point[s] = load3(slot_[s]);
-      simplex.present[s] = Doubles::load(present_[s]) > zero;
+      simplex.present[s] = Lanes<T>::load(present_[s]) > zero;
     }
-    const Vec3<double> gap = load3(gap_);
-    const Doubles square = Doubles::load(square_);
-    const LaneMask<double> fresh = Doubles::load(fresh_) > zero;
-    const Vec3<double> mine = support_of(0, -gap);
-    const Vec3<double> theirs = turned(turn, support_of(1, turned_back(turn, gap)));
-    const Vec3<double> w = mine - (theirs + load3(shift_));
-    const Doubles height = dot(gap, w);
+    const Vec3<T> gap = load3(gap_);
+    const Lanes<T> square = Lanes<T>::load(square_);
+    const LaneMask<T> fresh = Lanes<T>::load(fresh_) > zero;
+    const Vec3<T> mine = support_of(0, -gap);
+    const Vec3<T> theirs = turned(turn, support_of(1, turned_back(turn, gap)));
+    const Vec3<T> w = mine - (theirs + load3(shift_));
+    const Lanes<T> height = dot(gap, w);
     height.store(height_along_);
-    const LaneMask<double> far = (height > zero) & (height * height > Doubles::load(far_) * square);
+    const LaneMask<T> far = (height > zero) & (height * height > Lanes<T>::load(far_) * square);
 
-    const Doubles gain = square - height;
-    const LaneMask<double> no_gain =
-        (gain <= zero) | ((gain * gain <= Doubles(kNoGain * kNoGain) * square) &
-                          (gain <= Doubles(kNoTurn) * square));
-    const hull::SimplexNearest<double> nearest = hull::nearest_of(simplex, w);
-    const Doubles next_square = dot(nearest.point, nearest.point);
-    const LaneMask<double> stuck = (!fresh) &
-                                   (no_gain | nearest.repeated | (next_square >= square)) &
-                                   (!(nearest.inside | far));
-    const LaneMask<double> inside = nearest.inside & !far;
-    const LaneMask<double> moves = !(far | stuck | inside);
+    const Lanes<T> gain = square - height;
+    const LaneMask<T> no_gain =
+        (gain <= zero) | ((gain * gain <= Lanes<T>(kNoGain * kNoGain) * square) &
+                          (gain <= Lanes<T>(kNoTurn) * square));
+    const hull::SimplexNearest<T> nearest = hull::nearest_of(simplex, w);
+    const Lanes<T> next_square = dot(nearest.point, nearest.point);
+    const LaneMask<T> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
+                              (!(nearest.inside | far));
+    const LaneMask<T> inside = nearest.inside & !far;
+    const LaneMask<T> moves = !(far | stuck | inside);
     const Mask16 inside_bits = bits(inside) & active_;
     if (inside_bits != 0) keep_tetrahedra(inside_bits, w, mine);
     keep(simplex, nearest, moves, w, mine, gap, next_square);
     const Mask16 far_bits = bits(far) & active_;
     const Mask16 stuck_bits = bits(stuck) & active_;
     const Mask16 move = bits(moves) & active_;
-    const Mask16 near_bits = bits(next_square <= Doubles::load(near_)) & move;
+    const Mask16 near_bits = bits(next_square <= Lanes<T>::load(near_)) & move;
     const Mask16 touch_bits =
-        bits(next_square <= Doubles(kTouching * kTouching)) & move & ~near_bits;
+        bits(next_square <= Lanes<T>(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, CurvedState::far);
     mark(stuck_bits, CurvedState::apart);
     mark(inside_bits & bits(nearest.deep), CurvedState::inside);
@@ -182,35 +206,35 @@ class CurvedSearch {
   }
 
   /// Where `moves`: the nearest feature becomes the simplex.
-  void keep(const hull::Simplex<double>& simplex, const hull::SimplexNearest<double>& nearest,
-            const LaneMask<double>& moves, const Vec3<double>& w, const Vec3<double>& mine,
-            const Vec3<double>& gap, const Doubles& next_square) {
-    const Doubles zero(0.0);
-    const Doubles one(1.0);
-    LaneMask<double> placed = !moves;
+  void keep(const hull::Simplex<T>& simplex, const hull::SimplexNearest<T>& nearest,
+            const LaneMask<T>& moves, const Vec3<T>& w, const Vec3<T>& mine, const Vec3<T>& gap,
+            const Lanes<T>& next_square) {
+    const Lanes<T> zero(T(0));
+    const Lanes<T> one(T(1));
+    LaneMask<T> placed = !moves;
     for (int s = 0; s < kSlots; ++s) {
-      const LaneMask<double> take = (!placed) & (!nearest.keep[s]);
+      const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
       placed = placed | take;
       store3(select(take, w, simplex.point[s]), slot_[s]);
       store3(select(take, mine, load3(slot_mine_[s])), slot_mine_[s]);
-      const Doubles held = select(take | nearest.keep[s], one, zero);
-      select(moves, held, Doubles::load(present_[s])).store(present_[s]);
+      const Lanes<T> held = select(take | nearest.keep[s], one, zero);
+      select(moves, held, Lanes<T>::load(present_[s])).store(present_[s]);
     }
     store3(select(moves, nearest.point, gap), gap_);
-    select(moves, next_square, Doubles::load(square_)).store(square_);
+    select(moves, next_square, Lanes<T>::load(square_)).store(square_);
     zero.store(fresh_);
   }
 
-  void keep_tetrahedra(Mask16 lanes, const Vec3<double>& w, const Vec3<double>& mine) {
-    alignas(64) double at[3][kWidth];
-    alignas(64) double on[3][kWidth];
+  void keep_tetrahedra(Mask16 lanes, const Vec3<T>& w, const Vec3<T>& mine) {
+    alignas(64) T at[3][kWidth];
+    alignas(64) T on[3][kWidth];
     store3(w, at);
     store3(mine, on);
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
       for (int k = 0; k < 3; ++k) {
-        pair_[lane]->difference[3][k] = at[k][lane];
-        pair_[lane]->on_first[3][k] = on[k][lane];
+        pair_[lane]->difference[3][k] = static_cast<double>(at[k][lane]);
+        pair_[lane]->on_first[3][k] = static_cast<double>(on[k][lane]);
       }
     }
   }
@@ -223,16 +247,16 @@ class CurvedSearch {
     CurvedPair& pair = *pair_[lane];
     pair.count = 0;
     for (int s = 0; s < kSlots; ++s) {
-      if (!(present_[s][lane] > 0.0)) continue;
+      if (!(present_[s][lane] > T(0))) continue;
       for (int k = 0; k < 3; ++k) {
-        pair.difference[pair.count][k] = slot_[s][k][lane];
-        pair.on_first[pair.count][k] = slot_mine_[s][k][lane];
+        pair.difference[pair.count][k] = static_cast<double>(slot_[s][k][lane]);
+        pair.on_first[pair.count][k] = static_cast<double>(slot_mine_[s][k][lane]);
       }
       ++pair.count;
     }
-    pair.upper = __builtin_sqrt(square_[lane]);
-    pair.lower = height_along_[lane] / pair.upper;
-    for (int k = 0; k < 3; ++k) pair.gap[k] = gap_[k][lane];
+    pair.upper = __builtin_sqrt(static_cast<double>(square_[lane]));
+    pair.lower = static_cast<double>(height_along_[lane]) / pair.upper;
+    for (int k = 0; k < 3; ++k) pair.gap[k] = static_cast<double>(gap_[k][lane]);
   }
 
   CurvedPair* next_;
@@ -243,18 +267,19 @@ class CurvedSearch {
   CurvedPair* pair_[kWidth] = {};
   const HullShape* hull_[2][kWidth] = {};
   std::uint32_t steps_[kWidth] = {};
-  alignas(64) double number_[2][Form::kNumbers][kWidth] = {};
-  alignas(64) double turn_[9][kWidth] = {};
-  alignas(64) double shift_[3][kWidth] = {};
-  alignas(64) double far_[kWidth] = {};
-  alignas(64) double near_[kWidth] = {};
-  alignas(64) double fresh_[kWidth] = {};
-  alignas(64) double gap_[3][kWidth] = {};
-  alignas(64) double square_[kWidth] = {};
-  alignas(64) double height_along_[kWidth] = {};
-  alignas(64) double slot_[kSlots][3][kWidth] = {};
-  alignas(64) double slot_mine_[kSlots][3][kWidth] = {};
-  alignas(64) double present_[kSlots][kWidth] = {};
+  bool is_askew_[kWidth] = {};
+  alignas(64) T number_[2][Form::kNumbers][kWidth] = {};
+  alignas(64) T turn_[9][kWidth] = {};
+  alignas(64) T shift_[3][kWidth] = {};
+  alignas(64) T far_[kWidth] = {};
+  alignas(64) T near_[kWidth] = {};
+  alignas(64) T fresh_[kWidth] = {};
+  alignas(64) T gap_[3][kWidth] = {};
+  alignas(64) T square_[kWidth] = {};
+  alignas(64) T height_along_[kWidth] = {};
+  alignas(64) T slot_[kSlots][3][kWidth] = {};
+  alignas(64) T slot_mine_[kSlots][3][kWidth] = {};
+  alignas(64) T present_[kSlots][kWidth] = {};
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved
