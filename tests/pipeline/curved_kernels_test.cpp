@@ -192,6 +192,44 @@ TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
   EXPECT_NEAR(std::abs(result.normal(0)[0]), 1.0, 1e-14);
 }
 
+/// Of a drum at the origin, upright, and one that leans by an angle about x: how far the second has
+/// to go along the direction that is `around` about z and `up` over the horizon.
+double way_out(const CylinderShape& a, const CylinderShape& b, double lean, const Pose& at,
+               double around, double up) {
+  const double n[3] = {std::cos(up) * std::cos(around), std::cos(up) * std::sin(around),
+                       std::sin(up)};
+  const auto reach = [](const CylinderShape& drum, double along) {
+    return drum.radius * std::sqrt(std::max(1.0 - along * along, 0.0)) +
+           drum.half_length * std::abs(along);
+  };
+  const double along_b = std::cos(lean) * n[2] - std::sin(lean) * n[1];
+  return reach(a, n[2]) + reach(b, along_b) -
+         (at.position[0] * n[0] + at.position[1] * n[1] + at.position[2] * n[2]);
+}
+
+TEST(CurvedKernels, drums_in_each_other_have_depths_within_their_bounds) {
+  Random random(11);
+  for (int i = 0; i < 40; ++i) {
+    const double lean = std::pow(10.0, random.uniform(-6.0, -2.0));
+    const CylinderShape a{random.uniform(0.5, 1.0), random.uniform(1.5, 3.0), 0.0};
+    const CylinderShape b{random.uniform(0.25, 0.5), random.uniform(1.5, 3.0), 0.0};
+    Pose pose = turned_about_x(lean, random.uniform(-0.1, 0.1));
+    for (int k = 0; k < 2; ++k) pose.position[k] = lean * random.uniform(-1.0, 1.0);
+    const PairAnswers answer = answer_to(pair_of(a, b, Pose{}, pose), ContactLevel::distance);
+    double least = a.half_length + b.half_length;
+    for (int around = 0; around < 2000; ++around) {
+      for (int up = -2; up <= 2; ++up) {
+        least = std::min(
+            least, way_out(a, b, lean, pose, 4.0 * kRightAngle * around / 2000.0, 0.5 * lean * up));
+      }
+    }
+    const double sizes = a.radius + a.half_length + b.radius + b.half_length;
+    ASSERT_LE(answer.error_bound, 1e-3 * sizes) << i;
+    ASSERT_LE(-answer.distance - answer.error_bound, least) << i;
+    ASSERT_GE(-answer.distance + answer.error_bound, least - 1e-4 * lean) << i;
+  }
+}
+
 struct CurvedKind {
   ShapeKind a;
   ShapeKind b;
