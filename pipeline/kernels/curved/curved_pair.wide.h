@@ -150,36 +150,42 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
   const Pose& first = pair.swapped ? pose_b : pose_a;
   const Pose& second = pair.swapped ? pose_a : pose_b;
-  pair.size = describe(job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
-              describe(job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double size = describe(job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
+                describe(job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double frame[9];
   double axes[9];
-  if (!hull::rotation_of(first.orientation, pair.frame) ||
+  if (!hull::rotation_of(first.orientation, frame) ||
       !hull::rotation_of(second.orientation, axes)) {
     return false;
   }
-  for (int i = 0; i < 3; ++i) pair.offset[i] = second.position[i] - first.position[i];
-  turn_back3(pair.frame, pair.offset, pair.shift);
+  double offset[3];
+  double shift[3];
+  for (int i = 0; i < 3; ++i) offset[i] = second.position[i] - first.position[i];
+  turn_back3(frame, offset, shift);
+  for (const double x : shift) size += __builtin_fabs(x);
+  const double rounding = pair.first.rounding + pair.second.rounding;
+  if (!(size > kSmallest && size < kLargestSize)) return false;
+  if (!(rounding < 1e6 * size)) return false;
+  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
+  const double scale = __builtin_bit_cast(double, (2046U - exponent) << 52U);
+  pair.scale = scale;
+  pair.unit = 1.0 / scale;
+  pair.size = size * scale;
+  pair.rounding = rounding * scale;
   for (int i = 0; i < 3; ++i) {
-    pair.size += __builtin_fabs(pair.shift[i]);
+    pair.offset[i] = offset[i];
+    pair.shift[i] = shift[i] * scale;
     for (int k = 0; k < 3; ++k) {
-      pair.turn[3 * i + k] = pair.frame[i] * axes[k] + pair.frame[3 + i] * axes[3 + k] +
-                             pair.frame[6 + i] * axes[6 + k];
+      pair.frame[3 * i + k] = frame[3 * i + k];
+      pair.turn[3 * i + k] =
+          frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
     }
   }
-  pair.rounding = pair.first.rounding + pair.second.rounding;
-  if (!(pair.size > kSmallest && pair.size < kLargestSize)) return false;
-  if (!(pair.rounding < 1e6 * pair.size)) return false;
-  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, pair.size) >> 52U;
-  pair.scale = __builtin_bit_cast(double, (2046U - exponent) << 52U);
-  pair.unit = 1.0 / pair.scale;
-  pair.size *= pair.scale;
-  pair.rounding *= pair.scale;
   for (Form* form : {&pair.first, &pair.second}) {
-    for (double& x : form->number) x *= pair.scale;
-    for (double& x : form->center) x *= pair.scale;
-    form->rounding *= pair.scale;
+    for (double& x : form->number) x *= scale;
+    for (double& x : form->center) x *= scale;
+    form->rounding *= scale;
   }
-  for (double& x : pair.shift) x *= pair.scale;
   return true;
 }
 
