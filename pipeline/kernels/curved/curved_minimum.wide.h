@@ -25,14 +25,16 @@ struct SimpleSum {
     double radius;
     double axis[3];
   };
-  /// All normals that meet it make an angle with `axis` that has this cosine. Edges: along them and
-  /// 0. Sides of cones: the cone's, `along` turns with the normal, and `radius` is that of the
-  /// disc.
+  /// An edge, or a line of a side.
   struct Segment {
+    /// All points of it are as far along a normal whose angle with the axis has this cosine. Of an
+    /// edge or a cylinder's side the axis is its direction, and the cosine 0.
     double axis[3];
     double cosine;
     double length;
+    /// Of a cone's disc, else 0.
     double radius;
+    /// Unit; of a cone's side it turns with the normal.
     double along[3];
   };
 
@@ -95,12 +97,12 @@ struct NearPoints {
   }
 };
 
-/// From the frame of one side to where its points add to the difference.
+/// Brings points of one core to the first's frame, those of the second with their signs turned, so
+/// that both add up to the difference.
 class SidePlace {
  public:
   SidePlace(const CurvedPair& pair, bool second) : pair_(pair), second_(second) {}
 
-  /// Both keep lengths; directions of the second turn round.
   void direction(const double* x, double* r) const {
     if (!second_) {
       for (int k = 0; k < 3; ++k) r[k] = x[k];
@@ -130,7 +132,6 @@ class LocalMinimum {
     take_points(corner, mine);
     is_flat_ = lie_flat(0) || lie_flat(1);
     if (is_flat_) return true;
-    for (int k = 0; k < 3; ++k) normal_[k] = near[k];
     sum_.discs = 0;
     sum_.segments = 0;
     if (!add_side(0)) return false;
@@ -580,9 +581,9 @@ class LocalMinimum {
   double normal_[3];
   double height_;
   double miss_;
-  /// Along each segment: where it is met, and how far that is from its nearer end; the second of a
-  /// flat part too, from its border.
+  /// Where along each segment it is met.
   double at_[2];
+  /// How far that is from the nearer end; of a flat part the first, from its border.
   double inside_[2];
   bool is_flat_ = false;
   double flat_point_[3];
