@@ -296,14 +296,7 @@ class CurvedDepth {
     for (std::uint32_t row = kWidth; row < faces_; row += kWidth) {
       least = min(least, Doubles::load(open_ + row));
     }
-    alignas(64) double value[kWidth];
-    least.store(value);
-    for (std::uint32_t half = kWidth / 2; half > 0; half /= 2) {
-      for (std::uint32_t i = 0; i < half; ++i) {
-        value[i] = value[i] < value[i + half] ? value[i] : value[i + half];
-      }
-    }
-    const Doubles smallest(value[0]);
+    const Doubles smallest(-hull::largest_lane(-least));
     for (std::uint32_t row = 0;; row += kWidth) {
       const Mask16 at = bits(Doubles::load(open_ + row) == smallest);
       if (at != 0) return row + first(at);

@@ -269,12 +269,9 @@ static inline void hull_support(const HullShape& shape, const T* d, T scale, T* 
     best = select(higher, value, best);
     where = select(higher, Lanes<T>(static_cast<T>(row)), where);
   }
-  alignas(64) T height[kWidth];
   alignas(64) T row[kWidth];
-  best.store(height);
   where.store(row);
-  std::uint32_t lane = 0;
-  for (std::uint32_t i = 1; i < kWidth; ++i) lane = height[i] > height[lane] ? i : lane;
+  const std::uint32_t lane = hull::lane_of_largest(best);
   const std::uint32_t vertex = static_cast<std::uint32_t>(row[lane]) + lane;
   for (int k = 0; k < 3; ++k) x[k] = vertices[k][vertex] * scale;
 }

@@ -24,12 +24,9 @@ std::uint32_t lowest_vertex(const HullShape& shape, const Vec3<T>& up) {
     best = select(lower, value, best);
     where = select(lower, Lanes<T>(static_cast<T>(row)), where);
   }
-  alignas(64) T height[kWidth];
   alignas(64) T row[kWidth];
-  best.store(height);
   where.store(row);
-  std::uint32_t lane = 0;
-  for (std::uint32_t i = 1; i < kWidth; ++i) lane = height[i] < height[lane] ? i : lane;
+  const std::uint32_t lane = hull::lane_of_largest(-best);
   const std::uint32_t found = static_cast<std::uint32_t>(row[lane]) + lane;
   // Padding repeats vertex 0.
   return found < shape.vertex_count ? found : 0;

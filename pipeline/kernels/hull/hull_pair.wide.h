@@ -282,6 +282,28 @@ static inline float highest_of(const HullShape& hull, const float* direction) {
   return hull.vertex_float;
 }
 
+/// The largest of all lanes.
+template <typename T>
+[[gnu::always_inline]] static inline T largest_lane(const Lanes<T>& v) {
+  if constexpr (sizeof(T) == sizeof(float)) return reduce_max(v);
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+  alignas(64) T value[kWidth];
+  v.store(value);
+  for (std::uint32_t half = kWidth / 2; half > 0; half /= 2) {
+    for (std::uint32_t i = 0; i < half; ++i) {
+      value[i] = value[i] > value[i + half] ? value[i] : value[i + half];
+    }
+  }
+  return value[0];
+}
+
+/// The first lane of the largest number; any of them where there are such as are none.
+template <typename T>
+[[gnu::always_inline]] static inline std::uint32_t lane_of_largest(const Lanes<T>& v) {
+  constexpr Mask16 last = 1U << (Lanes<T>::kCount - 1);
+  return first(static_cast<Mask16>(bits(v == Lanes<T>(largest_lane(v))) | last));
+}
+
 /// The largest product of a vertex and `direction`.
 template <typename T>
 static inline T height_of(const HullShape& hull, const T* direction) {
@@ -295,14 +317,7 @@ static inline T height_of(const HullShape& hull, const T* direction) {
   for (std::uint32_t row = kWidth; row < hull.vertex_count; row += kWidth) {
     best = max(best, along(vertex, row, d));
   }
-  alignas(64) T value[kWidth];
-  best.store(value);
-  for (std::uint32_t half = kWidth / 2; half > 0; half /= 2) {
-    for (std::uint32_t i = 0; i < half; ++i) {
-      value[i] = value[i] > value[i + half] ? value[i] : value[i + half];
-    }
-  }
-  return value[0];
+  return largest_lane(best);
 }
 
 /// The highest vertex along `direction`; false if another one is within `doubt` of it.
