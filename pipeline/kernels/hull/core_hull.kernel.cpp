@@ -79,7 +79,8 @@ inline constexpr HullEdge kSegmentEdge[1] = {{{0, 1}, {~0U, ~0U}}};
 inline constexpr std::uint32_t kSegmentNeighbourFirst[3] = {0, 1, 2};
 inline constexpr std::uint32_t kSegmentNeighbours[2] = {1, 0};
 
-/// A hull of up to eight vertices and six faces with what it points to. Does not move.
+/// A hull of up to eight vertices and six faces with what it points to. Does not move. Until it is
+/// completed its faces have no planes: many pairs are decided before they are asked for.
 class CoreHull {
  public:
   CoreHull() = default;
@@ -113,9 +114,6 @@ class CoreHull {
       least = h < least ? h : least;
       square += h * h;
       for (std::uint32_t i = 0; i < 8; ++i) corner[i][k] = (i >> k & 1U) != 0 ? h : -h;
-      for (std::uint32_t side = 0; side < 2; ++side) {
-        set_plane(2 * k + side, kBoxTopology.faces[2 * k + side].normal, h);
-      }
     }
     begin(corner, 8, 3, box.rounding);
     hull_.radius = __builtin_sqrt(square) * kOverRoundings;
@@ -132,44 +130,36 @@ class CoreHull {
   }
 
   const HullShape& of(const TriangleShape& triangle) {
-    double e[3];
-    double f[3];
-    double n[3];
     begin(triangle.vertex, 3, 2, triangle.rounding);
-    for (int k = 0; k < 3; ++k) {
-      e[k] = triangle.vertex[1][k] - triangle.vertex[0][k];
-      f[k] = triangle.vertex[2][k] - triangle.vertex[0][k];
-      hull_.center[k] =
-          (triangle.vertex[0][k] + triangle.vertex[1][k] + triangle.vertex[2][k]) / 3.0;
+    const auto& v = triangle.vertex;
+    for (int k = 0; k < 3; ++k) hull_.center[k] = (v[0][k] + v[1][k] + v[2][k]) / 3.0;
+    double most = 0.0;
+    for (const double(&x)[3] : v) {
+      const double d[3] = {x[0] - hull_.center[0], x[1] - hull_.center[1], x[2] - hull_.center[2]};
+      const double square = dot3(d, d);
+      most = square > most ? square : most;
     }
-    for (const auto& v : triangle.vertex) {
-      const double d[3] = {v[0] - hull_.center[0], v[1] - hull_.center[1], v[2] - hull_.center[2]};
-      const double reach = __builtin_sqrt(dot3(d, d)) * kOverRoundings;
-      hull_.radius = reach > hull_.radius ? reach : hull_.radius;
-    }
-    cross3(e, f, n);
-    const double area = __builtin_sqrt(dot3(n, n));
+    hull_.radius = __builtin_sqrt(most) * kOverRoundings;
     hull_.edge_count = 3;
     hull_.edges = kTriangleEdges;
     hull_.loop = kTriangleLoop;
     hull_.loop_edge = kTriangleLoopEdge;
     hull_.neighbour_first = kTriangleNeighbourFirst;
     hull_.neighbour = kTriangleNeighbours;
-    // A sliver has no normal that can be relied on: it is left to the solver.
-    is_sliver_ = !(area > 1e-6 * (dot3(e, e) + dot3(f, f)));
-    for (std::uint32_t side = 0; side < 2; ++side) {
-      for (int k = 0; k < 3; ++k) face_[side].normal[k] = (side == 0 ? n[k] : -n[k]) / area;
-      face_[side].offset = dot3(face_[side].normal, triangle.vertex[0]);
-      face_[side].first = 3 * side;
-      face_[side].count = 3;
-      set_plane(side, face_[side].normal, face_[side].offset);
-    }
     hull_.face_count = 2;
     hull_.faces = face_;
     return hull_;
   }
 
-  [[nodiscard]] bool is_sliver() const { return is_sliver_; }
+  /// Makes the planes of the faces; false if they cannot be relied on.
+  bool complete() {
+    if (hull_.dimension == 2) return complete_triangle();
+    for (std::uint32_t face = 0; face < hull_.face_count; ++face) {
+      // The last vertex of a box is at the high end of each axis.
+      set_plane(face, hull_.faces[face].normal, vertex_[face / 2][7]);
+    }
+    return true;
+  }
 
  private:
   void begin(const double (*vertex)[3], std::uint32_t count, std::uint32_t dimension,
@@ -178,11 +168,10 @@ class CoreHull {
     hull_.vertex_count = count;
     hull_.dimension = dimension;
     hull_.rounding = rounding;
-    is_sliver_ = false;
     for (int k = 0; k < 3; ++k) {
+      for (std::uint32_t i = 0; i < kRow; ++i) vertex_[k][i] = vertex[i < count ? i : 0][k];
       for (std::uint32_t i = 0; i < kLanes; ++i) {
-        vertex_[k][i] = vertex[i < count ? i : 0][k];
-        vertex_float_[k][i] = static_cast<float>(vertex_[k][i]);
+        vertex_float_[k][i] = static_cast<float>(vertex_[k][i < count ? i : 0]);
       }
       hull_.vertex[k] = vertex_[k];
       hull_.vertex_float[k] = vertex_float_[k];
@@ -190,15 +179,44 @@ class CoreHull {
     for (int k = 0; k < 4; ++k) hull_.plane_float[k] = plane_[k];
   }
 
+  bool complete_triangle() {
+    double v[3][3];
+    double e[3];
+    double f[3];
+    double n[3];
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) v[i][k] = vertex_[k][i];
+      e[k] = v[1][k] - v[0][k];
+      f[k] = v[2][k] - v[0][k];
+    }
+    cross3(e, f, n);
+    const double area = __builtin_sqrt(dot3(n, n));
+    // A sliver is left to the solver.
+    if (!(area > 1e-6 * (dot3(e, e) + dot3(f, f)))) return false;
+    for (int k = 0; k < 3; ++k) {
+      face_[0].normal[k] = n[k] / area;
+      face_[1].normal[k] = -face_[0].normal[k];
+    }
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      face_[side].offset = dot3(face_[side].normal, v[0]);
+      face_[side].first = 3 * side;
+      face_[side].count = 3;
+      set_plane(side, face_[side].normal, face_[side].offset);
+    }
+    return true;
+  }
+
   void set_plane(std::uint32_t face, const double* normal, double offset) {
     for (int k = 0; k < 3; ++k) plane_[k][face] = static_cast<float>(normal[k]);
     plane_[3][face] = static_cast<float>(offset);
   }
 
+  static constexpr std::uint32_t kRow = Doubles::kCount;
+  static_assert(kRow >= 8);
+
   HullShape hull_;
-  bool is_sliver_ = false;
   HullFace face_[2] = {};
-  alignas(64) double vertex_[3][kLanes];
+  alignas(64) double vertex_[3][kRow];
   alignas(64) float vertex_float_[3][kLanes];
   /// Rows from the count of faces on are not read as faces.
   alignas(64) float plane_[4][kLanes] = {};
@@ -253,11 +271,12 @@ class CoreAndHull {
         table_of(job.tables, static_cast<const Shape*>(nullptr))[job.shapes[simple].index()];
     const HullShape& hull = job.tables.hulls[job.shapes[body].index()];
     const HullShape& core = core_[slot].of(shape);
-    if (core_[slot].is_sliver()) return false;
     const HullShape& a = Before ? core : hull;
     const HullShape& b = Before ? hull : core;
     return place_hulls<kPointSecond>(a, b, job.poses[bodies.a], job.poses[bodies.b], Before, pair);
   }
+
+  bool complete(std::uint32_t slot) { return core_[slot].complete(); }
 
  private:
   CoreHull core_[kRoom];

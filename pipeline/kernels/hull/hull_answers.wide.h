@@ -11,6 +11,7 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
 /// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
+/// and complete(slot) for what the search has not decided, which is false for what lanes do not do,
 /// by `kSimpleSecond` whether their second is a simple shape, by `kPointSecond` whether the core of
 /// that is a point, at its origin, and by `Seconds` how the search finds its supports.
 template <typename Shapes, typename T, int Level>
@@ -52,7 +53,7 @@ class HullAnswers {
     if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
     HullSearch<typename Shapes::Seconds>(pair_, placed, limits).run();
     for (std::uint32_t i = 0; i < placed; ++i) {
-      if (!answer(pair_[i])) give_up(pair_[i].index);
+      if (!answer(pair_[i], i)) give_up(pair_[i].index);
     }
   }
 
@@ -82,7 +83,7 @@ class HullAnswers {
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
-  bool answer(const HullPair& pair) {
+  bool answer(const HullPair& pair, std::uint32_t slot) {
     if (pair.state == HullState::far) {
       if constexpr (Level == 0) {
         job_.overlap[pair.index] = 0;
@@ -95,6 +96,7 @@ class HullAnswers {
       job_.overlap[pair.index] = 1;
       return true;
     }
+    if (!shapes_.complete(slot)) return false;
     const HullPlace<T> place(pair);
     HullDistance<T> core{};
     if (pair.state == HullState::apart) {

@@ -16,6 +16,7 @@ struct HullAndHull {
     const Pose& pose_b = job.poses[bodies.b];
     return place_hulls(a, b, pose_a, pose_b, comes_second(a, b, pose_a, pose_b), pair);
   }
+  static bool complete(std::uint32_t /*slot*/) { return true; }
 };
 
 }  // namespace WINNOW_ISA_NAME::hull

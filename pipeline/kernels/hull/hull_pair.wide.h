@@ -151,47 +151,53 @@ static inline float scale_of(double size) {
   return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
 }
 
-/// How the second is turned against the first, whose frame is there; false if its quaternion is out
-/// of range.
-static inline bool turn_second(const Pose& second, HullPair& pair) {
-  double axes[9];
-  if (!rotation_of(second.orientation, axes)) return false;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      pair.turn[3 * i + k] = pair.frame[i] * axes[k] + pair.frame[3 + i] * axes[3 + k] +
-                             pair.frame[6 + i] * axes[6 + k];
-    }
-  }
-  return true;
-}
-
 /// Fills what the search needs, b first where `swapped`; false if poses or sizes are out of range.
 /// `PointSecond`: how the second is turned does not matter.
 template <bool PointSecond = false>
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                const Pose& pose_b, bool swapped, HullPair& pair) {
   pair.swapped = swapped;
-  const Pose& first = pair.swapped ? pose_b : pose_a;
-  const Pose& second = pair.swapped ? pose_a : pose_b;
-  pair.first = pair.swapped ? &b : &a;
-  pair.second = pair.swapped ? &a : &b;
-  if (!rotation_of(first.orientation, pair.frame)) return false;
-  if constexpr (PointSecond) {
-    for (int i = 0; i < 9; ++i) pair.turn[i] = i % 4 == 0 ? 1.0 : 0.0;
-  } else if (!turn_second(second, pair)) {
-    return false;
+  const Pose& first = swapped ? pose_b : pose_a;
+  const Pose& second = swapped ? pose_a : pose_b;
+  pair.first = swapped ? &b : &a;
+  pair.second = swapped ? &a : &b;
+  double frame[9];
+  double turn[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  if (!rotation_of(first.orientation, frame)) return false;
+  if constexpr (!PointSecond) {
+    double axes[9];
+    if (!rotation_of(second.orientation, axes)) return false;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        turn[3 * i + k] =
+            frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
+      }
+    }
   }
-  for (int i = 0; i < 3; ++i) pair.offset[i] = second.position[i] - first.position[i];
-  turn_back3(pair.frame, pair.offset, pair.shift);
+  double offset[3];
+  double shift[3];
+  for (int i = 0; i < 3; ++i) offset[i] = second.position[i] - first.position[i];
+  turn_back3(frame, offset, shift);
   pair.rounding = a.rounding + b.rounding;
-  pair.size = reach_of(a) + reach_of(b) + __builtin_fabs(pair.shift[0]) +
-              __builtin_fabs(pair.shift[1]) + __builtin_fabs(pair.shift[2]);
-  if (!(pair.size > kSmallestHull && pair.size < kLargestHull)) return false;
+  const double size = reach_of(a) + reach_of(b) + __builtin_fabs(shift[0]) +
+                      __builtin_fabs(shift[1]) + __builtin_fabs(shift[2]);
+  if (!(size > kSmallestHull && size < kLargestHull)) return false;
   if (!(pair.rounding < kLargestHull)) return false;
-  pair.scale = scale_of(pair.size);
-  for (int i = 0; i < 9; ++i) pair.turn_float[i] = static_cast<float>(pair.turn[i]);
-  for (int i = 0; i < 9; ++i) pair.scaled_turn[i] = pair.turn_float[i] * pair.scale;
-  for (int i = 0; i < 3; ++i) pair.scaled_shift[i] = static_cast<float>(pair.shift[i]) * pair.scale;
+  const float scale = scale_of(size);
+  pair.size = size;
+  pair.scale = scale;
+  for (int i = 0; i < 9; ++i) {
+    const auto turn_float = static_cast<float>(turn[i]);
+    pair.frame[i] = frame[i];
+    pair.turn[i] = turn[i];
+    pair.turn_float[i] = turn_float;
+    pair.scaled_turn[i] = turn_float * scale;
+  }
+  for (int i = 0; i < 3; ++i) {
+    pair.offset[i] = offset[i];
+    pair.shift[i] = shift[i];
+    pair.scaled_shift[i] = static_cast<float>(shift[i]) * scale;
+  }
   return true;
 }
 
