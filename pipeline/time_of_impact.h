@@ -19,7 +19,7 @@ namespace winnow {
 
 /// What impacts are found with, which is winnow's own.
 namespace impact {
-struct BodyImpact;
+struct Impact;
 }  // namespace impact
 class PartTraversal;
 
@@ -106,7 +106,8 @@ class WINNOW_API ImpactResult {
   void find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
                     std::span<const BodyPair> pairs, const ImpactOptions& options,
                     std::size_t first, std::size_t end);
-  void write(std::size_t i, const impact::BodyImpact& found) noexcept;
+  void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
+             std::uint32_t part_b) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
     return {c.data(), c.size()};
   }

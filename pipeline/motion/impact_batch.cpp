@@ -4,6 +4,7 @@
 #include "pipeline/solver/problem.h"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 
 namespace winnow {
@@ -112,10 +113,15 @@ void ImpactBatch::add(std::size_t name, ShapeId a, const RigidMotion& of_a, Shap
     query = {{a, b}, {&of_a, &of_b}, until};
   }
   kinds_[count_] = kinds_of(query);
+  alike_ = alike_ && kinds_[count_] == kinds_[0];
   ++count_;
 }
 
 void ImpactBatch::sort_by_kinds() noexcept {
+  if (alike_) {
+    std::iota(order_.begin(), order_.begin() + count_, std::uint16_t{0});
+    return;
+  }
   std::array<std::uint16_t, kNoLanes + 2> first{};
   for (std::size_t i = 0; i < count_; ++i) ++first[kinds_[i] + 1U];
   for (std::size_t k = 1; k < first.size(); ++k) {

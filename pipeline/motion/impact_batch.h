@@ -39,6 +39,7 @@ class ImpactBatch {
       take(names_[i], found_[i]);
     }
     count_ = 0;
+    alike_ = true;
   }
 
  private:
@@ -58,12 +59,19 @@ class ImpactBatch {
   double tolerance_;
   std::size_t count_ = 0;
   std::array<std::size_t, kRoom> names_;
-  std::array<ImpactQuery, kRoom> queries_;
   std::array<bool, kRoom> mirrored_;
-  std::array<Impact, kRoom> found_;
+  // In unions they are not initialised, which would take as long as some answers do.
+  union {
+    std::array<ImpactQuery, kRoom> queries_;
+  };
+  union {
+    std::array<Impact, kRoom> found_;
+  };
   std::array<ImpactVerdict, kRoom> verdicts_;
   /// What a job has in common.
   std::array<std::uint16_t, kRoom> kinds_;
+  /// All kinds are the same.
+  bool alike_ = true;
   /// By kinds.
   std::array<std::uint16_t, kRoom> order_;
 };

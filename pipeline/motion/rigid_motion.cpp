@@ -55,7 +55,8 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 }
 
 bool RigidMotion::is_valid() const noexcept {
-  // Of finite numbers it stays 0, of others it is no number.
+  // Of finite numbers it stays 0, of others it is no number. Where the last position and the way
+  // there are finite, so is the first one.
   double sum = 0.0;
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -63,7 +64,9 @@ bool RigidMotion::is_valid() const noexcept {
     sum += (travel[i] - travel[i]) + (end - end);
     square += turn[i] * turn[i];
   }
-  return start.is_valid() && sum == 0.0 && square <= kMostTurn * kMostTurn;
+  Pose standing = Pose::at(0.0, 0.0, 0.0);
+  std::copy_n(start.orientation, 4, standing.orientation);
+  return standing.is_valid() && sum == 0.0 && square <= kMostTurn * kMostTurn;
 }
 
 Pose RigidMotion::at(double time) const noexcept {

@@ -42,8 +42,8 @@ bool ImpactResult::resize(std::size_t count) noexcept {
   return ok;
 }
 
-void ImpactResult::write(std::size_t i, const impact::BodyImpact& found) noexcept {
-  const impact::Impact& impact = found.impact;
+void ImpactResult::write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
+                         std::uint32_t part_b) noexcept {
   hit_[i] = impact.hit ? 1 : 0;
   time_[i] = impact.time;
   gap_[i] = impact.gap;
@@ -52,8 +52,8 @@ void ImpactResult::write(std::size_t i, const impact::BodyImpact& found) noexcep
     normal_[axis][i] = impact.normal[axis];
     point_[axis][i] = impact.point[axis];
   }
-  part_a_[i] = found.part_a;
-  part_b_[i] = found.part_b;
+  part_a_[i] = part_a;
+  part_b_[i] = part_b;
 }
 
 Footprint ImpactResult::footprint() const noexcept {
@@ -80,17 +80,21 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
     const auto [a, b] = pairs[i];
     status_[i] = status_of(parts, bodies, options, pairs[i]);
     if (status_[i] != Status::ok) {
-      impact::BodyImpact none;
-      none.impact.time = 0.0;
-      write(i, none);
+      impact::Impact none;
+      none.time = 0.0;
+      write(i, none, kWholeShape, kWholeShape);
     } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {
       batch.add(i, bodies.shapes[a], bodies.motions[a], bodies.shapes[b], bodies.motions[b]);
     } else {
-      write(i, impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
-                                        {bodies.shapes[b], bodies.motions[b]}, options.tolerance));
+      const impact::BodyImpact found =
+          impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
+                                   {bodies.shapes[b], bodies.motions[b]}, options.tolerance);
+      write(i, found.impact, found.part_a, found.part_b);
     }
   }
-  batch.run([&](std::size_t i, const impact::Impact& found) { write(i, {found}); });
+  batch.run([&](std::size_t i, const impact::Impact& found) {
+    write(i, found, kWholeShape, kWholeShape);
+  });
 }
 
 Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
