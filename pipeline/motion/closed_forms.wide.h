@@ -132,11 +132,8 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   found.axis = closest.way * (Doubles(1.0) / found.upper);
   found.on_a = closest.on_a;
   found.on_b = closest.way + closest.on_a - pair.between;
-  Vector own_a;
-  Vector own_b;
-  pair.facing(found.axis, 0, own_a, own_b);
-  found.high_a = dot(found.axis, pair.on_a(own_a));
-  found.high_b = -dot(found.axis, pair.on_b(own_b));
+  found.high_a = pair.height(pair.table_a, pair.a, found.axis, 0);
+  found.high_b = pair.height(pair.table_b, pair.b, -found.axis, 0);
   found.lower = dot(found.axis, pair.between) - found.high_a - found.high_b;
   return found;
 }

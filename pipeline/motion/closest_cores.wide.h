@@ -47,6 +47,26 @@ struct CorePair {
     own_a = own_facing(table_a, a, direction, lanes);
     own_b = own_facing(table_b, b, -direction, lanes);
   }
+  /// How far a core reaches along a direction from its middle.
+  [[gnu::always_inline]] Doubles height(const CoreTable& table, const MovingCore& core,
+                                        const Vector& direction, Mask16 lanes) const {
+    const auto share = [&](const Vector& axis, const Doubles& half) {
+      return abs(dot(direction, axis)) * half;
+    };
+    switch (table.kind) {
+      case ShapeKind::sphere:
+        return Doubles(0.0);
+      case ShapeKind::capsule:
+        return share(core.axes.z, core.half.z);
+      case ShapeKind::box:
+        return share(core.axes.x, core.half.x) + share(core.axes.y, core.half.y) +
+               share(core.axes.z, core.half.z);
+      default:
+        break;
+    }
+    const Vector own = table.in_world ? direction : core.axes.to_local(direction);
+    return dot(own, farthest(table, core, own, lanes));
+  }
 };
 
 /// What is known of the cores of a lane where they are placed.

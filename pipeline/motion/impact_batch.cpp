@@ -54,6 +54,7 @@ class StartDistances {
     job_.uncertified = uncertified_.data();
   }
 
+  [[nodiscard]] bool is_full() const noexcept { return job_.count == kRoom; }
   void add(std::size_t query, const ImpactQuery& asked) noexcept {
     queries_[job_.count] = query;
     pairs_[job_.count] = {2 * job_.count, 2 * job_.count + 1};
@@ -64,10 +65,16 @@ class StartDistances {
     ++job_.count;
   }
 
-  /// Calls take(query, impact) for those that surely overlap.
+  /// Calls take(query, impact) for those that surely overlap, and forgets all.
   template <typename Take>
   void run(Take&& take) noexcept {
-    if (job_.count == 0) return;
+    if (job_.count != 0) answer(take);
+    job_.count = 0;
+  }
+
+ private:
+  template <typename Take>
+  void answer(Take& take) noexcept {
     const NarrowKernels* const kernels = narrow_kernels(shapes_[0].kind(), shapes_[1].kind());
     if (kernels == nullptr) return;
     const std::uint32_t left = kernels->robust[kernel_index(ContactLevel::distance)](job_);
@@ -83,15 +90,15 @@ class StartDistances {
     }
   }
 
- private:
+  static constexpr std::size_t kRoom = 64;
   template <typename T>
-  using Row = std::array<T, kImpactJobQueries>;
+  using Row = std::array<T, kRoom>;
 
   NarrowJob job_{};
   Row<std::size_t> queries_;
   Row<BodyPair> pairs_;
-  std::array<ShapeId, 2 * kImpactJobQueries> shapes_;
-  std::array<Pose, 2 * kImpactJobQueries> poses_;
+  std::array<ShapeId, 2 * kRoom> shapes_;
+  std::array<Pose, 2 * kRoom> poses_;
   Row<double> distance_;
   Row<double> error_bound_;
   Row<double> normal_[3];
@@ -140,13 +147,16 @@ void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
   };
   if (std::ranges::none_of(asked, at_start)) return;
   StartDistances starts(tables_);
-  for (const std::uint16_t query : asked) {
-    if (at_start(query)) starts.add(query, queries_[query]);
-  }
-  starts.run([&](std::size_t query, const Impact& impact) {
+  const auto take = [&](std::size_t query, const Impact& impact) {
     found_[query] = impact;
     verdicts_[query] = ImpactVerdict::known;
-  });
+  };
+  for (const std::uint16_t query : asked) {
+    if (!at_start(query)) continue;
+    if (starts.is_full()) starts.run(take);
+    starts.add(query, queries_[query]);
+  }
+  starts.run(take);
 }
 
 void ImpactBatch::search(std::size_t i) noexcept {
@@ -164,10 +174,7 @@ void ImpactBatch::find() noexcept {
     const std::uint16_t kinds = kinds_[order_[at]];
     job.order = order_.data() + at;
     job.count = 1;
-    while (at + job.count < count_ && job.count < kImpactJobQueries &&
-           kinds_[job.order[job.count]] == kinds) {
-      ++job.count;
-    }
+    while (at + job.count < count_ && kinds_[job.order[job.count]] == kinds) ++job.count;
     if (kinds != kNoLanes) {
       job.straight = kinds % 2 == 0;
       impact_lane_kernels().run(job);

@@ -9,6 +9,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// Shapes that stay so long within the tolerance as they near each other have met.
 inline constexpr double kMostLooksWithin = 64.0;
+/// What takes more looks takes the search that has one pair alone.
+inline constexpr double kMostLooks = 256.0;
 /// Of the noise: what distances need not be better than.
 inline constexpr double kEnough = 0.125;
 
@@ -35,13 +37,17 @@ struct PairLanes {
   Doubles proves;
   /// As in ImpactSearch.
   Doubles within;
+  /// So far.
+  Doubles looks;
   /// 1 while there is more to do.
   Doubles active;
   WitnessLanes witness;
-  /// Of pairs that turn: what else is known by the last look, when to look next, and as in
-  /// ImpactSearch.
+  /// Of pairs that turn: how fast they travel; what else is known by the last look, when to look
+  /// next, and as in ImpactSearch.
+  Doubles speed;
   Doubles gap;
   Doubles slope;
+  Doubles bend;
   Doubles free;
   Doubles next;
   Doubles touching;
@@ -92,7 +98,7 @@ class Answers {
     for (; lanes != 0; lanes &= lanes - 1) {
       const std::uint32_t query = tables_.query[first(lanes)];
       job_.verdicts[query] = ImpactVerdict::known;
-      job_.found[query] = {};
+      job_.found[query] = kNone;
     }
   }
 
@@ -100,7 +106,9 @@ class Answers {
     if (lanes == 0) return;
     const Doubles distance = look.closest.upper;
     const Doubles gap = distance - p.roundings;
-    const Vector normal = look.closest.between * (Doubles(1.0) / distance);
+    const Vector normal = has_closed_form(tables_.a.kind, tables_.b.kind)
+                              ? look.closest.axis
+                              : look.closest.between * (Doubles(1.0) / distance);
     const Vector point = look.closest.on_a + normal * p.a.rounding;
     const Doubles error = max(look.most - gap, gap - look.gap);
     const Doubles columns[] = {
@@ -122,6 +130,9 @@ class Answers {
   }
 
  private:
+  /// In memory: what is made on the stack and copied at once is waited for.
+  static constexpr winnow::impact::Impact kNone{};
+
   const ImpactJob& job_;
   const PairBlockTables& tables_;
 };
@@ -145,6 +156,8 @@ class BlockStep {
   }
   /// Notes which lanes go on, and returns them.
   [[nodiscard]] Mask16 go_on() {
+    p_.looks += Doubles(1.0);
+    end_unsure(p_.looks >= Doubles(kMostLooks));
     p_.active = one_where(active_);
     return bits(active_);
   }

@@ -1,8 +1,8 @@
 // When two moving cores in each lane first meet, as impact_search.cpp derives it, which answers
 // what the lanes cannot tell: pairs that touch or all but touch where they are looked at. Each
-// round looks once at all pairs of a job; lanes of pairs that are done are then given to others, so
-// that a hard pair does not hold seven easy ones. What is said of a pair does not depend on the
-// others.
+// round looks once at all pairs of some blocks; lanes of pairs that are done are then given to
+// others, and blocks that are free to those that wait, so that a hard pair does not hold seven easy
+// ones. What is said of a pair does not depend on the others.
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
@@ -17,74 +17,73 @@ namespace {
 constexpr double kGoodEnough = 0.3;
 /// Steps of one search for closest points; more are not needed but where rounding leads astray.
 constexpr int kMostSteps = 32;
-/// More rounds take the search that has one pair alone.
-constexpr int kMostRounds = 256;
 /// Lengths whose products of six are in the range of double, and keep their digits.
 constexpr double kShortest = 1e-40;
 constexpr double kLongest = 1e40;
 
 /// The share of an interval in which a gap that is `above` a target at its start, and `then` above
 /// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
-/// ends.
+/// ends. Of no interest but in some lanes.
 [[gnu::always_inline]] inline Doubles share_above(const Doubles& above, const Doubles& then,
-                                                  const Doubles& sag) {
+                                                  const Doubles& sag, const Truth& lanes) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
   const Doubles square = sag * Doubles(4.0);
   const Doubles linear = then - above - square;
   const Doubles discriminant = linear * linear - square * above * Doubles(4.0);
-  const Truth stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
-                                        (-linear >= square * Doubles(2.0)));
-  const Doubles root = above * Doubles(2.0) / (sqrt(positive_part(discriminant)) - linear);
-  const Doubles share = select(root >= zero, root * Doubles(1.0 - 1e-12), zero);
   // What is no number proves nothing.
   const Truth known = square < Doubles(kLargest<double>);
+  const Truth stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
+                                        (-linear >= square * Doubles(2.0)));
+  if (bits(lanes & !(stays & known)) == 0) return one;
+  const Doubles root = above * Doubles(2.0) / (sqrt(positive_part(discriminant)) - linear);
+  const Doubles share = select(root >= zero, root * Doubles(1.0 - 1e-12), zero);
   return select(known, select(stays, one, select(share < one, share, one)), zero);
 }
 
 /// How a point at y from a core's middle moves along an axis.
-[[gnu::always_inline]] inline Doubles speed_along(const MovingCore& core, const Vector& axis,
-                                                  const Vector& y) {
+[[gnu::always_inline]] inline Doubles speed_along(const CoreTable& table, const MovingCore& core,
+                                                  const Vector& axis, const Vector& y) {
+  if (!table.turns) return Doubles(0.0);
   return core.angle * dot(axis, cross(core.axis, y));
 }
 
-[[gnu::always_inline]] inline Doubles acceleration(const MovingCore& core, const Vector& axis) {
-  const Doubles across = length(cross(axis, core.axis)) + Doubles(kAxisDoubt);
-  return core.angle * core.angle * across * core.reach;
+/// What a core does along an axis as it turns.
+struct TurningAlong {
+  /// The most that it reaches, of all that it sweeps.
+  Doubles high;
+  /// Of no point more.
+  Doubles acceleration;
+};
+
+/// Of a core that reaches as high as `high` where it is.
+[[gnu::always_inline]] inline TurningAlong turning_along(const CoreTable& table,
+                                                         const MovingCore& core, const Vector& axis,
+                                                         const Doubles& high) {
+  if (!table.turns) return {high, Doubles(0.0)};
+  const Doubles along = dot(axis, core.axis);
+  const Doubles across = length(cross(axis, core.axis));
+  const Doubles swept = max(along * core.low, along * core.high) + across * core.reach;
+  return {select(core.angle > Doubles(0.0), swept, high),
+          core.angle * core.angle * (across + Doubles(kAxisDoubt)) * core.reach};
 }
 
-/// No gap along the axis falls below its chord between two times by more than half of this times
-/// the product of the times to either end.
-[[gnu::always_inline]] inline Doubles curvature(const PairLanes& p, const Vector& axis) {
-  return acceleration(p.a, axis) + acceleration(p.b, axis);
-}
-
-/// The same along an axis that turns evenly from one to another in `width`, to where they are
-/// placed, `between` from each other; infinite if they are farther apart than a radian.
-[[gnu::always_inline]] inline Doubles curvature_between(const PairLanes& p, const Vector& from,
-                                                        const Vector& to, const Doubles& width,
-                                                        const Vector& between) {
+/// Along an axis that turns evenly from one to another in `width`, to where they are placed,
+/// `between` from each other, no gap falls below its chord by more than half of this times the
+/// shares to either end; infinite if the axes are farther apart than a radian.
+[[gnu::always_inline]] inline Doubles bend_between(const PairLanes& p, const Vector& from,
+                                                   const Vector& to, const Doubles& width,
+                                                   const Vector& between) {
   const Doubles turned = length(to - from);
-  const Doubles rate = turned * (Doubles(1.0) + Doubles(0.05) * turned * turned) / width;
+  const Doubles rate = turned * (Doubles(1.0) + Doubles(0.05) * turned * turned);
   const Doubles swing_a = p.a.reach * p.a.angle;
   const Doubles swing_b = p.b.reach * p.b.angle;
-  const Doubles way = length(p.travel);
-  const Doubles speed = way + swing_a + swing_b;
-  const Doubles far = length(between) + width * way + p.sizes;
-  const Doubles below = width * (rate * far + speed);
-  const Doubles all =
-      swing_a * p.a.angle + swing_b * p.b.angle + rate * speed * Doubles(2.0) + rate * rate * below;
+  const Doubles way = width * p.speed;
+  const Doubles speed = way + width * (swing_a + swing_b);
+  const Doubles below = rate * (taxicab(between) + way + p.sizes) + speed;
+  const Doubles all = width * width * (swing_a * p.a.angle + swing_b * p.b.angle) +
+                      rate * speed * Doubles(2.0) + rate * rate * below;
   return select(turned <= Doubles(1.0), all, Doubles(__builtin_inf()));
-}
-
-/// The most that a core reaches along an axis, of all that it sweeps as it turns; `high` where it
-/// is.
-[[gnu::always_inline]] inline Doubles swept_high(const MovingCore& core, const Vector& axis,
-                                                 const Doubles& high) {
-  const Doubles along = dot(axis, core.axis);
-  const Doubles swept =
-      max(along * core.low, along * core.high) + length(cross(axis, core.axis)) * core.reach;
-  return select(core.angle > Doubles(0.0), swept, high);
 }
 
 class ImpactStep : BlockStep {
@@ -110,15 +109,16 @@ class ImpactStep : BlockStep {
     place(tables_.a, p_.next, p_.a);
     place(tables_.b, p_.next, p_.b);
     look_.between = p_.start + p_.travel * p_.next;
-    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
+    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     then_ = gap_along(pair);
     look_.closest = closest_points(pair);
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.most = closest.upper - p_.roundings + look_.noise;
-    look_.slope = dot(closest.axis, p_.travel) + speed_along(p_.b, closest.axis, closest.on_b) -
-                  speed_along(p_.a, closest.axis, closest.on_a);
+    look_.slope = dot(closest.axis, p_.travel) +
+                  speed_along(tables_.b, p_.b, closest.axis, closest.on_b) -
+                  speed_along(tables_.a, p_.a, closest.axis, closest.on_a);
     look_.parted = look_.gap > Doubles(0.0);
   }
 
@@ -133,13 +133,11 @@ class ImpactStep : BlockStep {
 
   /// The gap along the axis of the last look, where the lanes are placed.
   [[nodiscard]] Doubles gap_along(const CorePair& pair) const {
-    const Truth proves = active_ & (p_.proves > Doubles(0.0));
-    if (bits(proves) == 0) return Doubles(0.0);
-    Vector own_a;
-    Vector own_b;
-    pair.facing(p_.axis, bits(proves), own_a, own_b);
-    const Vector w = look_.between + pair.on_b(own_b) - pair.on_a(own_a);
-    return dot(p_.axis, w) - p_.roundings - look_.noise;
+    const Mask16 proves = bits(active_ & (p_.proves > Doubles(0.0)));
+    if (proves == 0) return Doubles(0.0);
+    const Doubles high = pair.height(tables_.a, p_.a, p_.axis, proves) +
+                         pair.height(tables_.b, p_.b, -p_.axis, proves);
+    return dot(p_.axis, look_.between) - high - p_.roundings - look_.noise;
   }
 
   /// Moves on as far as is proved from the last look, which showed a gap along an axis, and takes
@@ -192,12 +190,13 @@ class ImpactStep : BlockStep {
     const Doubles width = way * Doubles(1.0 + 4.0 * kPlace);
     const Doubles least = select(look_.parted & (look_.gap < gap), look_.gap, gap);
     const Doubles target = min(p_.tolerance * Doubles(0.25), least * Doubles(0.5));
-    const Doubles eighth = width * width * Doubles(0.125);
+    const Doubles eighth(0.125);
     const Doubles above = gap - target;
-    Doubles share = share_above(above, then_ - target, curvature(p_, axis) * eighth);
-    if (bits(active_ & !(share >= Doubles(1.0))) == 0) return p_.next;
-    const Doubles bent = curvature_between(p_, axis, look_.closest.axis, width, look_.between);
-    const Doubles turning = share_above(above, look_.gap - target, bent * eighth);
+    const Truth asked = active_ & (p_.proves > Doubles(0.0));
+    Doubles share = share_above(above, then_ - target, p_.bend * width * width * eighth, asked);
+    if (bits(asked & !(share >= Doubles(1.0))) == 0) return p_.next;
+    const Doubles bent = bend_between(p_, axis, look_.closest.axis, width, look_.between);
+    const Doubles turning = share_above(above, look_.gap - target, bent * eighth, asked);
     share = select(look_.parted & (turning > share), turning, share);
     const Doubles reached = min(p_.time + share * way, p_.next);
     return select(share >= Doubles(1.0), p_.next, reached);
@@ -213,54 +212,64 @@ class ImpactStep : BlockStep {
     const Truth met = near & (meets | (p_.within > Doubles(kMostLooksWithin)));
     answers_.put_meeting(bits(met), p_, look_);
     active_ = active_ & !met;
-    const Doubles free = free_until();
+    if (bits(active_) == 0) return;
+    const ClosestLanes& c = look_.closest;
+    const TurningAlong of_a = turning_along(tables_.a, p_.a, c.axis, c.high_a);
+    const TurningAlong of_b = turning_along(tables_.b, p_.b, -c.axis, c.high_b);
+    const Doubles free = free_until(of_a.high + of_b.high);
+    const Doubles bend = of_a.acceleration + of_b.acceleration;
     end_apart(looked & ((free >= p_.last) | (free > p_.until)));
-    const Doubles next = next_look();
+    const Doubles next = next_look(bend);
     const Truth freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
     // No number left between.
     end_unsure(looked & freely & (moved <= p_.time));
-    p_.axis = select(looked, look_.closest.axis, p_.axis);
+    p_.axis = select(looked, c.axis, p_.axis);
     p_.gap = select(looked, look_.gap, p_.gap);
     p_.slope = select(looked, look_.slope, p_.slope);
+    p_.bend = select(looked, bend, p_.bend);
     p_.free = select(looked, free, p_.free);
     p_.time = select(looked, moved, p_.time);
     p_.next = select(looked, select(freely, free, next), p_.next);
     p_.proves = one_where(looked & !freely);
   }
 
-  /// They are apart until then by what they sweep.
-  [[nodiscard]] Doubles free_until() const {
-    const ClosestLanes& c = look_.closest;
-    const Doubles high = swept_high(p_.a, c.axis, c.high_a) + swept_high(p_.b, -c.axis, c.high_b);
-    const Doubles swept = dot(c.axis, look_.between) - high - p_.roundings - look_.noise -
+  /// They are apart until then by what they sweep, which reaches so high from both middles.
+  [[nodiscard]] Doubles free_until(const Doubles& high) const {
+    const Vector& axis = look_.closest.axis;
+    const Doubles swept = dot(axis, look_.between) - high - p_.roundings - look_.noise -
                           min(p_.tolerance * Doubles(0.25), look_.gap * Doubles(0.5));
-    const Doubles closing = -dot(c.axis, p_.travel);
+    const Truth apart = swept > Doubles(0.0);
+    if (bits(active_ & apart) == 0) return p_.time;
+    const Doubles closing = -dot(axis, p_.travel);
     const Truth closes = closing > Doubles(0.0);
     const Doubles step = swept / select(closes, closing, Doubles(1.0));
     const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
-    return select(swept > Doubles(0.0), select(closes & (until < p_.last), until, p_.last),
-                  p_.time);
+    return select(apart, select(closes & (until < p_.last), until, p_.last), p_.time);
   }
 
   /// Where the gap seems to fall to a share of what it is, but no farther than a proof may reach.
-  [[nodiscard]] Doubles next_look() const {
+  /// `bend`: no gap along the axis falls below its chord between two times by more than half of
+  /// this times the product of the times to either end.
+  [[nodiscard]] Doubles next_look(const Doubles& bend) const {
     const Doubles zero(0.0);
+    const Doubles one(1.0);
     const Doubles end = min(p_.last, p_.touching);
     Doubles step = end - p_.time;
     const Truth falls = look_.slope < zero;
     const Doubles aim = max(p_.tolerance * Doubles(0.5), p_.aim * look_.gap);
     const Doubles fall = max(look_.gap - aim, look_.gap * Doubles(0.25));
-    const Doubles reached = fall / select(falls, -look_.slope, Doubles(1.0));
+    const Doubles reached = fall / select(falls, -look_.slope, one);
     step = select(falls & (reached < step), reached, step);
-    // A gap whose slope is constant has a proof if half of the curvature times the square of the
-    // step is below the square of the sum of the roots of the gaps at both ends.
-    const Doubles bend = curvature(p_, look_.closest.axis);
+    // A gap whose slope is constant has a proof if half of the bend times the square of the step is
+    // below the square of the sum of the roots of the gaps at both ends, of which the second is the
+    // first times `rest`. A little less than that root is taken.
     const Truth bends = bend > zero;
-    const Doubles flat = sqrt(look_.gap * Doubles(2.0) / select(bends, bend, Doubles(1.0)));
-    const Doubles left = Doubles(1.0) + look_.slope * flat / look_.gap;
-    const Doubles rest = select(left > zero, select(left < Doubles(1.0), left, Doubles(1.0)), zero);
-    const Doubles most = flat * Doubles(0.95) * (Doubles(1.0) + sqrt(rest));
+    const Doubles steep = sqrt(Doubles(2.0) / select(bends, look_.gap * bend, one));
+    const Doubles left = one + look_.slope * steep;
+    const Doubles rest = select(left > zero, select(left < one, left, one), zero);
+    const Doubles root = rest * (Doubles(1.5) - rest * Doubles(0.5));
+    const Doubles most = look_.gap * steep * Doubles(0.95) * (one + root);
     step = select(bends & (most < step), most, step);
     return min(p_.time + step, end);
   }
@@ -308,12 +317,13 @@ class ImpactLoad {
       table.kind = query(0).shape[side].kind();
       table.in_world =
           table.kind == ShapeKind::sphere || (job_.straight && table.kind == ShapeKind::triangle);
+      table.turns =
+          !job_.straight && table.kind != ShapeKind::sphere && table.kind != ShapeKind::half_space;
       load_core(
           job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
       measure(table, core);
-      usable =
-          usable & load_turn(
-                       table, [&](int lane) { return motion(side, lane); }, job_.straight, core);
+      usable = usable & load_turn(
+                            table, [&](int lane) { return motion(side, lane); }, core);
     }
     return usable;
   }
@@ -334,7 +344,7 @@ class ImpactLoad {
   void measure_pair() {
     p_.roundings = p_.a.rounding + p_.b.rounding;
     p_.sizes = p_.a.size + p_.b.size;
-    const Doubles way = length(p_.start) + length(p_.travel);
+    const Doubles way = taxicab(p_.start) + taxicab(p_.travel);
     span_ = way + p_.sizes;
     p_.still_noise =
         Doubles(kPlace) * (way * Doubles(8.0) +
@@ -352,40 +362,45 @@ class ImpactLoad {
   [[nodiscard]] Truth cut_to_window() {
     const Doubles zero(0.0);
     if (has_half_space()) return p_.time <= p_.until;
-    const Doubles speed = length(p_.travel);
-    const Doubles from = length(p_.start);
-    const Doubles radius = p_.sizes + (from + speed + p_.sizes) * Doubles(64.0 * kPlace);
-    const Truth moves = speed > Doubles(1e-30) * span_;
-    const Doubles over = Doubles(1.0) / select(moves, speed, Doubles(1.0));
-    const Doubles nearest = select(moves, -(dot(p_.start, p_.travel) * over) * over, zero);
-    const Doubles distance = length(p_.start + p_.travel * nearest);
-    const Doubles half = sqrt(positive_part((radius - distance) * (radius + distance))) * over;
+    const Doubles square = dot(p_.travel, p_.travel);
+    const Doubles radius = p_.sizes + span_ * Doubles(64.0 * kPlace);
+    const Truth moves = square > Doubles(1e-60) * span_ * span_;
+    const Doubles over = Doubles(1.0) / select(moves, square, Doubles(1.0));
+    const Doubles nearest = select(moves, -dot(p_.start, p_.travel) * over, zero);
+    const Vector between = p_.start + p_.travel * nearest;
+    const Doubles inside = radius * radius - dot(between, between);
+    const Doubles half = sqrt(positive_part(inside) * over);
     p_.time = select(moves, max(p_.time, nearest - half), p_.time);
     p_.last = select(moves, min(p_.last, nearest + half), p_.last);
-    const Doubles slack = select(moves, zero, speed);
-    return (distance <= radius + slack) & (p_.time <= min(p_.last, p_.until));
+    return (inside >= zero) & (p_.time <= min(p_.last, p_.until));
   }
 
-  /// Of the search for closest points of a pair that does not turn.
-  [[nodiscard]] Vector first_axis() const {
+  /// Of closest points. The axis is the first one of a pair that does not turn.
+  void begin_search() {
+    const Doubles zero(0.0);
+    for (int i = 0; i < kSlots; ++i) {
+      p_.witness.a[i] = p_.witness.b[i] = zero_vector();
+      p_.witness.present[i] = zero;
+    }
     const Vector between = p_.start + p_.travel * p_.time;
-    const Truth there = dot(between, between) > Doubles(0.0);
-    return select(there, between, Vector{Doubles(1.0), Doubles(0.0), Doubles(0.0)});
+    const Truth there = dot(between, between) > zero;
+    p_.axis = select(there, between, Vector{Doubles(1.0), zero, zero});
   }
 
   void begin(const Truth& usable) {
     const Doubles zero(0.0);
     const Truth near = cut_to_window();
-    for (int i = 0; i < kSlots; ++i) {
-      p_.witness.a[i] = p_.witness.b[i] = zero_vector();
-      p_.witness.present[i] = zero;
+    p_.proves = p_.within = p_.looks = zero;
+    if (!has_closed_form(tables_.a.kind, tables_.b.kind)) begin_search();
+    if (!job_.straight) {
+      p_.speed = length(p_.travel);
+      p_.axis = zero_vector();
+      p_.gap = Doubles(1.0);
+      p_.slope = p_.free = p_.bend = zero;
+      p_.next = p_.time;
+      p_.touching = Doubles(__builtin_inf());
+      p_.aim = Doubles(0.1);
     }
-    p_.axis = first_axis();
-    p_.gap = Doubles(1.0);
-    p_.slope = p_.free = p_.proves = p_.within = zero;
-    p_.next = p_.time;
-    p_.touching = Doubles(__builtin_inf());
-    p_.aim = Doubles(0.1);
     Answers answers(job_, tables_);
     const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
     answers.put_unsure(bits(!usable) & here, zero);
@@ -416,31 +431,31 @@ inline void move_members(const Members& from, unsigned lane_from, Members& to, u
 }
 
 /// How the core turns, or, of one that is placed for good, its axes; and its lengths.
-inline void move_core(const CoreTable& table, bool is_placed, const MovingCore& from,
-                      unsigned lane_from, MovingCore& to, unsigned lane_to) {
-  constexpr std::size_t kHalf = offsetof(MovingCore, half);
+inline void move_core(const CoreTable& table, const MovingCore& from, unsigned lane_from,
+                      MovingCore& to, unsigned lane_to) {
+  constexpr std::size_t kAngle = offsetof(MovingCore, angle);
   constexpr std::size_t kCorner = offsetof(MovingCore, corner);
   constexpr std::size_t kAxes = offsetof(MovingCore, axes);
-  move_members(from, lane_from, to, lane_to, is_placed ? kHalf : 0,
+  move_members(from, lane_from, to, lane_to, table.turns ? 0 : kAngle,
                has_corners(table.kind) ? kAxes : kCorner);
-  if (is_placed && !table.in_world) {
+  if (!table.turns && !table.in_world) {
     move_members(from, lane_from, to, lane_to, kAxes, offsetof(MovingCore, size));
   }
 }
 
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
-                      unsigned lane_to, bool is_placed) {
+                      unsigned lane_to, bool straight) {
   const PairBlockTables& tables = from.tables;
   const PairLanes& source = from.lanes;
   PairLanes& target = to.lanes;
-  move_core(tables.a, is_placed, source.a, lane_from, target.a, lane_to);
-  move_core(tables.b, is_placed, source.b, lane_from, target.b, lane_to);
-  constexpr std::size_t kLook = offsetof(PairLanes, gap);
+  move_core(tables.a, source.a, lane_from, target.a, lane_to);
+  move_core(tables.b, source.b, lane_from, target.b, lane_to);
+  constexpr std::size_t kLook = offsetof(PairLanes, speed);
   const bool has_witness = !has_closed_form(tables.a.kind, tables.b.kind);
   move_members(source, lane_from, target, lane_to, offsetof(PairLanes, start),
                has_witness ? kLook : offsetof(PairLanes, witness));
-  if (!is_placed) {
+  if (!straight) {
     move_members(source, lane_from, target, lane_to, kLook, sizeof(PairLanes));
   }
   to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
@@ -451,35 +466,61 @@ inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& 
 /// All queries of a job.
 class ImpactRounds {
  public:
-  explicit ImpactRounds(const ImpactJob& job) : job_(job) {
-    for (std::uint32_t at = 0; at < job.count; at += kWidth) {
-      const Mask16 active = ImpactLoad(job, at, block_[count_]).run();
-      if (active == 0) continue;
-      active_[count_++] = active;
-    }
-  }
+  explicit ImpactRounds(const ImpactJob& job) : job_(job), searches_(searches()) {}
 
   void run() {
-    for (int round = 0; count_ > 0 && round < kMostRounds; ++round) {
-      std::uint32_t lanes = 0;
+    for (fill(); count_ > 0;) {
       for (std::uint32_t i = 0; i < count_; ++i) {
-        active_[i] = job_.straight ? StraightStep(job_, block_[i]).run()
-                                   : ImpactStep(job_, block_[i], round == 0).run();
-        lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
+        if (active_[i] != 0) look(i, false);
       }
-      close_ranks(lanes);
-    }
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      Answers(job_, block_[i].tables).put_unsure(active_[i], block_[i].lanes.time);
+      close_ranks();
+      if (count_ <= blocks_when_filled()) fill();
     }
   }
 
  private:
-  static constexpr std::uint32_t kBlocks = kImpactJobQueries / kWidth;
+  /// What is needed of them stays in the cache.
+  static constexpr std::uint32_t kBlocks = 6;
+
+  [[nodiscard]] bool searches() const {
+    const ImpactQuery& query = job_.queries[job_.order[0]];
+    return !has_closed_form(query.shape[0].kind(), query.shape[1].kind());
+  }
+
+  /// Lanes are moved less often if many blocks are filled at once. A search for closest points
+  /// costs less where simplices of all lanes have few points, as those of pairs have that began
+  /// together.
+  [[nodiscard]] std::uint32_t blocks_when_filled() const {
+    if (!searches_) return kBlocks / 2;
+    return job_.straight ? 0 : 1;
+  }
+
+  /// Loads queries while blocks are free, and looks at them once while they are in the cache: of
+  /// some kinds few go on.
+  void fill() {
+    while (next_ < job_.count && count_ < kBlocks) {
+      const std::uint32_t at = next_;
+      next_ += kWidth;
+      if (ImpactLoad(job_, at, block_[count_]).run() == 0) continue;
+      look(count_, true);
+      if (active_[count_] == 0) continue;
+      ++count_;
+      close_ranks();
+    }
+  }
+
+  void look(std::uint32_t i, bool first) {
+    active_[i] = job_.straight ? StraightStep(job_, block_[i]).run()
+                               : ImpactStep(job_, block_[i], first).run();
+  }
 
   /// As few blocks as take all lanes that are active: those of the last go to the first.
-  void close_ranks(std::uint32_t lanes) {
+  void close_ranks() {
+    std::uint32_t lanes = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
     const std::uint32_t needed = (lanes + kWidth - 1) / kWidth;
+    // To move lanes takes as long as some looks of those that need no search.
+    if (!searches_ && needed * 4 > count_ * 3) return;
     std::uint32_t to = 0;
     for (; count_ > needed; --count_) {
       const std::uint32_t from = count_ - 1;
@@ -493,6 +534,9 @@ class ImpactRounds {
   }
 
   const ImpactJob& job_;
+  bool searches_;
+  /// The first query that is not loaded.
+  std::uint32_t next_ = 0;
   std::uint32_t count_ = 0;
   Mask16 active_[kBlocks] = {};
   ImpactBlock block_[kBlocks];

@@ -23,9 +23,6 @@ enum class ImpactVerdict : std::uint8_t {
   known,
 };
 
-/// At most so many queries per job.
-inline constexpr std::uint32_t kImpactJobQueries = 64;
-
 /// Queries of one pair of kinds, all of which have lanes, and where their answers go.
 struct ImpactJob {
   /// None of the bodies turns; else some do.

@@ -99,14 +99,15 @@ static_assert(sizeof(RigidMotion) == 13 * sizeof(double));
 
 /// A core, and how its body turns. All members are lanes: a block may move lanes as numbers.
 struct MovingCore {
+  /// Of a core that turns; and the unit axis it turns about, how far along it its points reach, the
+  /// radians in all, and the distance from the axis that none exceeds.
   Orientation from;
-  /// Unit, and the radians about it in all; 0 of a sphere.
   Vector axis;
-  Doubles angle;
-  /// No point is farther from the axis; and how far along it they reach.
-  Doubles reach;
   Doubles low;
   Doubles high;
+  /// Both are 0 of a core that does not turn.
+  Doubles angle;
+  Doubles reach;
   /// Box: half extents. Segment, cylinder, cone: radius, radius, half length. Hull: its middle.
   /// Ellipsoid: radii. Tapered capsule: by how much one ball is larger than the other, twice, and
   /// how high its centre is. Half-space: its normal.
@@ -131,6 +132,8 @@ struct CoreTable {
   ShapeKind kind;
   /// Its own frame is the world, but for its place.
   bool in_world;
+  /// Not so those of spheres, of half-spaces, and where nothing does.
+  bool turns;
   const HullShape* hull[kWidth];
 };
 
@@ -276,7 +279,7 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
 /// Brings a core to where it is at a time.
 [[gnu::always_inline]] inline void place(const CoreTable& table, const Doubles& time,
                                          MovingCore& core) {
-  if (table.in_world) return;
+  if (!table.turns) return;
   core.axes = rotation_of(turned(core.from, core.axis, core.angle * time));
 }
 
@@ -516,40 +519,37 @@ inline void bring_to_world(MovingCore& core) {
 }
 
 /// How the core turns with its body, of a core that is measured, and where it is at the start; true
-/// where double holds it. `straight`: it does not turn.
+/// where double holds it.
 template <typename Row>
-[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion, bool straight,
+[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
                                               MovingCore& core) {
   constexpr double kLongest = 1e200;
   constexpr double kLeastAngle = 1e-100;
   const Doubles zero(0.0);
   const Doubles one(1.0);
-  core.from = {one, zero_vector()};
-  core.axis = {zero, zero, one};
-  core.angle = core.reach = core.low = core.high = zero;
-  core.axes = rotation_of(core.from);
+  core.angle = core.reach = zero;
   if (table.kind == ShapeKind::sphere) return zero < one;
   Doubles q[4];
   load_rows4([&](int lane) { return motion(lane) + kOrientationAt; }, q);
   const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const Doubles shrink = one / sqrt(square);
-  core.from = {q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
+  const Orientation from{q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
   const Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
-  if (straight) {
-    core.axes = rotation_of(core.from);
+  if (!table.turns) {
+    core.axes = rotation_of(from);
     if (table.in_world) bring_to_world(core);
     return usable;
   }
+  core.from = from;
   Doubles turn[2];
   load_rows2([&](int lane) { return motion(lane) + kTurnAt; }, turn);
   const Vector about{turn[0], turn[1],
                      load_rows1([&](int lane) { return motion(lane) + kTurnAt + 2; })};
-  if (table.kind == ShapeKind::half_space) return usable;
   const Doubles angle = length(about);
   const Truth turns = angle > Doubles(kLeastAngle);
   core.angle = select(turns, angle, zero);
-  core.axis = select(turns, about * (one / angle), core.axis);
-  const Vector own = rotation_of(core.from).to_local(core.axis);
+  core.axis = select(turns, about * (one / angle), Vector{zero, zero, one});
+  const Vector own = rotation_of(from).to_local(core.axis);
   if (table.kind == ShapeKind::hull) {
     measure_turning_hulls(table, own, core);
   } else {

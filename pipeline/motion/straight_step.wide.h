@@ -20,7 +20,7 @@ class StraightStep : BlockStep {
   /// Returns the lanes that go on.
   [[nodiscard]] Mask16 run() {
     look_.between = p_.start + p_.travel * p_.time;
-    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (length(look_.between) + p_.sizes);
+    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     if (has_closed_form(tables_.a.kind, tables_.b.kind)) {
       look_.closest = closest_by_form(pair, bits(active_));
@@ -99,6 +99,7 @@ class StraightStep : BlockStep {
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
     const Truth met = active_ & near & (meets | (p_.within > Doubles(kMostLooksWithin)));
     if (bits(met) != 0) meet(met);
+    if (bits(active_) == 0) return;
     const Doubles free = free_until();
     end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
     // Touching, too near for double to tell, or no number left between.
