@@ -32,8 +32,6 @@ struct ClosestWay {
     return min(max(x, -reach), reach);
   };
   switch (table.kind) {
-    case ShapeKind::capsule:
-      return {zero, zero, within(p.z, core.half.z)};
     case ShapeKind::box:
       return {within(p.x, core.half.x), within(p.y, core.half.y), within(p.z, core.half.z)};
     case ShapeKind::cylinder: {
@@ -92,6 +90,11 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
     const auto nearest =
         nearest_of_triangle(pair.b, pair.b.axes.to_local(pair.between), u, half, is_point);
     return {pair.b.axes.to_world(nearest.w), is_point ? zero_vector() : pair.a.axes.z * nearest.s};
+  }
+  if (is_point && pair.table_b.kind == ShapeKind::capsule) {
+    const Vector& axis = pair.b.axes.z;
+    const Doubles& half = pair.b.half.z;
+    return {pair.between + axis * min(max(-dot(pair.between, axis), -half), half), zero_vector()};
   }
   if (is_point) {
     const Vector nearest = nearest_to(pair.table_b, pair.b, pair.b.axes.to_local(-pair.between));

@@ -47,6 +47,8 @@ struct PairLanes {
   Doubles speed;
   Doubles gap;
   Doubles slope;
+  /// How fast the slope seems to grow.
+  Doubles curve;
   Doubles bend;
   Doubles free;
   Doubles next;

@@ -15,6 +15,8 @@ namespace {
 
 /// Distances need to be no better than this share of them until the last one.
 constexpr double kGoodEnough = 0.3;
+/// The share of the first gap that is to be left where is looked next.
+constexpr double kFirstAim = 0.03;
 /// Steps of one search for closest points; more are not needed but where rounding leads astray.
 constexpr int kMostSteps = 32;
 /// Lengths whose products of six are in the range of double, and keep their digits.
@@ -91,7 +93,8 @@ class ImpactStep : BlockStep {
   /// `coarse`: the first look, before which nothing is known.
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : BlockStep(job, block),
-        coarse_(coarse && !has_closed_form(tables_.a.kind, tables_.b.kind)) {}
+        is_exact_(has_closed_form(tables_.a.kind, tables_.b.kind)),
+        coarse_(coarse && !is_exact_) {}
 
   /// Looks at all lanes once. Returns those that go on.
   [[nodiscard]] Mask16 run() {
@@ -158,14 +161,7 @@ class ImpactStep : BlockStep {
     const Truth whole = (!proves) | (apart >= p_.next);
     const Doubles left = p_.touching;
     p_.touching = select(proves & !look_.parted, min(left, p_.time + width * Doubles(0.75)), left);
-    // The error of a prediction falls with the square of the step, and so by the gap as a share of
-    // it.
-    const Doubles over = Doubles(1.0) / gap;
-    const Doubles expected = gap + p_.slope * width;
-    const Doubles aim = abs(look_.gap - expected) * over * look_.gap * over * Doubles(4.0);
-    const Doubles bounded =
-        select(aim > Doubles(1e-9), select(aim < Doubles(0.25), aim, Doubles(0.25)), Doubles(1e-9));
-    p_.aim = select(proves & whole, bounded, p_.aim);
+    learn(gap, width, proves & whole);
     // Where it was not all: to be looked at from there.
     const Doubles reached = max(apart, p_.free);
     const Truth stands = proves & (!whole) & (reached <= p_.time);
@@ -178,6 +174,31 @@ class ImpactStep : BlockStep {
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
     forget_touching();
+  }
+
+  /// What the gap at the end of a step tells of where to look next.
+  void learn(const Doubles& gap, const Doubles& width, const Truth& lanes) {
+    const Doubles half(0.5);
+    // One quotient for two.
+    const Doubles both = Doubles(1.0) / (gap * width);
+    const Doubles over = both * width;
+    const Doubles share = look_.gap * over;
+    const Doubles expected = gap + width * (p_.slope + p_.curve * width * half);
+    // The error of a prediction falls with the square of the step, and so by the gap as a share of
+    // it; of one that knows the curve with its cube.
+    Doubles aim = abs(look_.gap - expected) * over * share * Doubles(4.0);
+    if (is_exact_) {
+      aim = aim * share;
+      // Of the cubic with the gaps and slopes at both ends, at the second.
+      const Doubles apiece = both * gap;
+      const Doubles mean = (look_.gap - gap) * apiece;
+      const Doubles curve =
+          (p_.slope + look_.slope * Doubles(2.0) - mean * Doubles(3.0)) * Doubles(2.0) * apiece;
+      p_.curve = select(lanes, curve, Doubles(0.0));
+    }
+    const Doubles bounded =
+        select(aim > Doubles(1e-9), select(aim < Doubles(0.25), aim, Doubles(0.25)), Doubles(1e-9));
+    p_.aim = select(lanes, bounded, p_.aim);
   }
 
   void forget_touching() {
@@ -259,13 +280,21 @@ class ImpactStep : BlockStep {
     const Truth falls = look_.slope < zero;
     const Doubles aim = max(p_.tolerance * Doubles(0.5), p_.aim * look_.gap);
     const Doubles fall = max(look_.gap - aim, look_.gap * Doubles(0.25));
-    const Doubles reached = fall / select(falls, -look_.slope, one);
-    step = select(falls & (reached < step), reached, step);
+    Doubles speed = -look_.slope;
+    if (is_exact_) {
+      const Doubles square = speed * speed - p_.curve * fall * Doubles(2.0);
+      speed = (speed + sqrt(positive_part(square))) * Doubles(0.5);
+    }
     // A gap whose slope is constant has a proof if half of the bend times the square of the step is
     // below the square of the sum of the roots of the gaps at both ends, of which the second is the
     // first times `rest`. A little less than that root is taken.
     const Truth bends = bend > zero;
-    const Doubles steep = sqrt(Doubles(2.0) / select(bends, look_.gap * bend, one));
+    const Doubles depth = select(bends, look_.gap * bend, one);
+    const Doubles rate = select(falls, speed, one);
+    const Doubles both = one / (rate * depth);
+    const Doubles reached = fall * depth * both;
+    step = select(falls & (reached < step), reached, step);
+    const Doubles steep = sqrt(Doubles(2.0) * rate * both);
     const Doubles left = one + look_.slope * steep;
     const Doubles rest = select(left > zero, select(left < one, left, one), zero);
     const Doubles root = rest * (Doubles(1.5) - rest * Doubles(0.5));
@@ -274,6 +303,8 @@ class ImpactStep : BlockStep {
     return min(p_.time + step, end);
   }
 
+  /// Gaps are as good as can be; else to kGoodEnough.
+  bool is_exact_;
   bool coarse_;
   /// The new look is where they are surely apart until.
   Truth whole_;
@@ -396,10 +427,10 @@ class ImpactLoad {
       p_.speed = length(p_.travel);
       p_.axis = zero_vector();
       p_.gap = Doubles(1.0);
-      p_.slope = p_.free = p_.bend = zero;
+      p_.slope = p_.curve = p_.free = p_.bend = zero;
       p_.next = p_.time;
       p_.touching = Doubles(__builtin_inf());
-      p_.aim = Doubles(0.1);
+      p_.aim = Doubles(kFirstAim);
     }
     Answers answers(job_, tables_);
     const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
@@ -421,13 +452,15 @@ class ImpactLoad {
 };
 
 /// Copies a lane of members, from one byte of them to another.
-template <typename Members>
-inline void move_members(const Members& from, unsigned lane_from, Members& to, unsigned lane_to,
-                         std::size_t first, std::size_t last) {
+template <std::size_t First, std::size_t Last, typename Members>
+[[gnu::always_inline]] inline void move_members(const Members& from, unsigned lane_from,
+                                                Members& to, unsigned lane_to) {
   const auto* const source = reinterpret_cast<const double*>(&from) + lane_from;
   auto* const target = reinterpret_cast<double*>(&to) + lane_to;
-  const std::size_t end = last / sizeof(double);
-  for (std::size_t i = first / sizeof(double); i < end; i += kWidth) target[i] = source[i];
+#pragma GCC unroll 64
+  for (std::size_t i = First / sizeof(double); i < Last / sizeof(double); i += kWidth) {
+    target[i] = source[i];
+  }
 }
 
 /// How the core turns, or, of one that is placed for good, its axes; and its lengths.
@@ -436,11 +469,11 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   constexpr std::size_t kAngle = offsetof(MovingCore, angle);
   constexpr std::size_t kCorner = offsetof(MovingCore, corner);
   constexpr std::size_t kAxes = offsetof(MovingCore, axes);
-  move_members(from, lane_from, to, lane_to, table.turns ? 0 : kAngle,
-               has_corners(table.kind) ? kAxes : kCorner);
-  if (!table.turns && !table.in_world) {
-    move_members(from, lane_from, to, lane_to, kAxes, offsetof(MovingCore, size));
-  }
+  constexpr std::size_t kSize = offsetof(MovingCore, size);
+  if (table.turns) move_members<0, kAngle>(from, lane_from, to, lane_to);
+  move_members<kAngle, kCorner>(from, lane_from, to, lane_to);
+  if (has_corners(table.kind)) move_members<kCorner, kAxes>(from, lane_from, to, lane_to);
+  if (!table.turns && !table.in_world) move_members<kAxes, kSize>(from, lane_from, to, lane_to);
 }
 
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
@@ -451,13 +484,14 @@ inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& 
   PairLanes& target = to.lanes;
   move_core(tables.a, source.a, lane_from, target.a, lane_to);
   move_core(tables.b, source.b, lane_from, target.b, lane_to);
+  constexpr std::size_t kStart = offsetof(PairLanes, start);
+  constexpr std::size_t kWitness = offsetof(PairLanes, witness);
   constexpr std::size_t kLook = offsetof(PairLanes, speed);
-  const bool has_witness = !has_closed_form(tables.a.kind, tables.b.kind);
-  move_members(source, lane_from, target, lane_to, offsetof(PairLanes, start),
-               has_witness ? kLook : offsetof(PairLanes, witness));
-  if (!straight) {
-    move_members(source, lane_from, target, lane_to, kLook, sizeof(PairLanes));
+  move_members<kStart, kWitness>(source, lane_from, target, lane_to);
+  if (!has_closed_form(tables.a.kind, tables.b.kind)) {
+    move_members<kWitness, kLook>(source, lane_from, target, lane_to);
   }
+  if (!straight) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
   to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
   to.tables.b.hull[lane_to] = tables.b.hull[lane_from];
   to.tables.query[lane_to] = tables.query[lane_from];
