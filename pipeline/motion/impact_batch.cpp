@@ -139,6 +139,17 @@ void ImpactBatch::sort_by_kinds() noexcept {
   }
 }
 
+/// Lanes are sure of valid motions alone.
+void ImpactBatch::refuse_invalid(const ImpactJob& job) noexcept {
+  for (const std::uint16_t query : std::span(job.order, job.count)) {
+    if (verdicts_[query] != ImpactVerdict::unsure) continue;
+    const RigidMotion* const(&motion)[2] = queries_[query].motion;
+    if (motion[0]->is_valid() && motion[1]->is_valid()) continue;
+    found_[query] = {};
+    verdicts_[query] = ImpactVerdict::invalid;
+  }
+}
+
 /// Of pairs that lanes could not tell at the start: most share a point there.
 void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
   const std::span<const std::uint16_t> asked(job.order, job.count);
@@ -178,13 +189,14 @@ void ImpactBatch::find() noexcept {
     if (kinds != kNoLanes) {
       job.straight = kinds % 2 == 0;
       impact_lane_kernels().run(job);
-      find_starts(job);
-      continue;
+    } else {
+      for (std::uint32_t i = 0; i < job.count; ++i) {
+        verdicts_[job.order[i]] = ImpactVerdict::unsure;
+        found_[job.order[i]].time = 0.0;
+      }
     }
-    for (std::uint32_t i = 0; i < job.count; ++i) {
-      verdicts_[job.order[i]] = ImpactVerdict::unsure;
-      found_[job.order[i]].time = 0.0;
-    }
+    refuse_invalid(job);
+    if (kinds != kNoLanes) find_starts(job);
   }
 }
 

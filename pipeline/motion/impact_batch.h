@@ -25,18 +25,19 @@ class ImpactBatch {
   [[nodiscard]] static bool takes(ShapeId a, ShapeId b) noexcept {
     return !a.is_composite() && !b.is_composite();
   }
-  /// `name` is what the answer is given with. The motions, which are valid, outlive the next run.
-  /// An impact after `until` may be given as none.
+  /// `name` is what the answer is given with. The motions outlive the next run. An impact after
+  /// `until` may be given as none.
   void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b, const RigidMotion& of_b,
            double until = 1.0) noexcept;
 
-  /// Calls take(name, impact) for every pair that was added, in any order, and forgets them.
+  /// Calls take(name, impact, valid) for every pair that was added, in any order, and forgets them.
+  /// Of motions that are not both valid there is no impact.
   template <typename Take>
   void run(Take&& take) {
     find();
     for (std::size_t i = 0; i < count_; ++i) {
       finish(i);
-      take(names_[i], found_[i]);
+      take(names_[i], found_[i], verdicts_[i] != ImpactVerdict::invalid);
     }
     count_ = 0;
     alike_ = true;
@@ -52,6 +53,7 @@ class ImpactBatch {
       mirror_impact(*queries_[i].motion[1], *queries_[i].motion[0], found_[i]);
     }
   }
+  void refuse_invalid(const ImpactJob& job) noexcept;
   void find_starts(const ImpactJob& job) noexcept;
   void search(std::size_t i) noexcept;
 

@@ -323,9 +323,14 @@ class ImpactLoad {
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t at = first_ + static_cast<std::uint32_t>(lane);
       tables_.query[lane] = job_.order[at < job_.count ? at : job_.count - 1];
+      query_[lane] = &job_.queries[tables_.query[lane]];
+      for (int side = 0; side < 2; ++side) {
+        motion_[side][lane] = numbers(*query_[lane]->motion[side]);
+        index_[side][lane] = query_[lane]->shape[side].index();
+      }
     }
     Truth usable = load_cores();
-    load_way();
+    usable = usable & load_way();
     measure_pair();
     usable = usable & (p_.sizes > Doubles(kShortest)) & (span_ < Doubles(kLongest));
     begin(usable);
@@ -333,43 +338,45 @@ class ImpactLoad {
   }
 
  private:
-  [[nodiscard]] const ImpactQuery& query(int lane) const {
-    return job_.queries[tables_.query[lane]];
-  }
-  [[nodiscard]] const double* motion(int side, int lane) const {
-    return numbers(*query(lane).motion[side]);
-  }
-
   [[nodiscard]] Truth load_cores() {
     Truth usable = Doubles(0.0) < Doubles(1.0);
     for (int side = 0; side < 2; ++side) {
       CoreTable& table = side == 0 ? tables_.a : tables_.b;
       MovingCore& core = side == 0 ? p_.a : p_.b;
-      table.kind = query(0).shape[side].kind();
+      table.kind = query_[0]->shape[side].kind();
       table.in_world =
           table.kind == ShapeKind::sphere || (job_.straight && table.kind == ShapeKind::triangle);
       table.turns =
           !job_.straight && table.kind != ShapeKind::sphere && table.kind != ShapeKind::half_space;
       load_core(
-          job_.tables, [&](int lane) { return query(lane).shape[side]; }, table, core);
+          job_.tables, [&](int lane) { return index_[side][lane]; }, table, core);
       measure(table, core);
       usable = usable & load_turn(
-                            table, [&](int lane) { return motion(side, lane); }, core);
+                            table, [&](int lane) { return motion_[side][lane]; }, core);
     }
     return usable;
   }
 
-  void load_way() {
-    Doubles row[4];
-    load_differences4([&](int lane) { return motion(1, lane); },
-                      [&](int lane) { return motion(0, lane); }, row);
-    p_.start = {row[0], row[1], row[2]};
-    load_differences4([&](int lane) { return motion(1, lane) + kTravelAt; },
-                      [&](int lane) { return motion(0, lane) + kTravelAt; }, row);
-    p_.travel = {row[0], row[1], row[2]};
+  /// True where both positions and both ways are surely valid.
+  [[nodiscard]] Truth load_way() {
+    constexpr double kFarthest = 1e300;
+    Vector position[2];
+    Vector travel[2];
+    Doubles far(0.0);
+    for (int side = 0; side < 2; ++side) {
+      Doubles row[4];
+      load_rows4([&](int lane) { return motion_[side][lane]; }, row);
+      position[side] = {row[0], row[1], row[2]};
+      load_rows4([&](int lane) { return motion_[side][lane] + kTravelAt; }, row);
+      travel[side] = {row[0], row[1], row[2]};
+      far += taxicab(position[side]) + taxicab(travel[side]);
+    }
+    p_.start = position[1] - position[0];
+    p_.travel = travel[1] - travel[0];
     p_.time = Doubles(0.0);
     p_.last = Doubles(1.0);
-    p_.until = load_rows1([&](int lane) { return &query(lane).until; });
+    p_.until = load_rows1([&](int lane) { return &query_[lane]->until; });
+    return far < Doubles(kFarthest);
   }
 
   void measure_pair() {
@@ -448,6 +455,10 @@ class ImpactLoad {
   std::uint32_t first_;
   PairLanes& p_;
   PairBlockTables& tables_;
+  const ImpactQuery* query_[kWidth];
+  /// Of each side's bodies and shapes.
+  const double* motion_[2][kWidth];
+  std::uint32_t index_[2][kWidth];
   Doubles span_;
 };
 

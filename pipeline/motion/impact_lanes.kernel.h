@@ -21,6 +21,7 @@ struct ImpactQuery {
 enum class ImpactVerdict : std::uint8_t {
   unsure,  ///< the lanes cannot tell; apart before the time
   known,
+  invalid,  ///< a motion is not valid, which lanes never tell: to them it is unsure from the start
 };
 
 /// Queries of one pair of kinds, all of which have lanes, and where their answers go.

@@ -386,9 +386,9 @@ static inline void measure_turning_hulls(const CoreTable& table, const Vector& w
   core.low = select(far, -greatest_of_rows(found[2]), core.low);
 }
 
-/// Loads the numbers of shapes; `shape(lane)` names them.
-template <typename Shape>
-[[gnu::always_inline]] inline void load_core(const ShapeTables& tables, Shape&& shape,
+/// Loads the numbers of shapes; `index(lane)` is that in the table of their kind.
+template <typename Index>
+[[gnu::always_inline]] inline void load_core(const ShapeTables& tables, Index&& index,
                                              CoreTable& table, MovingCore& core) {
   const Doubles zero(0.0);
   core.half = zero_vector();
@@ -396,19 +396,18 @@ template <typename Shape>
   for (Vector& corner : core.corner) corner = zero_vector();
   switch (table.kind) {
     case ShapeKind::sphere:
-      core.rounding =
-          load_rows1([&](int lane) { return numbers(tables.spheres[shape(lane).index()]); });
+      core.rounding = load_rows1([&](int lane) { return numbers(tables.spheres[index(lane)]); });
       break;
     case ShapeKind::capsule: {
       Doubles r[2];
-      load_rows2([&](int lane) { return numbers(tables.capsules[shape(lane).index()]); }, r);
+      load_rows2([&](int lane) { return numbers(tables.capsules[index(lane)]); }, r);
       core.rounding = r[0];
       core.half.z = r[1];
       break;
     }
     case ShapeKind::box: {
       Doubles r[4];
-      load_rows4([&](int lane) { return numbers(tables.boxes[shape(lane).index()]); }, r);
+      load_rows4([&](int lane) { return numbers(tables.boxes[index(lane)]); }, r);
       core.half = {r[0], r[1], r[2]};
       core.rounding = r[3];
       break;
@@ -416,8 +415,8 @@ template <typename Shape>
     case ShapeKind::cylinder:
     case ShapeKind::cone: {
       const auto row = [&](int lane) {
-        return table.kind == ShapeKind::cone ? numbers(tables.cones[shape(lane).index()])
-                                             : numbers(tables.cylinders[shape(lane).index()]);
+        return table.kind == ShapeKind::cone ? numbers(tables.cones[index(lane)])
+                                             : numbers(tables.cylinders[index(lane)]);
       };
       Doubles r[2];
       load_rows2(row, r);
@@ -426,7 +425,7 @@ template <typename Shape>
       break;
     }
     case ShapeKind::triangle: {
-      const auto row = [&](int lane) { return numbers(tables.triangles[shape(lane).index()]); };
+      const auto row = [&](int lane) { return numbers(tables.triangles[index(lane)]); };
       Doubles r[10];
       for (int part = 0; part < 2; ++part) {
         Doubles four[4];
@@ -443,22 +442,20 @@ template <typename Shape>
     }
     case ShapeKind::half_space: {
       Doubles r[4];
-      load_rows4([&](int lane) { return numbers(tables.half_spaces[shape(lane).index()]); }, r);
+      load_rows4([&](int lane) { return numbers(tables.half_spaces[index(lane)]); }, r);
       core.half = {r[0], r[1], r[2]};
       core.corner[0].x = r[3];
       break;
     }
     case ShapeKind::ellipsoid: {
       Doubles r[4];
-      load_rows4([&](int lane) { return numbers(tables.ellipsoids[shape(lane).index()]); }, r);
+      load_rows4([&](int lane) { return numbers(tables.ellipsoids[index(lane)]); }, r);
       core.half = {r[0], r[1], r[2]};
       core.rounding = r[3] + least_curvature_radius(core.half);
       break;
     }
     case ShapeKind::tapered_capsule: {
-      const auto row = [&](int lane) {
-        return numbers(tables.tapered_capsules[shape(lane).index()]);
-      };
+      const auto row = [&](int lane) { return numbers(tables.tapered_capsules[index(lane)]); };
       Doubles r[2];
       load_rows2(row, r);
       const Doubles height = load_rows1([&](int lane) { return row(lane) + 2; });
@@ -469,7 +466,7 @@ template <typename Shape>
     }
     default: {
       for (int lane = 0; lane < kWidth; ++lane) {
-        table.hull[lane] = &tables.hulls[shape(lane).index()];
+        table.hull[lane] = &tables.hulls[index(lane)];
       }
       Doubles middle[4];
       load_rows4([&](int lane) { return table.hull[lane]->center; }, middle);
@@ -519,7 +516,7 @@ inline void bring_to_world(MovingCore& core) {
 }
 
 /// How the core turns with its body, of a core that is measured, and where it is at the start; true
-/// where double holds it.
+/// where the motion is surely valid, as to that, and double holds it.
 template <typename Row>
 [[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
                                               MovingCore& core) {
@@ -528,24 +525,26 @@ template <typename Row>
   const Doubles zero(0.0);
   const Doubles one(1.0);
   core.angle = core.reach = zero;
-  if (table.kind == ShapeKind::sphere) return zero < one;
   Doubles q[4];
   load_rows4([&](int lane) { return motion(lane) + kOrientationAt; }, q);
   const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  const Doubles shrink = one / sqrt(square);
-  const Orientation from{q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
-  const Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
-  if (!table.turns) {
-    core.axes = rotation_of(from);
+  Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
+  // What does not turn its core may be a sphere that turns, or stands.
+  if (!table.turns && table.kind != ShapeKind::sphere) {
+    core.axes = rotation(Turn<double>{q[0], {q[1], q[2], q[3]}, Doubles(2.0) / square});
     if (table.in_world) bring_to_world(core);
     return usable;
   }
+  Doubles row[4];
+  load_rows4([&](int lane) { return motion(lane) + kTurnAt - 1; }, row);
+  const Vector about{row[1], row[2], row[3]};
+  const Doubles turn = dot(about, about);
+  usable = usable & (turn <= Doubles(RigidMotion::kMostTurn * RigidMotion::kMostTurn));
+  if (!table.turns) return usable;
+  const Doubles shrink = one / sqrt(square);
+  const Orientation from{q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
   core.from = from;
-  Doubles turn[2];
-  load_rows2([&](int lane) { return motion(lane) + kTurnAt; }, turn);
-  const Vector about{turn[0], turn[1],
-                     load_rows1([&](int lane) { return motion(lane) + kTurnAt + 2; })};
-  const Doubles angle = length(about);
+  const Doubles angle = sqrt(turn);
   const Truth turns = angle > Doubles(kLeastAngle);
   core.angle = select(turns, angle, zero);
   core.axis = select(turns, about * (one / angle), Vector{zero, zero, one});

@@ -9,15 +9,17 @@
 namespace winnow {
 namespace {
 
+/// But for motions of convex shapes, which are judged with their impacts.
 [[nodiscard]] Status status_of(const PartTraversal& parts, const MovingBodies& bodies,
                                const ImpactOptions& options, const BodyPair& pair) noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
     const ShapeId shape = bodies.shapes[body];
     if (shape.is_composite() && options.composites == nullptr) return Status::unsupported;
     if (!parts.contains(shape)) return Status::invalid_key;
-    if (!bodies.motions[body].is_valid()) return Status::invalid_pose;
   }
-  return Status::ok;
+  if (impact::ImpactBatch::takes(bodies.shapes[pair.a], bodies.shapes[pair.b])) return Status::ok;
+  const bool valid = bodies.motions[pair.a].is_valid() && bodies.motions[pair.b].is_valid();
+  return valid ? Status::ok : Status::invalid_pose;
 }
 
 }  // namespace
@@ -76,12 +78,12 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
                                 std::span<const BodyPair> pairs, const ImpactOptions& options,
                                 std::size_t first, std::size_t end) {
   impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
+  impact::Impact none;
+  none.time = 0.0;
   for (std::size_t i = first; i < end; ++i) {
     const auto [a, b] = pairs[i];
     status_[i] = status_of(parts, bodies, options, pairs[i]);
     if (status_[i] != Status::ok) {
-      impact::Impact none;
-      none.time = 0.0;
       write(i, none, kWholeShape, kWholeShape);
     } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {
       batch.add(i, bodies.shapes[a], bodies.motions[a], bodies.shapes[b], bodies.motions[b]);
@@ -92,8 +94,9 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
       write(i, found.impact, found.part_a, found.part_b);
     }
   }
-  batch.run([&](std::size_t i, const impact::Impact& found) {
-    write(i, found, kWholeShape, kWholeShape);
+  batch.run([&](std::size_t i, const impact::Impact& found, bool valid) {
+    if (!valid) status_[i] = Status::invalid_pose;
+    write(i, valid ? found : none, kWholeShape, kWholeShape);
   });
 }
 

@@ -508,7 +508,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
           parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b}, options.tolerance, window);
     }
   }
-  batch.run([&](std::size_t i, const impact::Impact& impact) { impacts_of[i] = {impact}; });
+  batch.run([&](std::size_t i, const impact::Impact& impact, bool) { impacts_of[i] = {impact}; });
   if (options.touching) return;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     impact::Impact& impact = impacts_of[i].impact;

@@ -240,24 +240,38 @@ TEST(TimeOfImpact, of_half_spaces_that_turn) {
 TEST(TimeOfImpact, refuses_what_is_no_motion) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
+  const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
+  const ShapeId plane = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
   const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
-  const auto status_with = [&](const RigidMotion& motion) {
-    const Meeting found = meeting_of(pool, {{ball, ball}, {stands, motion}});
-    EXPECT_FALSE(found.status != Status::ok && found.hit);
-    return found.status;
-  };
-  EXPECT_EQ(status_with(stands), Status::ok);
-  EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kNan, 0, 0})), Status::invalid_pose);
-  EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kEndless, 0, 0})), Status::invalid_pose);
-  EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {}, {0, kNan, 0})), Status::invalid_pose);
-  EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {}, {0, 2e6, 0})), Status::invalid_pose);
-  EXPECT_EQ(status_with(moving(Pose::at(kNan, 0, 0), {})), Status::invalid_pose);
-  Pose unturned = Pose::at(1, 2, 3);
-  unturned.orientation[0] = 0.0;
-  EXPECT_EQ(status_with(RigidMotion::standing(unturned)), Status::invalid_pose);
-  EXPECT_EQ(status_with(RigidMotion::between(Pose::at(0, 0, 0), unturned)), Status::invalid_pose);
-  EXPECT_EQ(status_with(RigidMotion::between(Pose::at(-1e308, 0, 0), Pose::at(1e308, 0, 0))),
-            Status::invalid_pose);
+  for (const ShapeId other : {ball, box, plane}) {
+    const auto status_of = [&](const RigidMotion& of_ball, const RigidMotion& of_other) {
+      const Meeting found = meeting_of(pool, {{ball, other}, {of_ball, of_other}});
+      const Meeting mirrored = meeting_of(pool, {{other, ball}, {of_other, of_ball}});
+      EXPECT_EQ(found.status, mirrored.status);
+      EXPECT_FALSE(found.status != Status::ok && (found.hit || mirrored.hit));
+      return found.status;
+    };
+    const auto status_with = [&](const RigidMotion& motion) {
+      const Status status = status_of(stands, motion);
+      EXPECT_EQ(status_of(motion, stands), status);
+      return status;
+    };
+    EXPECT_EQ(status_with(stands), Status::ok);
+    EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kNan, 0, 0})), Status::invalid_pose);
+    EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kEndless, 0, 0})), Status::invalid_pose);
+    EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {}, {0, kNan, 0})), Status::invalid_pose);
+    EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {}, {0, 2e6, 0})), Status::invalid_pose);
+    EXPECT_EQ(status_with(moving(Pose::at(kNan, 0, 0), {})), Status::invalid_pose);
+    Pose unturned = Pose::at(1, 2, 3);
+    unturned.orientation[0] = 0.0;
+    EXPECT_EQ(status_with(RigidMotion::standing(unturned)), Status::invalid_pose);
+    EXPECT_EQ(status_with(RigidMotion::between(Pose::at(0, 0, 0), unturned)), Status::invalid_pose);
+    EXPECT_EQ(status_with(RigidMotion::between(Pose::at(-1e308, 0, 0), Pose::at(1e308, 0, 0))),
+              Status::invalid_pose);
+    // Beside each other all the way, to where no number is.
+    const RigidMotion away = moving(Pose::at(1e308, 0, 0), {1e308, 0, 0});
+    EXPECT_EQ(status_of(away, away), Status::invalid_pose);
+  }
   EXPECT_EQ(meeting_of(pool, {{ball, ShapeId{}}, {stands, stands}}).status, Status::invalid_key);
   EXPECT_EQ(
       meeting_of(pool, {{ShapeId::of(CompositeKind::mesh, 0), ball}, {stands, stands}}).status,
