@@ -141,4 +141,37 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   return found;
 }
 
+/// Kinds of which `closing_square` tells.
+[[nodiscard]] constexpr bool has_closing_square(ShapeKind a, ShapeKind b) {
+  return (a == ShapeKind::sphere && (b == ShapeKind::capsule || b == ShapeKind::box)) ||
+         (a == ShapeKind::capsule && b == ShapeKind::capsule);
+}
+
+/// The square of what of a velocity is not along the features that are closest: as long as these
+/// are, cores that do not turn come nearer as a point does that moves so fast.
+static inline Doubles closing_square(const CorePair& pair, const ClosestLanes& closest,
+                                     const Vector& velocity) {
+  const Doubles zero(0.0);
+  if (pair.table_b.kind == ShapeKind::box) {
+    const Vector p = pair.b.axes.to_local(pair.between);
+    const Vector v = pair.b.axes.to_local(velocity);
+    const Vector& half = pair.b.half;
+    const Vector across{select(abs(p.x) < half.x, zero, v.x), select(abs(p.y) < half.y, zero, v.y),
+                        select(abs(p.z) < half.z, zero, v.z)};
+    return dot(across, across);
+  }
+  const auto inside = [](const MovingCore& core, const Vector& point) {
+    return abs(dot(point, core.axes.z)) < core.half.z * Doubles(1.0 - 1e-9);
+  };
+  const Doubles square = dot(velocity, velocity);
+  const Doubles along_b = dot(velocity, pair.b.axes.z);
+  const Truth of_b = inside(pair.b, closest.on_b);
+  const Doubles from_b = square - select(of_b, along_b * along_b, zero);
+  if (pair.table_a.kind == ShapeKind::sphere) return from_b;
+  const Doubles along_a = dot(velocity, pair.a.axes.z);
+  const Doubles slope = dot(velocity, closest.axis);
+  const Truth of_a = inside(pair.a, closest.on_a);
+  return select(of_a, select(of_b, slope * slope, square - along_a * along_a), from_b);
+}
+
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -33,8 +33,11 @@ struct PairLanes {
   Doubles time;
   Vector axis;
   /// Whether the next look is to prove that they are apart until then; of a pair that does not
-  /// turn, that its axis is as good as can be.
+  /// turn, that its axis is as good as can be, or, if that has a closed form, that it is looked at
+  /// ahead of what is proved, below 0 that it shall not be any more.
   Doubles proves;
+  /// Until when that is proved.
+  Doubles free;
   /// As in ImpactSearch.
   Doubles within;
   /// So far.
@@ -50,7 +53,6 @@ struct PairLanes {
   /// How fast the slope seems to grow.
   Doubles curve;
   Doubles bend;
-  Doubles free;
   Doubles next;
   Doubles touching;
   Doubles aim;

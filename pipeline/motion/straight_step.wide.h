@@ -25,10 +25,17 @@ class StraightStep : BlockStep {
     if (has_closed_form(tables_.a.kind, tables_.b.kind)) {
       look_.closest = closest_by_form(pair, bits(active_));
       settled_ = active_;
+      judge();
+      const Doubles here = p_.time;
+      const Truth lost = lost_trials();
+      active_ = active_ & !lost;
       decide();
+      if (has_closing_square(tables_.a.kind, tables_.b.kind)) try_ahead(pair, here);
+      active_ = active_ | lost;
     } else {
       const Doubles before = p_.time;
       look_along(pair);
+      judge();
       decide();
       if (bits(active_) != 0) move_on(before);
     }
@@ -85,13 +92,17 @@ class StraightStep : BlockStep {
                            ends | (p_.proves > Doubles(0.0)));
   }
 
-  /// Whether the lanes have met, or until when they are apart.
-  void decide() {
+  /// What the closest points tell.
+  void judge() {
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.most = closest.upper - p_.roundings + look_.noise;
     look_.slope = dot(closest.axis, p_.travel);
     look_.parted = look_.gap > Doubles(0.0);
+  }
+
+  /// Whether the lanes have met, or until when they are apart.
+  void decide() {
     const Truth within =
         look_.parted & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
     const Truth near = within & settled_;
@@ -105,7 +116,7 @@ class StraightStep : BlockStep {
     // Touching, too near for double to tell, or no number left between.
     end_unsure(settled_ & ((!look_.parted) | (free <= p_.time)));
     // What is within the tolerance is first known as well as can be.
-    p_.time = select(look_.parted & ((!within) | settled_), free, p_.time);
+    p_.time = select(active_ & look_.parted & ((!within) | settled_), free, p_.time);
   }
 
   [[nodiscard]] Doubles free_until() const {
@@ -114,6 +125,36 @@ class StraightStep : BlockStep {
     const Doubles step = (look_.gap - target) / select(closes, -look_.slope, Doubles(1.0));
     const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
     return select(closes & (until < p_.last), until, p_.last);
+  }
+
+  /// A lane that was brought ahead of what was proved is apart all the way there if it comes nearer
+  /// along the axis. Others, which are returned, go back and take proved steps alone.
+  [[nodiscard]] Truth lost_trials() {
+    const Doubles zero(0.0);
+    const Truth trial = active_ & (p_.proves > zero);
+    // As rounding may grow on the way back.
+    const Doubles flat = taxicab(p_.travel) * Doubles(-64.0 * kPlace);
+    const Truth lost = trial & !(look_.parted & (look_.slope < flat));
+    p_.time = select(lost, p_.free, p_.time);
+    p_.proves = select(lost, Doubles(-1.0), select(trial, zero, p_.proves));
+    return lost;
+  }
+
+  /// Brings lanes to where they seem to meet, if that is ahead of what is proved.
+  void try_ahead(const CorePair& pair, const Doubles& here) {
+    const ClosestLanes& closest = look_.closest;
+    const Doubles reach =
+        p_.roundings + max(p_.tolerance, look_.noise * Doubles(8.0)) * Doubles(0.5);
+    const Doubles closing = -look_.slope * closest.upper;
+    const Doubles left = (closest.upper - reach) * (closest.upper + reach);
+    const Doubles square = closing * closing - closing_square(pair, closest, p_.travel) * left;
+    const Doubles step = left / (closing + sqrt(positive_part(square)));
+    const Doubles ahead = here + step;
+    const Truth tries = active_ & (p_.proves >= Doubles(0.0)) & (square >= Doubles(0.0)) &
+                        (closing > Doubles(0.0)) & (ahead > p_.time) & (ahead < p_.last);
+    p_.free = p_.time;
+    p_.time = select(tries, ahead, p_.time);
+    p_.proves = select(tries, Doubles(1.0), p_.proves);
   }
 
   void meet(const Truth& met) {
