@@ -143,8 +143,49 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
 
 /// Kinds of which `closing_square` tells.
 [[nodiscard]] constexpr bool has_closing_square(ShapeKind a, ShapeKind b) {
-  return (a == ShapeKind::sphere && (b == ShapeKind::capsule || b == ShapeKind::box)) ||
-         (a == ShapeKind::capsule && b == ShapeKind::capsule);
+  const bool of_segment = b == ShapeKind::capsule || b == ShapeKind::triangle;
+  return (a == ShapeKind::sphere && (of_segment || b == ShapeKind::box)) ||
+         (a == ShapeKind::capsule && of_segment);
+}
+
+/// What a closest feature leaves of the square of a velocity that is not along it.
+struct FeatureAcross {
+  Doubles square;
+  /// It is an edge or a face, along which the closest point goes.
+  Truth goes;
+};
+
+[[gnu::always_inline]] inline FeatureAcross across_segment(const MovingCore& core,
+                                                           const Vector& point,
+                                                           const Vector& velocity) {
+  const Vector& axis = core.axes.z;
+  const Truth inside = abs(dot(point, axis)) < core.half.z * Doubles(1.0 - 1e-9);
+  const Doubles along = select(inside, dot(velocity, axis), Doubles(0.0));
+  return {dot(velocity, velocity) - along * along, inside};
+}
+
+/// Of a triangle whose frame is that of the world: the way to its closest point is square to the
+/// edge that has it, and to all edges if the face has it.
+[[gnu::always_inline]] inline FeatureAcross across_triangle(const MovingCore& core,
+                                                            const Vector& axis,
+                                                            const Vector& velocity) {
+  const Doubles zero(0.0);
+  const Doubles slope = dot(axis, velocity);
+  Truth one = zero > zero;
+  Truth two = one;
+  Doubles along = zero;
+  for (int i = 0; i < 3; ++i) {
+    const Vector edge = core.corner[(i + 1) % 3] - core.corner[i];
+    const Doubles square = dot(edge, edge);
+    const Doubles across = dot(edge, axis);
+    const Truth is_square = across * across <= square * Doubles(1e-18);
+    const Doubles share = dot(edge, velocity);
+    const Doubles on = share * share / select(square > zero, square, Doubles(1.0));
+    along = max(along, select(is_square, on, zero));
+    two = two | (one & is_square);
+    one = one | is_square;
+  }
+  return {select(two, slope * slope, dot(velocity, velocity) - along), one};
 }
 
 /// The square of what of a velocity is not along the features that are closest: as long as these
@@ -160,18 +201,13 @@ static inline Doubles closing_square(const CorePair& pair, const ClosestLanes& c
                         select(abs(p.z) < half.z, zero, v.z)};
     return dot(across, across);
   }
-  const auto inside = [](const MovingCore& core, const Vector& point) {
-    return abs(dot(point, core.axes.z)) < core.half.z * Doubles(1.0 - 1e-9);
-  };
-  const Doubles square = dot(velocity, velocity);
-  const Doubles along_b = dot(velocity, pair.b.axes.z);
-  const Truth of_b = inside(pair.b, closest.on_b);
-  const Doubles from_b = square - select(of_b, along_b * along_b, zero);
-  if (pair.table_a.kind == ShapeKind::sphere) return from_b;
-  const Doubles along_a = dot(velocity, pair.a.axes.z);
+  const FeatureAcross of_b = pair.table_b.kind == ShapeKind::triangle
+                                 ? across_triangle(pair.b, closest.axis, velocity)
+                                 : across_segment(pair.b, closest.on_b, velocity);
+  if (pair.table_a.kind == ShapeKind::sphere) return of_b.square;
+  const FeatureAcross of_a = across_segment(pair.a, closest.on_a, velocity);
   const Doubles slope = dot(velocity, closest.axis);
-  const Truth of_a = inside(pair.a, closest.on_a);
-  return select(of_a, select(of_b, slope * slope, square - along_a * along_a), from_b);
+  return select(of_a.goes, select(of_b.goes, slope * slope, of_a.square), of_b.square);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::impact
