@@ -20,11 +20,6 @@ double angle_of(double s, double c) noexcept {
   return angle;
 }
 
-/// 0 of numbers that are finite, of others no number.
-double doubt_of(double x, double y) noexcept {
-  return 0.0 * x + 0.0 * y;
-}
-
 }  // namespace
 
 RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
@@ -60,17 +55,15 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 }
 
 bool RigidMotion::is_valid() const noexcept {
-  // As Pose::is_valid has it, in sums that do not wait for each other: batches of impacts ask of
-  // every pair. Where the last position and the way there are finite, so is the first one.
-  const double(&q)[4] = start.orientation;
-  double end[3];
-  for (int i = 0; i < 3; ++i) end[i] = start.position[i] + travel[i];
-  const double doubt =
-      ((doubt_of(q[0], q[1]) + doubt_of(q[2], q[3])) + doubt_of(travel[0], end[0])) +
-      (doubt_of(travel[1], end[1]) + doubt_of(travel[2], end[2]));
-  const double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
-  const bool is_zero = (q[0] == 0.0) & (q[1] == 0.0) & (q[2] == 0.0) & (q[3] == 0.0);
-  return doubt == 0.0 && square <= kMostTurn * kMostTurn && !is_zero;
+  // Of finite numbers it stays 0, of others it is no number.
+  double sum = 0.0;
+  double square = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double end = start.position[i] + travel[i];
+    sum += (travel[i] - travel[i]) + (end - end);
+    square += turn[i] * turn[i];
+  }
+  return start.is_valid() && sum == 0.0 && square <= kMostTurn * kMostTurn;
 }
 
 Pose RigidMotion::at(double time) const noexcept {
