@@ -74,8 +74,9 @@ PatchFrame::PatchFrame(const SeenFaces& faces) noexcept {
 
 Outline::Outline(const SeenFaces& faces, int side) noexcept {
   const FaceNames& names = kFaceNames[faces.face[side]];
-  const double* const rows =
-      faces.rows + (SeenFaces::kFaces + side * SeenFaces::kFaceRows) * SeenFaces::kStride;
+  const std::uint32_t first =
+      SeenFaces::kFaces + static_cast<std::uint32_t>(side) * SeenFaces::kFaceRows;
+  const double* const rows = faces.rows + first * SeenFaces::kStride;
   const auto number = [&](std::uint32_t row) { return rows[row * SeenFaces::kStride]; };
   face_id = feature_id(FeatureKind::face, names.face);
   count = names.count;
