@@ -3,6 +3,16 @@
 #include "core/memory/guarded.h"
 
 namespace winnow {
+namespace {
+
+constexpr std::size_t kLine = Column<std::byte>::kAlignment;
+
+/// Of a room: no size of an element needs to divide a line.
+std::size_t whole_lines(std::size_t count, std::size_t element) noexcept {
+  return (count * element + kLine - 1) / kLine * kLine;
+}
+
+}  // namespace
 
 void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
                    std::size_t alignment) noexcept {
@@ -15,6 +25,33 @@ void touch_pages(void* begin, std::size_t bytes) noexcept {
   auto* const memory = static_cast<volatile unsigned char*>(begin);
   for (std::size_t at = 0; at < bytes; at += kSmallestPage) memory[at] = 0;
   if (bytes != 0) memory[bytes - 1] = 0;
+}
+
+ColumnRoom move_to_room(std::pmr::memory_resource& memory, ColumnRoom old, std::size_t size,
+                        std::size_t count, std::size_t element) noexcept {
+  if (count > Column<std::byte>::kMost / element) return {};
+  const std::size_t bytes = whole_lines(count, element);
+  void* const fresh = try_allocate(memory, bytes, kLine);
+  if (fresh == nullptr) return {};
+  if (size != 0) std::memcpy(fresh, old.data, size * element);
+  release_room(memory, old, element);
+  return {fresh, bytes / element};
+}
+
+ColumnRoom grow_room(std::pmr::memory_resource& memory, ColumnRoom old, std::size_t size,
+                     std::size_t count, std::size_t element) noexcept {
+  const std::size_t half_more = old.capacity + old.capacity / 2;
+  if (count < half_more) {
+    const ColumnRoom room = move_to_room(memory, old, size, half_more, element);
+    if (room.data != nullptr) return room;
+  }
+  return move_to_room(memory, old, size, count, element);
+}
+
+void release_room(std::pmr::memory_resource& memory, ColumnRoom room,
+                  std::size_t element) noexcept {
+  if (room.data == nullptr) return;
+  memory.deallocate(room.data, whole_lines(room.capacity, element), kLine);
 }
 
 }  // namespace winnow

@@ -27,6 +27,28 @@ enum class Pages : std::uint8_t {
 /// Writes to every page of memory that holds nothing yet.
 WINNOW_API void touch_pages(void* begin, std::size_t bytes) noexcept;
 
+/// The memory of a column: where its elements lie, and how many there is room for.
+struct ColumnRoom {
+  void* data = nullptr;      ///< null while nothing was allocated
+  std::size_t capacity = 0;  ///< in elements
+};
+
+/// Room for at least `count` elements of `element` bytes, in whole lines. The first `size` elements
+/// of the old room are moved there, and it is given back. Null data, and the old room as it was, if
+/// the resource refuses. O(size).
+[[nodiscard]] WINNOW_API ColumnRoom move_to_room(std::pmr::memory_resource& memory, ColumnRoom old,
+                                                 std::size_t size, std::size_t count,
+                                                 std::size_t element) noexcept;
+
+/// The same room, half as large again at least if the resource does not refuse that.
+[[nodiscard]] WINNOW_API ColumnRoom grow_room(std::pmr::memory_resource& memory, ColumnRoom old,
+                                              std::size_t size, std::size_t count,
+                                              std::size_t element) noexcept;
+
+/// Gives a room back, if it is one.
+WINNOW_API void release_room(std::pmr::memory_resource& memory, ColumnRoom room,
+                             std::size_t element) noexcept;
+
 /// One column of a structure of arrays: 64-byte aligned, its memory a whole number of 64-byte
 /// lines, growth reported instead of thrown. `std::pmr::vector` asks its resource only for
 /// alignof(T), hence this type. Elements past `size()` up to `capacity()` are uninitialised.
@@ -51,7 +73,7 @@ class Column {
   Column(const Column&) = delete;
   Column& operator=(const Column&) = delete;
   Column& operator=(Column&&) = delete;
-  ~Column() { release(); }
+  ~Column() { release_room(*memory_, room(), sizeof(T)); }
 
   /// The first element; null while nothing was allocated.
   [[nodiscard]] T* data() noexcept { return data_; }
@@ -79,18 +101,7 @@ class Column {
   /// Room for at least `count` elements, no more than the next full line. False, and unchanged, if
   /// the resource refuses.
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
-    if (count <= capacity_) return true;
-    if (count > kMost) return false;
-    const std::size_t bytes = (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
-    T* fresh = static_cast<T*>(try_allocate(*memory_, bytes, kAlignment));
-    if (fresh == nullptr) return false;
-    if (size_ != 0) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
-    const std::size_t size = size_;
-    release();
-    data_ = fresh;
-    size_ = size;
-    capacity_ = bytes / sizeof(T);
-    return true;
+    return count <= capacity_ || take(move_to_room(*memory_, room(), size_, count, sizeof(T)));
   }
 
   /// The same; touched, if it shall be, is all room behind the last element.
@@ -105,21 +116,16 @@ class Column {
 
   /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
-    if (count <= capacity_) return true;
-    const std::size_t half_more = capacity_ + capacity_ / 2;
-    return (count < half_more && reserve(half_more)) || reserve(count);
+    return count <= capacity_ || take(grow_room(*memory_, room(), size_, count, sizeof(T)));
   }
 
   /// Room for `count` elements but not for fewer than are in use, and no more than the next full
   /// line. False, and unchanged, if the resource refuses.
   [[nodiscard]] bool shrink(std::size_t count) noexcept {
-    Column less(memory_);
     const std::size_t kept = count < size_ ? size_ : count;
     if (kept >= capacity_) return true;
-    if (!less.reserve(kept)) return false;
-    if (size_ != 0) std::memcpy(static_cast<void*>(less.data_), data_, size_ * sizeof(T));
-    less.size_ = size_;
-    swap(less);
+    if (kept != 0) return take(move_to_room(*memory_, room(), size_, kept, sizeof(T)));
+    release();
     return true;
   }
 
@@ -145,7 +151,7 @@ class Column {
 
   /// Gives the memory back.
   void release() noexcept {
-    if (data_ != nullptr) memory_->deallocate(data_, capacity_bytes(), kAlignment);
+    release_room(*memory_, room(), sizeof(T));
     data_ = nullptr;
     size_ = capacity_ = 0;
   }
@@ -166,6 +172,15 @@ class Column {
   // The request was a whole number of lines and sizeof(T) need not divide a line.
   [[nodiscard]] std::size_t capacity_bytes() const noexcept {
     return (capacity_ * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
+  }
+
+  [[nodiscard]] ColumnRoom room() const noexcept { return {data_, capacity_}; }
+  /// False, and unchanged, if it is none.
+  [[nodiscard]] bool take(ColumnRoom room) noexcept {
+    if (room.data == nullptr) return false;
+    data_ = static_cast<T*>(room.data);
+    capacity_ = room.capacity;
+    return true;
   }
 
   std::pmr::memory_resource* memory_;
