@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "partitions/state/box_partition.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
@@ -20,11 +21,24 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
 
 }  // namespace
 
-Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept {
-  if (structure.info() == nullptr) return;
-  state_ = PartitionState::make(structure, options);
+Partition make_box_partition(StructureKind structure, const PartitionOptions& options) noexcept {
+  PartitionOptions without = options;
+  without.margin = {};
+  return Partition(structure, without, &Rows::boxes_as_given());
+}
+
+Partition::Partition(StructureKind structure, const PartitionOptions& options,
+                     const VolumeInput* input) noexcept {
+  if (structure.info() == nullptr || input == nullptr) return;
+  state_ = PartitionState::make(structure, options, *input);
   status_ = state_ == nullptr ? Status::out_of_memory : Status::ok;
 }
+
+Partition::Partition(StructureKind structure) noexcept
+    : Partition(structure, {}, &Rows::boxes_as_given()) {}
+
+Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept
+    : Partition(structure, options, Rows::input_of(options.volume)) {}
 
 Partition::~Partition() {
   if (state_ != nullptr) delete_in(state_->memory, state_);

@@ -89,6 +89,7 @@ struct Statistics {
 };
 
 class PartitionState;
+struct VolumeInput;
 
 /// What the automatic choice holds, and why.
 struct StructureChoice {
@@ -117,8 +118,11 @@ struct StructureChoice {
 /// entries are taken or none. Nothing throws.
 class WINNOW_API Partition final {
  public:
-  /// An empty partition. It takes memory for its state at once; see `status`.
-  explicit Partition(StructureKind structure, const PartitionOptions& options = {}) noexcept;
+  /// An empty partition of boxes, made with the options as they stand. It takes memory for its
+  /// state at once; see `status`.
+  explicit Partition(StructureKind structure) noexcept;
+  /// The same with options of one's own. Links what all volumes and margins need.
+  Partition(StructureKind structure, const PartitionOptions& options) noexcept;
   /// Takes over the objects; `other` answers every call with `invalid_argument` from then on.
   Partition(Partition&& other) noexcept
       : state_(std::exchange(other.state_, nullptr)),
@@ -132,7 +136,8 @@ class WINNOW_API Partition final {
   ~Partition();
 
   /// `ok`, or what every call that has a status answers: `out_of_memory` if memory for its state
-  /// was refused, `invalid_argument` if the structure names none, or if it has been moved from.
+  /// was refused, `invalid_argument` if the structure or the options' volume names none, or if it
+  /// has been moved from.
   [[nodiscard]] Status status() const noexcept { return status_; }
 
   /// What it was made with, or given last.
@@ -301,6 +306,11 @@ class WINNOW_API Partition final {
   [[nodiscard]] Statistics statistics() const noexcept;
 
  private:
+  friend Partition make_box_partition(StructureKind structure,
+                                      const PartitionOptions& options) noexcept;
+  Partition(StructureKind structure, const PartitionOptions& options,
+            const VolumeInput* input) noexcept;
+
   PartitionState* state_ = nullptr;
   Status status_ = Status::invalid_argument;
 };

@@ -22,6 +22,16 @@ namespace winnow {
 
 struct BoxOfId;
 struct EntryOfRow;
+class Rows;
+
+/// How rows take boxes in, which become the volume that is stored. Rows reach it through a pointer:
+/// a program has the code of those volumes alone that it can ask for.
+struct VolumeInput {
+  Volume volume;
+  Status (Rows::*insert)(const BoxView&, std::span<const ClientData>, std::span<Key>);
+  Status (Rows::*update)(const EntryList&, const BoxView&);
+  Status (Rows::*update_one)(Key, const BoxView&);
+};
 
 /// Objects as they were saved: slots of keys, and of the live ones, by id, what is stored.
 struct SavedRows {
@@ -52,7 +62,13 @@ struct RowRegions {
 /// changed since when. It knows nothing of how rows are pruned but how they lie.
 class Rows {
  public:
-  Rows(std::pmr::memory_resource* memory, const Execution& execution, Volume volume,
+  /// The input of boxes that are stored as they are given: for rows without a margin.
+  [[nodiscard]] static const VolumeInput& boxes_as_given() noexcept;
+  /// That of any volume, with or without a margin; null if there is no such volume. Links all.
+  [[nodiscard]] static const VolumeInput* input_of(Volume volume) noexcept;
+
+  /// `input` must outlive the rows.
+  Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
        const Margin& margin) noexcept;
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
@@ -146,7 +162,16 @@ class Rows {
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 
-  template <typename Source>
+  // Of volumes that are stored in some way: as a source offers them, or with the margin.
+  template <typename Source, typename Stored>
+  [[nodiscard]] static const VolumeInput& input() noexcept;
+  template <typename Source, typename Stored>
+  Status insert_boxes(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
+  template <typename Source, typename Stored>
+  Status update_boxes(const EntryList& entries, const BoxView& boxes);
+  template <typename Source, typename Stored>
+  Status update_box(Key key, const BoxView& box);
+  template <typename Stored, typename Source>
   Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
                      std::span<Key> keys);
   [[nodiscard]] KeyTable::RunOfKeys look_at(const EntryList& entries, std::size_t begin,
@@ -154,11 +179,9 @@ class Rows {
   template <typename Source>
   Status check_update(const Source& source, std::size_t volumes, const EntryList& entries,
                       bool& ascending) const;
-  template <typename Source>
+  template <typename Stored, typename Source>
   Status update_from(const Source& source, std::size_t volumes, const EntryList& entries);
-  template <typename Source, typename Use>
-  Status with_margin(const Source& source, Use&& use);
-  template <typename Source>
+  template <typename Stored, typename Source>
   Status update_one(const Source& source, Key key);
   template <typename Source>
   Status write(const Source& source, const EntryList& entries, bool ascending);
@@ -179,6 +202,7 @@ class Rows {
 
   Execution execution_;
   Margin margin_;
+  const VolumeInput& input_;
   BoundsPool pool_;
   KeyTable keys_;
   FilterTable filters_;

@@ -20,10 +20,10 @@ std::uint64_t next_identity() noexcept {
 PairTracking::PairTracking(std::pmr::memory_resource* memory) noexcept
     : identity(next_identity()), calm(memory) {}
 
-PartitionState::PartitionState(std::pmr::memory_resource* resource,
-                               const PartitionOptions& options) noexcept
+PartitionState::PartitionState(std::pmr::memory_resource* resource, const PartitionOptions& options,
+                               const VolumeInput& input) noexcept
     : memory(resource),
-      rows(resource, options.execution, options.volume, options.margin),
+      rows(resource, options.execution, input, options.margin),
       index(resource, rows, options.build_budget),
       pairs_(resource),
       deferred_(resource),
@@ -34,8 +34,9 @@ PartitionState::~PartitionState() {
   if (chooser_ != nullptr) chooser_->end(memory);
 }
 
-PartitionState* PartitionState::make(StructureKind kind, const PartitionOptions& options) noexcept {
-  auto* const state = new_in<PartitionState>(options.memory, options.memory, options);
+PartitionState* PartitionState::make(StructureKind kind, const PartitionOptions& options,
+                                     const VolumeInput& input) noexcept {
+  auto* const state = new_in<PartitionState>(options.memory, options.memory, options, input);
   if (state == nullptr || state->set_structure(kind)) return state;
   delete_in(options.memory, state);
   return nullptr;

@@ -37,14 +37,15 @@ struct PairTracking {
 /// chooses the structure, if anything does.
 class PartitionState {
  public:
-  PartitionState(std::pmr::memory_resource* memory, const PartitionOptions& options) noexcept;
+  PartitionState(std::pmr::memory_resource* memory, const PartitionOptions& options,
+                 const VolumeInput& input) noexcept;
   ~PartitionState();
   PartitionState(const PartitionState&) = delete;
   PartitionState& operator=(const PartitionState&) = delete;
 
-  /// Null if memory is refused.
-  [[nodiscard]] static PartitionState* make(StructureKind kind,
-                                            const PartitionOptions& options) noexcept;
+  /// With an input for the options' volume and margin. Null if memory is refused.
+  [[nodiscard]] static PartitionState* make(StructureKind kind, const PartitionOptions& options,
+                                            const VolumeInput& input) noexcept;
   /// False, and nothing changed, if memory is refused.
   [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
 

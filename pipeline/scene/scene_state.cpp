@@ -2,6 +2,7 @@
 
 #include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
+#include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/body_predicate.h"
@@ -63,10 +64,10 @@ bool SceneState::has_composites() const noexcept {
 Status SceneState::make_partition_of(Motion which) {
   SceneSet& target = set(which);
   if (target.partition.has_value()) return Status::ok;
-  Partition made(options.structures[static_cast<std::size_t>(which)],
-                 {.memory = options.memory,
-                  .execution = options.execution,
-                  .build_budget = options.build_budget});
+  Partition made = make_box_partition(options.structures[static_cast<std::size_t>(which)],
+                                      {.memory = options.memory,
+                                       .execution = options.execution,
+                                       .build_budget = options.build_budget});
   const Status status = made.status();
   if (status == Status::ok) target.partition.emplace(std::move(made));
   return status;

@@ -233,6 +233,14 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
   }
 }
 
+TEST_P(Volumes, that_there_are_not_make_no_partition) {
+  const auto none = static_cast<Volume>(17);
+  Partition partition(bounds_n_squared(), {.volume = none});
+  EXPECT_EQ(partition.status(), Status::invalid_argument);
+  Key key;
+  EXPECT_EQ(partition.insert(Aabb{{0, 0, 0}, {1, 1, 1}}, 0, key), Status::invalid_argument);
+}
+
 TEST_P(Volumes, that_are_invalid_change_nothing) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   Partition partition = make(Volume::sphere);
