@@ -135,8 +135,8 @@ class LeafPairs {
 
   const TreeView& tree_;
   PairSink& sink_;
-  HitList<false, true> hits_;
-  HitList<false, false> sure_;
+  HitList<true> hits_;
+  HitList<false> sure_;
   unsigned leaves_ = 0;
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];
@@ -258,7 +258,7 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
 }
 
 /// The boxes of a batch on their way down the tree together.
-template <bool Moved, bool Filtered>
+template <bool Filtered>
 class BoxQuestions {
  public:
   BoxQuestions(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
@@ -313,19 +313,19 @@ class BoxQuestions {
   const AskingFilters filters_;
   // Worlds lie on each other; of one, what lies above groups of leaves is told apart by place.
   const bool apart_;
-  HitList<Moved, Filtered> hits_;
+  HitList<Filtered> hits_;
   JointTraversal<BoxQuestions> traversal_{*this};
 };
 
 struct TreeQuery {
-  template <bool Moved, bool Filtered>
+  template <bool Filtered>
   static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-    return BoxQuestions<Moved, Filtered>(tree, batch, sink).run();
+    return BoxQuestions<Filtered>(tree, batch, sink).run();
   }
 };
 
 bool query(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<TreeQuery>(tree, batch, sink);
+  return with_filters<TreeQuery>(tree, batch, sink);
 }
 
 }  // namespace

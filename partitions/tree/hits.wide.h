@@ -210,15 +210,6 @@ inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uin
   }
 }
 
-/// Calls Kernel::run<Moved, Filtered>(view, batch, sink) with what every test asks as constants:
-/// whether the batch's mode is HitMode::moved, and whether filters are in use. Not inlined: it is
-/// called for whole batches and for parts of them.
-template <typename Kernel, bool Filtered, typename View>
-[[gnu::noinline]] bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
-  return batch.mode == HitMode::moved ? Kernel::template run<true, Filtered>(view, batch, sink)
-                                      : Kernel::template run<false, Filtered>(view, batch, sink);
-}
-
 /// The lanes whose sets of bits, if they are not empty, surely share one with each of some others
 /// (see surely_share).
 inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t every) {
@@ -312,15 +303,23 @@ class SplitBatch {
   std::uint32_t count_[2] = {0, 0};
 };
 
+/// Kernel::run<Filtered>(view, batch, sink), not inlined: it is called for whole batches and for
+/// parts of them.
+template <typename Kernel, bool Filtered, typename View>
+[[gnu::noinline]] bool run_kernel(const View& view, const QueryBatch& batch, PairSink& sink) {
+  return Kernel::template run<Filtered>(view, batch, sink);
+}
+
+/// Runs a kernel with what every test asks as a constant: whether filters are in use.
 template <typename Kernel, typename View>
-inline bool with_mode(const View& view, const QueryBatch& batch, PairSink& sink) {
+inline bool with_filters(const View& view, const QueryBatch& batch, PairSink& sink) {
   const bool filtered = view.rows.filter.layers != nullptr || batch.filter.layers != nullptr;
-  if (!filtered || batch.meets_all) return with_mode<Kernel, false>(view, batch, sink);
-  if (batch.one_filter) return with_mode<Kernel, true>(view, batch, sink);
+  if (!filtered || batch.meets_all) return run_kernel<Kernel, false>(view, batch, sink);
+  if (batch.one_filter) return run_kernel<Kernel, true>(view, batch, sink);
   for (std::uint32_t k = batch.begin; k < batch.end; k += SplitBatch::kRoom) {
     const SplitBatch split(view.rows, batch, k);
-    if (!with_mode<Kernel, false>(view, split.part(batch, true), sink) ||
-        !with_mode<Kernel, true>(view, split.part(batch, false), sink)) {
+    if (!run_kernel<Kernel, false>(view, split.part(batch, true), sink) ||
+        !run_kernel<Kernel, true>(view, split.part(batch, false), sink)) {
       return false;
     }
   }
@@ -350,9 +349,25 @@ inline bool has_more_to_test(const RowView& rows) {
   return kept;
 }
 
+/// Hits in such lists, without the lanes that are not reported in HitMode::moved. Returns how many
+/// entries are left.
+[[gnu::noinline, maybe_unused]] static unsigned keep_reported(const std::uint64_t* moved,
+                                                              std::uint32_t* row, std::uint32_t* at,
+                                                              std::uint32_t* mask, unsigned size) {
+  unsigned kept = 0;
+  for (unsigned i = 0; i < size; ++i) {
+    const Mask16 hits = mask[i] & reported_lanes(moved, row[i], at[i]);
+    row[kept] = row[i];
+    at[kept] = at[i];
+    mask[kept] = hits;
+    kept += hits != 0 ? 1U : 0U;
+  }
+  return kept;
+}
+
 /// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
 /// append without a branch, and filters are looked up and pairs written in one long loop.
-template <bool Moved, bool Filtered>
+template <bool Filtered>
 class HitList {
  public:
   HitList(const RowView& rows, const QueryBatch& batch, PairSink& sink)
@@ -361,7 +376,7 @@ class HitList {
         more_to_test_(!batch.is_box && has_more_to_test(rows)),
         query_id_(batch.id),
         mode_(batch.mode),
-        moved_(batch.moved),
+        moved_(batch.mode == HitMode::moved ? batch.moved : nullptr),
         filters_(batch),
         sink_(sink) {}
   /// For rows that ask about each other.
@@ -378,7 +393,6 @@ class HitList {
   /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
   /// There must be room.
   void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
-    if constexpr (Moved) mask &= reported_lanes(moved_, r, at);
     row_[size_] = r;
     at_[size_] = at;
     mask_[size_] = mask;
@@ -390,6 +404,7 @@ class HitList {
 
   /// Writes everything to the sink.
   [[gnu::noinline]] bool flush() {
+    if (moved_ != nullptr) size_ = keep_reported(moved_, row_, at_, mask_, size_);
     if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
     for (unsigned i = 0; i < size_; ++i) {
       Mask16 mask = mask_[i];
@@ -412,7 +427,7 @@ class HitList {
   bool more_to_test_;
   const std::uint32_t* query_id_;
   const HitMode mode_;
-  const std::uint64_t* moved_;
+  const std::uint64_t* const moved_;  // null in other modes
   const AskingFilters filters_;
   PairSink& sink_;
   unsigned size_ = 0;
@@ -429,11 +444,11 @@ struct ToTheEnd {
 /// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
 /// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
 /// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
-template <bool Moved, bool Filtered, typename GoesOn>
+template <bool Filtered, typename GoesOn>
 class RunList {
  public:
   /// `query` holds the columns of the boxes that ask.
-  RunList(const RowView& rows, const float* const* query, HitList<Moved, Filtered>& hits,
+  RunList(const RowView& rows, const float* const* query, HitList<Filtered>& hits,
           const GoesOn& goes_on, PairSink& sink)
       : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
 
@@ -475,7 +490,7 @@ class RunList {
 
   const RowView& rows_;
   const float* const* query_;
-  HitList<Moved, Filtered>& hits_;
+  HitList<Filtered>& hits_;
   const GoesOn goes_on_;
   PairSink& sink_;
   unsigned size_ = 0;

@@ -232,6 +232,7 @@ bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t r
   for (std::uint32_t k = 0; k < noted.size; ++k) {
     const std::uint32_t at = noted.place[k];
     Mask16 hits = noted.mask[k];
+    if (batch.mode == HitMode::moved) hits &= reported_lanes(batch.moved, row, at);
     if constexpr (Filtered) hits = passing_rows(view.rows, at, hits, range);
     if (!has_room(sink)) return false;
     report(batch.mode, hits, view.rows.id + at, batch.id[row], sink);
@@ -244,7 +245,7 @@ struct FlatQuery {
   /// A few blocks are tested sooner than a run is ended.
   static constexpr std::uint32_t kGap = 8;
 
-  template <bool Moved, bool Filtered>
+  template <bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
     const AskingFilters filters(batch);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
@@ -260,9 +261,7 @@ struct FlatQuery {
           NotedHits noted;
           for (std::uint32_t b = begin; b < some; ++b) {
             const auto block = Test::load(view.rows, std::size_t{b} * kLanes);
-            const Mask16 hits = Test::test(block, q);
-            noted.add(b * kLanes,
-                      Moved ? hits & reported_lanes(batch.moved, row, b * kLanes) : hits);
+            noted.add(b * kLanes, Test::test(block, q));
           }
           if (!report_noted<Filtered>(view, batch, row, noted, range, sink)) return false;
           begin = some;
@@ -277,7 +276,7 @@ struct FlatQuery {
 
 template <typename Test>
 bool query(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
-  return with_mode<FlatQuery<Test>>(view, batch, sink);
+  return with_filters<FlatQuery<Test>>(view, batch, sink);
 }
 
 template <typename Test>

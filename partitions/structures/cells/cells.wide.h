@@ -17,9 +17,9 @@ struct CellFunctions {
                                    : Cells::template find_pairs<false>(view, begin, end, sink);
   }
 
-  template <bool Moved, bool Filtered>
+  template <bool Filtered>
   static bool run(const View& view, const QueryBatch& batch, PairSink& sink) {
-    HitList<Moved, Filtered> hits(view.rows, batch, sink);
+    HitList<Filtered> hits(view.rows, batch, sink);
     RunList list(view.rows, batch.column, hits, Cells::goes_on(view), sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
@@ -33,7 +33,7 @@ struct CellFunctions {
     return list.finish() && hits.flush();
   }
   static bool query(const View& view, const QueryBatch& batch, PairSink& sink) {
-    return with_mode<CellFunctions>(view, batch, sink);
+    return with_filters<CellFunctions>(view, batch, sink);
   }
 
   static constexpr CellKernels<View> table() { return {self_pairs, query, Cells::find_misfits}; }
