@@ -18,17 +18,19 @@ enum BoxPlace {
   kCount
 };
 
-// Called by both precisions.
+// Called by both precisions. A loop: unrolled it would be most of a kernel for narrow lanes.
 [[gnu::noinline]] void see_boxes(const DoubleRows<kCount>& rows, SeenPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
-  const auto face = [&](int axes, int half, const Doubles3& center, const Doubles3& along)
-      __attribute__((always_inline)) {
+  seen.look_along(normal);
+  for (int side = 0; side < 2; ++side) {
+    const bool is_b = side == 1;
+    const int axes = is_b ? kAxesB : kAxesA;
     const Doubles3 axis[3] = {rows.vector(axes), rows.vector(axes + 3), rows.vector(axes + 6)};
-    return face_of_box(axis, rows.vector(half), center, along);
-  };
-  seen.see(face(kAxesA, kHalfA, {zero, zero, zero}, normal),
-           face(kAxesB, kHalfB, rows.vector(kOffset), -normal), normal);
+    const Doubles3 half = rows.vector(is_b ? kHalfB : kHalfA);
+    const Doubles3 center = is_b ? rows.vector(kOffset) : Doubles3{zero, zero, zero};
+    seen.see(face_of_box(axis, half, center, is_b ? -normal : normal), side);
+  }
 }
 
 // Where a pair stands, and its normal, in memory.

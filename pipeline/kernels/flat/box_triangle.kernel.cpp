@@ -294,10 +294,11 @@ enum BoxTrianglePlace {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
   const Doubles3 axis[3] = {rows.vector(kAxes), rows.vector(kAxes + 3), rows.vector(kAxes + 6)};
-  seen.see(face_of_box(axis, rows.vector(kHalf), {zero, zero, zero}, normal),
-           face_of_triangle(rows.vector(kVertices), rows.vector(kVertices + 3),
+  seen.look_along(normal);
+  seen.see(face_of_box(axis, rows.vector(kHalf), {zero, zero, zero}, normal), 0);
+  seen.see(face_of_triangle(rows.vector(kVertices), rows.vector(kVertices + 3),
                             rows.vector(kVertices + 6)),
-           normal);
+           1);
 }
 
 // Where a pair stands, and its normal, in memory.

@@ -31,22 +31,6 @@ struct DoubleRows {
   }
 };
 
-/// The axes along which faces are seen: see PatchFrame.
-struct SeenAxes {
-  Doubles3 x;
-  Doubles3 y;
-  Doubles3 z;
-
-  [[gnu::always_inline]] explicit SeenAxes(const Doubles3& n) : z(n) {
-    const Lanes<double> one(1.0);
-    const Lanes<double> sign = (n.z & Lanes<double>(-0.0)) | one;
-    const Lanes<double> a = Lanes<double>(-1.0) / (sign + n.z);
-    const Lanes<double> b = n.x * n.y * a;
-    x = {one + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    y = {b, sign + n.y * n.y * a, -n.y};
-  }
-};
-
 /// Corners of a face in order around it.
 template <int Corners>
 struct FaceCorners {
@@ -102,37 +86,29 @@ struct FaceCorners {
 /// Both faces of eight pairs.
 class SeenPairs {
  public:
-  template <int CornersA, int CornersB>
-  [[gnu::always_inline]] void see(const FaceCorners<CornersA>& a, const FaceCorners<CornersB>& b,
-                                  const Doubles3& normal) {
-    const SeenAxes axes(normal);
-    rows_.put(0, axes.x);
-    rows_.put(3, axes.y);
-    rows_.put(6, axes.z);
-    plain_ = see_face(a, axes, 0) & see_face(b, axes, 1);
+  /// The axes along which faces are seen: see PatchFrame.
+  [[gnu::always_inline]] void look_along(const Doubles3& n) {
+    const Lanes<double> one(1.0);
+    const Lanes<double> sign = (n.z & Lanes<double>(-0.0)) | one;
+    const Lanes<double> a = Lanes<double>(-1.0) / (sign + n.z);
+    const Lanes<double> b = n.x * n.y * a;
+    rows_.put(kAxisX, {one + sign * n.x * n.x * a, sign * b, -sign * n.x});
+    rows_.put(kAxisY, {b, sign + n.y * n.y * a, -n.y});
+    rows_.put(kAxisZ, n);
+    plain_ = ~Mask16{0};
   }
 
-  /// False for a lane with a face that is thin or steep, which is for contact_patch.
-  [[nodiscard]] bool is_plain(unsigned lane) const { return (plain_ >> lane & 1U) != 0; }
-  [[nodiscard]] SeenFaces faces(unsigned lane, double rounding_a, double rounding_b) const {
-    const auto number = [&](int side) { return static_cast<std::uint32_t>(number_[side][lane]); };
-    const auto turned = [&](int side) { return (clockwise_[side] >> lane & 1U) != 0; };
-    return {&rows_.value[0][lane],
-            {number(0), number(1)},
-            {turned(0), turned(1)},
-            {rounding_a, rounding_b}};
-  }
-
- private:
-  // Returns the lanes whose face is plain.
+  /// The face of one side, 0 or 1, seen along the axes.
   template <int Corners>
-  [[gnu::always_inline]] Mask16 see_face(const FaceCorners<Corners>& face, const SeenAxes& axes,
-                                         int side) {
+  [[gnu::always_inline]] void see(const FaceCorners<Corners>& face, int side) {
+    const Doubles3 x = rows_.vector(kAxisX);
+    const Doubles3 y = rows_.vector(kAxisY);
+    const Doubles3 z = rows_.vector(kAxisZ);
     const int to = static_cast<int>(SeenFaces::kFaces) + side * SeenFaces::kFaceRows;
     Doubles3 seen[Corners];
     for (int i = 0; i < Corners; ++i) {
       const Doubles3& p = face.corner[i];
-      seen[i] = {dot(axes.x, p), dot(axes.y, p), dot(axes.z, p)};
+      seen[i] = {dot(x, p), dot(y, p), dot(z, p)};
       rows_.put(to + SeenFaces::kX + i, seen[i].x);
       rows_.put(to + SeenFaces::kY + i, seen[i].y);
       rows_.put(to + SeenFaces::kH + i, seen[i].z);
@@ -157,9 +133,24 @@ class SeenPairs {
     rows_.put(to + SeenFaces::kCosine, area / length);
     face.number.store(number_[side]);
     clockwise_[side] = bits(normal.z < zero);
-    return bits((area > Lanes<double>(kThin) * size * size) &
-                (area > Lanes<double>(kSteep) * length));
+    plain_ &=
+        bits((area > Lanes<double>(kThin) * size * size) & (area > Lanes<double>(kSteep) * length));
   }
+
+  /// False for a lane with a face that is thin or steep, which is for contact_patch.
+  [[nodiscard]] bool is_plain(unsigned lane) const { return (plain_ >> lane & 1U) != 0; }
+  [[nodiscard]] SeenFaces faces(unsigned lane, double rounding_a, double rounding_b) const {
+    const auto number = [&](int side) { return static_cast<std::uint32_t>(number_[side][lane]); };
+    const auto turned = [&](int side) { return (clockwise_[side] >> lane & 1U) != 0; };
+    return {&rows_.value[0][lane],
+            {number(0), number(1)},
+            {turned(0), turned(1)},
+            {rounding_a, rounding_b}};
+  }
+
+ private:
+  // Rows of the axes.
+  enum AxisRow { kAxisX = 0, kAxisY = 3, kAxisZ = 6 };
 
   DoubleRows<SeenFaces::kRows> rows_;
   alignas(64) double number_[2][SeenFaces::kStride];

@@ -260,10 +260,11 @@ enum TrianglePlace {
 
 // Called by both precisions.
 [[gnu::noinline]] void see_triangles(const DoubleRows<kCount>& rows, SeenPairs& seen) {
-  const auto face = [&](int at) __attribute__((always_inline)) {
-    return face_of_triangle(rows.vector(at), rows.vector(at + 3), rows.vector(at + 6));
-  };
-  seen.see(face(kA), face(kB), rows.vector(kNormal));
+  seen.look_along(rows.vector(kNormal));
+  for (int side = 0; side < 2; ++side) {
+    const int at = side == 0 ? kA : kB;
+    seen.see(face_of_triangle(rows.vector(at), rows.vector(at + 3), rows.vector(at + 6)), side);
+  }
 }
 
 // Where a pair stands, and its normal, in memory.
