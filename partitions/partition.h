@@ -118,10 +118,10 @@ struct StructureChoice {
 /// entries are taken or none. Nothing throws.
 class WINNOW_API Partition final {
  public:
-  /// An empty partition of boxes, made with the options as they stand. It takes memory for its
-  /// state at once; see `status`.
+  /// An empty partition of boxes, with the options that there are by default. It takes memory for
+  /// its state at once; see `status`.
   explicit Partition(StructureKind structure) noexcept;
-  /// The same with options of one's own. Links what all volumes and margins need.
+  /// The same with other options. Links what all volumes and margins need.
   Partition(StructureKind structure, const PartitionOptions& options) noexcept;
   /// Takes over the objects; `other` answers every call with `invalid_argument` from then on.
   Partition(Partition&& other) noexcept
