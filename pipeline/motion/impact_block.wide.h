@@ -10,7 +10,7 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 /// Shapes that stay so long within the tolerance as they near each other have met.
 inline constexpr double kMostLooksWithin = 64.0;
 /// What takes more looks takes the search that has one pair alone.
-inline constexpr double kMostLooks = 256.0;
+inline constexpr double kMostLaneLooks = 256.0;
 /// Of the noise: what distances need not be better than.
 inline constexpr double kEnough = 0.125;
 
@@ -161,7 +161,7 @@ class BlockStep {
   /// Notes which lanes go on, and returns them.
   [[nodiscard]] Mask16 go_on() {
     p_.looks += Doubles(1.0);
-    end_unsure(p_.looks >= Doubles(kMostLooks));
+    end_unsure(p_.looks >= Doubles(kMostLaneLooks));
     p_.active = one_where(active_);
     return bits(active_);
   }
