@@ -258,22 +258,9 @@ template <typename T>
 /// The vertex of a hull that is farthest along d, times `scale`.
 template <typename T>
 static inline void hull_support(const HullShape& shape, const T* d, T scale, T* x) {
-  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-  const T* const* vertices = hull::columns_of(shape, T());
-  const Vec3<T> direction{d[0], d[1], d[2]};
-  Lanes<T> best = hull::along(vertices, 0, direction);
-  Lanes<T> where(T(0));
-  for (std::uint32_t row = kWidth; row < shape.vertex_count; row += kWidth) {
-    const Lanes<T> value = hull::along(vertices, row, direction);
-    const LaneMask<T> higher = value > best;
-    best = select(higher, value, best);
-    where = select(higher, Lanes<T>(static_cast<T>(row)), where);
-  }
-  alignas(64) T row[kWidth];
-  where.store(row);
-  const std::uint32_t lane = hull::lane_of_largest(best);
-  const std::uint32_t vertex = static_cast<std::uint32_t>(row[lane]) + lane;
-  for (int k = 0; k < 3; ++k) x[k] = vertices[k][vertex] * scale;
+  const std::uint32_t vertex = hull::highest_vertex(shape, Vec3<T>{d[0], d[1], d[2]});
+  const T* const* column = hull::columns_of(shape, T());
+  for (int k = 0; k < 3; ++k) x[k] = column[k][vertex] * scale;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

@@ -179,7 +179,7 @@ class HullDepth {
         turn_back3(second_.turn, normal, direction);
         for (float& x : direction) x = -x;
         const float depth =
-            plane[3][face] - dot3(normal, second_.shift) + highest_of(*second_.other, direction);
+            plane[3][face] - dot3(normal, second_.shift) + height_of(*second_.other, direction);
         propose_face(HullCandidate::Kind::second_face, face, depth);
       }
     }

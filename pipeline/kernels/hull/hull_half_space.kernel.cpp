@@ -11,27 +11,6 @@ namespace {
 
 using hull::kNoFeature;
 
-/// The lowest vertex along `up`.
-template <typename T>
-std::uint32_t lowest_vertex(const HullShape& shape, const Vec3<T>& up) {
-  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-  const T* const* vertex = hull::columns_of(shape, T());
-  Lanes<T> best = hull::along(vertex, 0, up);
-  Lanes<T> where(T(0));
-  for (std::uint32_t row = kWidth; row < shape.vertex_count; row += kWidth) {
-    const Lanes<T> value = hull::along(vertex, row, up);
-    const LaneMask<T> lower = value < best;
-    best = select(lower, value, best);
-    where = select(lower, Lanes<T>(static_cast<T>(row)), where);
-  }
-  alignas(64) T row[kWidth];
-  where.store(row);
-  const std::uint32_t lane = hull::lane_of_largest(-best);
-  const std::uint32_t found = static_cast<std::uint32_t>(row[lane]) + lane;
-  // Padding repeats vertex 0.
-  return found < shape.vertex_count ? found : 0;
-}
-
 /// Vertices of a hull over a plane, thinned to the four that span most: the lowest, the one
 /// farthest from it, the one that makes the largest triangle with both, and the one that adds most
 /// to it.
@@ -164,8 +143,8 @@ struct HullOverPlane {
       rounding[lane] = static_cast<T>(shape.rounding);
       // Of what coordinates add up to.
       reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
-      const Vec3<T> direction{normal[0][lane], normal[1][lane], normal[2][lane]};
-      const std::uint32_t lowest = lowest_vertex(shape, direction);
+      const Vec3<T> down{-normal[0][lane], -normal[1][lane], -normal[2][lane]};
+      const std::uint32_t lowest = hull::highest_vertex(shape, down);
       if constexpr (Count == 1) {
         hull_vertex(shape, lowest, 0, lane, vertex, name);
       } else {

@@ -263,18 +263,6 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return vertex_of(hull, reduce_max(Floats::load(height)), block);
 }
 
-/// The height of the highest vertex along a direction.
-static inline float highest_of(const HullShape& hull, const float* direction) {
-  const Vec3<float> d{direction[0], direction[1], direction[2]};
-  Floats best = along(hull.vertex_float, 0, d);
-  for (std::uint32_t row = kLanes; row < hull.vertex_count; row += kLanes) {
-    best = max(best, along(hull.vertex_float, row, d));
-  }
-  alignas(64) float value[kLanes];
-  best.store(value);
-  return reduce_max(Floats::load(value));
-}
-
 [[gnu::always_inline]] static inline Doubles along(const double* const* vertex, std::uint32_t row,
                                                    const Vec3<double>& d) {
   return Doubles::load(vertex[0] + row) * d.x + Doubles::load(vertex[1] + row) * d.y +
@@ -308,6 +296,28 @@ template <typename T>
 [[gnu::always_inline]] static inline std::uint32_t lane_of_largest(const Lanes<T>& v) {
   constexpr Mask16 last = 1U << (Lanes<T>::kCount - 1);
   return first(static_cast<Mask16>(bits(v == Lanes<T>(largest_lane(v))) | last));
+}
+
+/// The vertex that is farthest along a direction; of those that are as far one that comes first in
+/// its lane.
+template <typename T>
+static inline std::uint32_t highest_vertex(const HullShape& hull, const Vec3<T>& direction) {
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+  const T* const* vertex = columns_of(hull, T());
+  Lanes<T> best = along(vertex, 0, direction);
+  Lanes<T> where(T(0));
+  for (std::uint32_t row = kWidth; row < hull.vertex_count; row += kWidth) {
+    const Lanes<T> value = along(vertex, row, direction);
+    const LaneMask<T> higher = value > best;
+    best = select(higher, value, best);
+    where = select(higher, Lanes<T>(static_cast<T>(row)), where);
+  }
+  alignas(64) T row[kWidth];
+  where.store(row);
+  const std::uint32_t lane = lane_of_largest(best);
+  const std::uint32_t found = static_cast<std::uint32_t>(row[lane]) + lane;
+  // Padding repeats vertex 0.
+  return found < hull.vertex_count ? found : 0;
 }
 
 /// The largest product of a vertex and `direction`.
