@@ -52,15 +52,16 @@ void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std:
   stamps_.set_size(slots);
   rows_.set_size(slots);
   data_.set_size(slots);
-  for_stretches(execution, slots - first, kKeysPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slot = first + begin; slot < first + end; ++slot) {
-      const std::size_t i = reused + slot - first;
-      stamps_[slot] = stamp_ | 1U;
-      rows_[slot] = row_at(i);
-      data_[slot] = data_of(i);
-      keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
-    }
-  });
+  for_even_stretches(execution, slots - first, kKeysPerTask,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t slot = first + begin; slot < first + end; ++slot) {
+                         const std::size_t i = reused + slot - first;
+                         stamps_[slot] = stamp_ | 1U;
+                         rows_[slot] = row_at(i);
+                         data_[slot] = data_of(i);
+                         keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
+                       }
+                     });
   live_ += slots - first;
 }
 

@@ -7,6 +7,17 @@
 
 namespace winnow {
 
+/// The length of stretches of [0, count) that are no longer than `longest`, and where they are more
+/// than one of which two, four or eight threads get as many each. A multiple of 64, or `longest`.
+[[nodiscard]] constexpr std::size_t even_stretch(std::size_t count, std::size_t longest) noexcept {
+  constexpr std::size_t kShares = 8;
+  constexpr std::size_t kUnit = 64;
+  if (count <= longest) return longest;
+  const std::size_t stretches = (count + kShares * longest - 1) / (kShares * longest) * kShares;
+  const std::size_t each = (count + stretches - 1) / stretches;
+  return std::min(longest, (each + kUnit - 1) / kUnit * kUnit);
+}
+
 /// Cuts [0, count) into stretches of `length`, the last one shorter, and calls body(first, end) for
 /// each, in parallel. Which stretches there are does not depend on the number of threads.
 template <typename Body>
@@ -14,6 +25,13 @@ void for_stretches(const Execution& execution, std::size_t count, std::size_t le
   execution.for_each((count + length - 1) / length, [&](std::size_t stretch) {
     body(stretch * length, std::min(count, (stretch + 1) * length));
   });
+}
+
+/// The same in even stretches.
+template <typename Body>
+void for_even_stretches(const Execution& execution, std::size_t count, std::size_t longest,
+                        Body&& body) {
+  for_stretches(execution, count, even_stretch(count, longest), body);
 }
 
 }  // namespace winnow

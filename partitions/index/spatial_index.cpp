@@ -67,12 +67,11 @@ Status SpatialIndex::absorb_changes(bool all) {
     return refit_trees() ? Status::ok : Status::out_of_memory;
   }
   const std::size_t limit = tail_limit();
+  const std::size_t room = limit - std::min(limit, tail());
+  const bool any_row = all || rows_.stale().all();
   RowSelection& misfits = rows_.selection();
-  if (!misfits.start(limit + 1) || !collect_misfits(all || rows_.stale().all(), limit + 1)) {
-    return Status::out_of_memory;
-  }
-  const std::size_t behind = tail() + misfits.list.size();
-  if (behind > limit) {
+  if (!misfits.start(limit) || (any_row && !make_room_for_misfits())) return Status::out_of_memory;
+  if (tail() > limit || !collect_misfits(any_row, room)) {
     if (all) unforeseen_ = kWaitAfterMistake;
     return build();
   }
@@ -116,22 +115,24 @@ bool SpatialIndex::is_torn() const noexcept {
   return built_edge_ > 0.0F && tree_.typical_edge() > torn * built_edge_;
 }
 
-// False if memory is refused.
-bool SpatialIndex::collect_misfits(bool all, std::size_t limit) noexcept {
+bool SpatialIndex::make_room_for_misfits() noexcept {
+  return rows_.regions().regular == 0 || spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows);
+}
+
+// False if there are more than `most`, or likely so.
+bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
   const std::size_t regular = rows_.regions().regular;
   if (regular == 0) return true;
   Column<std::uint32_t>& misfits = rows_.selection().list;
-  if (all) {
-    if (!spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows)) return false;
-    structure_->find_misfits(reinterpret_cast<std::uint32_t*>(spare_.data()), misfits, limit);
-    return true;
+  if (any_row) {
+    return structure_->find_misfits(reinterpret_cast<std::uint32_t*>(spare_.data()), misfits, most);
   }
   for (const ObjectId id : rows_.stale().ids()) {
-    if (!rows_.keys().is_live(id) || misfits.size() == limit) continue;
+    if (!rows_.keys().is_live(id)) continue;
     const std::uint32_t row = rows_.keys().row_of(id);
-    if (row < regular && !structure_->fits(row, structure_->place_of(row))) {
-      (void)misfits.push_back(row);
-    }
+    if (row >= regular || structure_->fits(row, structure_->place_of(row))) continue;
+    if (misfits.size() == most) return false;
+    (void)misfits.push_back(row);
   }
   return true;
 }

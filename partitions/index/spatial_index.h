@@ -165,7 +165,8 @@ class SpatialIndex {
   Status absorb_changes(bool all);
   [[nodiscard]] bool is_next_frame() const noexcept;
   [[nodiscard]] bool is_torn() const noexcept;
-  [[nodiscard]] bool collect_misfits(bool all, std::size_t limit) noexcept;
+  [[nodiscard]] bool make_room_for_misfits() noexcept;
+  [[nodiscard]] bool collect_misfits(bool any_row, std::size_t most) noexcept;
   [[nodiscard]] std::size_t ordered_blocks() const noexcept;
   [[nodiscard]] std::size_t wide_blocks() const noexcept;
   Status look_for_strays();

@@ -50,7 +50,7 @@ inline constexpr std::size_t kFetchAhead = 12;
 /// Calls work(begin, end) over ranges of [0, count).
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
-  for_stretches(execution, count, kEntriesPerTask, work);
+  for_even_stretches(execution, count, kEntriesPerTask, work);
 }
 
 /// True if all of these entries are legal.

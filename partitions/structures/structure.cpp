@@ -1,6 +1,7 @@
 #include "partitions/structures/structure.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace winnow {
 
@@ -9,6 +10,11 @@ std::string_view StructureKind::name() const noexcept {
 }
 
 void Structure::leave_all(const RowPlan& plan) const noexcept {
+  if (plan.objects == plan.rows) {
+    plan.rest.set_size(plan.rest.size() + plan.rows);
+    std::iota(plan.rest.end() - plan.rows, plan.rest.end(), 0U);
+    return;
+  }
   const ObjectId* const ids = pool().ids();
   std::uint32_t* to = plan.rest.end();
   for (std::size_t row = 0; row < plan.rows; ++row) {

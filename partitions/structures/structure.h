@@ -184,10 +184,13 @@ class Structure {
   /// True if the object in this regular row would still fit where the build put it if it were at a
   /// place.
   [[nodiscard]] virtual bool fits(std::size_t, const Place&) const noexcept { return true; }
-  /// Appends the regular rows that no longer fit, until the list holds `limit`; any may have
-  /// changed. `room` is for as many as there are regular rows.
-  virtual void find_misfits(std::uint32_t* /*room*/, Column<std::uint32_t>&,
-                            std::size_t /*limit*/) noexcept {}
+  /// Appends the regular rows that no longer fit; any may have changed. `room` is for as many as
+  /// there are regular rows. False, and nothing appended, where they are more than `most`, or a
+  /// sample of them promises it.
+  virtual bool find_misfits(std::uint32_t* /*room*/, Column<std::uint32_t>&,
+                            std::size_t /*most*/) noexcept {
+    return true;
+  }
 
   // Pairs.
 

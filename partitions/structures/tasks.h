@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 
 namespace winnow {
 
@@ -24,22 +25,41 @@ struct TaskCut {
   }
 };
 
-/// Appends to `out`, until it holds `limit`, what tasks find, in the order of the tasks.
-/// find(begin, end, out) goes through units, writes to `out` and returns how many it wrote; task i
-/// is given scratch + offset(first unit), where it has room for all that it can find.
+/// Appends to `out` which of so many rows tasks find, in the order of the tasks. False, and nothing
+/// is appended, where they are more than `most`: one task in eight is run first, and no other where
+/// these promise it. find(begin, end, out) goes through units, writes to `out` and returns how many
+/// it wrote; task i is given scratch + offset(first unit), where it has room for all of its rows.
 template <typename Offset, typename Find>
-void append_in_order(const Execution& execution, const TaskCut& cut, std::uint32_t* scratch,
-                     Offset&& offset, Find&& find, Column<std::uint32_t>& out, std::size_t limit) {
+[[nodiscard]] bool append_in_order(const Execution& execution, const TaskCut& cut, std::size_t rows,
+                                   std::uint32_t* scratch, Offset&& offset, Find&& find,
+                                   Column<std::uint32_t>& out, std::size_t most) {
+  constexpr std::size_t kOneIn = 8;
+  constexpr std::size_t kFewRows = 32;  // of so many one is too small a sample
+  const std::size_t tasks = cut.tasks();
   std::array<std::size_t, kMostTasks> found{};
   const auto room = [&](std::size_t task) { return scratch + offset(cut.first(task)); };
-  execution.for_each(cut.tasks(), [&](std::size_t task) {
+  const auto run = [&](std::size_t task) {
     found[task] = find(cut.first(task), cut.first(task + 1), room(task));
-  });
-  for (std::size_t task = 0; task < cut.tasks(); ++task) {
-    const std::size_t count = std::min(found[task], limit - out.size());
-    std::copy_n(room(task), count, out.end());
-    out.set_size(out.size() + count);
+  };
+  const auto sampled = [](std::size_t i) { return i * kOneIn + kOneIn / 2; };
+  execution.for_each(tasks / kOneIn, [&](std::size_t i) { run(sampled(i)); });
+  std::size_t seen = 0;
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < tasks / kOneIn; ++i) {
+    seen += static_cast<std::size_t>(room(sampled(i) + 1) - room(sampled(i)));
+    sum += found[sampled(i)];
   }
+  if (kFewRows * seen > rows && sum * rows > (most + most / 4) * seen) return false;
+  execution.for_each(tasks, [&](std::size_t task) {
+    const bool is_sampled = task / kOneIn < tasks / kOneIn && task == sampled(task / kOneIn);
+    if (!is_sampled) run(task);
+  });
+  if (std::accumulate(found.begin(), found.end(), std::size_t{0}) > most) return false;
+  for (std::size_t task = 0; task < tasks; ++task) {
+    std::copy_n(room(task), found[task], out.end());
+    out.set_size(out.size() + found[task]);
+  }
+  return true;
 }
 
 }  // namespace winnow

@@ -22,7 +22,7 @@ struct CoarseStretches {
 
   CoarseStretches(std::size_t points, const Execution& e)
       : count(points),
-        length(std::max(kLeast, (points + kMostStretches - 1) / kMostStretches)),
+        length(even_stretch(points, std::max(kLeast, points / (kMostStretches - 8) + 1))),
         execution(e) {}
 
   /// Calls body(stretch, begin, end).

@@ -11,7 +11,7 @@ namespace {
 static_assert(CoarseCells::kPlaces == kPlaces);
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
-constexpr std::size_t kSample = 8192;
+constexpr std::size_t kSample = 4096;
 
 void reach(const float* x, std::size_t count, float& least, float& greatest) {
   const Reach of = Reach::of(x, count);

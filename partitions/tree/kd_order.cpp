@@ -86,7 +86,7 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   if (count <= kBlockRows) return true;
   sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
   const std::array<const float*, 6> boxes = box_columns(pool);
-  for_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+  for_even_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     kd_order_kernels().centres(boxes.data(), rows.data(), begin, end, at_);
   });
   return true;

@@ -74,7 +74,7 @@ TEST(LinearBvhOrder, costs_hardly_more_tests_than_a_search_finds_wherever_object
 // Moves every object to where another one was, `by` further on.
 std::vector<Aabb> passed_on(const std::vector<Aabb>& boxes, std::size_t by) {
   std::vector<Aabb> next = boxes;
-  std::ranges::rotate(next, next.begin() + static_cast<std::ptrdiff_t>(by));
+  std::rotate(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(by), next.end());
   return next;
 }
 

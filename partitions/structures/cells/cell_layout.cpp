@@ -68,21 +68,20 @@ bool is_about(const std::array<float, 3>& edges, const std::array<float, 3>& oth
 
 }  // namespace
 
-SceneSample::SceneSample(const BoundsPool& pool) noexcept {
-  std::size_t live = 0;
-  for (std::size_t row = 0; row < pool.rows(); ++row) live += pool.ids()[row] != kNoObject;
-  objects = live;
+SceneSample::SceneSample(const BoundsPool& pool, std::size_t live,
+                         const Execution& execution) noexcept
+    : objects(live) {
   if (live == 0) return;
-  std::array<std::array<float, kMost>, 3> ends;
-  const auto take = [&](std::size_t row) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      ends[a][count] = pool.column(a)[row];
-      edge[a][count] = pool.column(3 + a)[row] - pool.column(a)[row];
-    }
-    ++count;
-  };
+  std::array<std::uint32_t, kMost> rows;
+  choose_rows(pool, rows);
+  if (count != 0) execution.for_each(3, [&](std::size_t a) { look_along(a, pool, rows); });
+}
+
+void SceneSample::choose_rows(const BoundsPool& pool,
+                              std::array<std::uint32_t, kMost>& rows) noexcept {
   const std::size_t wanted = std::clamp(pool.rows() / kRowsPerSample, kLeast, kMost);
   const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+  const auto take = [&](std::size_t row) { rows[count++] = static_cast<std::uint32_t>(row); };
   if (pool.rows() <= kMost) {
     // By their ids: few objects that come back to where they were get the same cells again,
     // whatever order the rows are in.
@@ -96,25 +95,29 @@ SceneSample::SceneSample(const BoundsPool& pool) noexcept {
       if (pool.ids()[row] != kNoObject) take(row);
     }
   }
-  if (count == 0) return;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::span<const float> values(ends[a].data(), count);
-    const auto [least, most] =
-        pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
-    // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
-    const double q98 = static_cast<double>(value_near_end(values, count / 50, std::greater<>()));
-    const double q02 = static_cast<double>(value_near_end(values, count / 50, std::less<>()));
-    const double margin = 0.5 * (q98 - q02);
-    low[a] = std::max(least, static_cast<float>(std::max(q02 - margin, -3e38)));
-    high[a] = std::min(most, static_cast<float>(std::min(q98 + margin, 3e38)));
-    std::size_t bounded = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(edge[a][i] < kUnbounded)) continue;
-      mean_edge[a] += static_cast<double>(edge[a][i]);
-      ++bounded;
-    }
-    mean_edge[a] /= static_cast<double>(std::max<std::size_t>(1, bounded));
+}
+
+void SceneSample::look_along(std::size_t a, const BoundsPool& pool,
+                             const std::array<std::uint32_t, kMost>& rows) noexcept {
+  std::array<float, kMost> ends{};
+  double sum = 0.0;
+  std::size_t bounded = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    ends[i] = pool.column(a)[rows[i]];
+    edge[a][i] = pool.column(3 + a)[rows[i]] - ends[i];
+    if (!(edge[a][i] < kUnbounded)) continue;
+    sum += static_cast<double>(edge[a][i]);
+    ++bounded;
   }
+  mean_edge[a] = sum / static_cast<double>(std::max<std::size_t>(1, bounded));
+  const std::span<const float> values(ends.data(), count);
+  const auto [least, most] = pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
+  // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
+  const double q98 = static_cast<double>(value_near_end(values, count / 50, std::greater<>()));
+  const double q02 = static_cast<double>(value_near_end(values, count / 50, std::less<>()));
+  const double margin = 0.5 * (q98 - q02);
+  low[a] = std::max(least, static_cast<float>(std::max(q02 - margin, -3e38)));
+  high[a] = std::min(most, static_cast<float>(std::min(q98 + margin, 3e38)));
 }
 
 /// One way to lay out cells, and what it is expected to cost.
@@ -340,9 +343,10 @@ bool CellLayout::reserve(std::size_t cells, Pages pages) noexcept {
 void CellLayout::find_cells(const BoundsPool& pool, std::uint32_t* cell,
                             const Execution& execution) const noexcept {
   const std::array<const float*, 6> columns = box_columns(pool);
-  for_stretches(execution, pool.rows(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
-    cell_layout_kernels().cells(columns.data(), axes_.data(), begin, end, cell);
-  });
+  for_even_stretches(execution, pool.rows(), kRowsPerStretch,
+                     [&](std::size_t begin, std::size_t end) {
+                       cell_layout_kernels().cells(columns.data(), axes_.data(), begin, end, cell);
+                     });
 }
 
 std::uint32_t CellLayout::cell_of(const Structure::Place& box) const noexcept {

@@ -23,7 +23,8 @@ struct SceneSample {
   static constexpr std::size_t kLeast = 256;
   static constexpr std::size_t kMost = 2048;
 
-  explicit SceneSample(const BoundsPool& pool) noexcept;
+  /// `live` rows of the pool are objects.
+  SceneSample(const BoundsPool& pool, std::size_t live, const Execution& execution) noexcept;
 
   std::size_t objects = 0;  ///< live rows in all
   std::size_t count = 0;    ///< rows in the sample
@@ -35,6 +36,11 @@ struct SceneSample {
   [[nodiscard]] double range(std::size_t axis) const noexcept {
     return static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
   }
+
+ private:
+  void choose_rows(const BoundsPool& pool, std::array<std::uint32_t, kMost>& rows) noexcept;
+  void look_along(std::size_t axis, const BoundsPool& pool,
+                  const std::array<std::uint32_t, kMost>& rows) noexcept;
 };
 
 /// What a layout is asked to weigh up.

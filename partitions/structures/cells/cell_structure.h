@@ -19,14 +19,15 @@ class CellStructure : public Structure {
   explicit CellStructure(const StructureInput& input) noexcept
       : Structure(input), start_(input.memory), planned_start_(input.memory) {}
 
-  void find_misfits(std::uint32_t* room, Column<std::uint32_t>& rows,
-                    std::size_t limit) noexcept final {
-    append_in_order(
-        execution(), {places()}, room, [this](std::uint32_t place) { return first_row(place); },
+  bool find_misfits(std::uint32_t* room, Column<std::uint32_t>& rows,
+                    std::size_t most) noexcept final {
+    return append_in_order(
+        execution(), {places()}, regular_rows(), room,
+        [this](std::uint32_t place) { return first_row(place); },
         [this](std::uint32_t begin, std::uint32_t end, std::uint32_t* out) {
           return write_misfits(begin, end, out);
         },
-        rows, limit);
+        rows, most);
   }
   [[nodiscard]] std::size_t pair_tasks() const noexcept final { return pair_cut().tasks(); }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept final {

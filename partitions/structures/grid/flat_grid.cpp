@@ -72,7 +72,7 @@ Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
 
 // Leaves the cell of each row in the list.
 Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
-  const SceneSample sample(pool());
+  const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
     leave_all(plan);

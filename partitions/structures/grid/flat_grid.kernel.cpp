@@ -38,28 +38,23 @@ bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered
   return true;
 }
 
-bool holds(const std::uint32_t* rows, std::uint32_t count, std::uint32_t row) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (rows[i] == row) return true;
-  }
-  return false;
-}
-
-/// Appends to the `found` rows of a line at `out` those that left their cell along the line, and
-/// returns the new count. Cells are short: this goes row by row and leaves the rest to the wide
-/// test.
+/// Appends to the `found` rows of a line at `out`, which ascend, those others that left their cell
+/// along the line, and returns the new count. Cells are short: this goes row by row and leaves the
+/// rest to the wide test.
 std::uint32_t left_along_line(const GridView& grid, const std::uint32_t* start, std::uint32_t* out,
                               std::uint32_t found) {
   const CellAxis& axis = grid.axis[0];
   const float* const low = grid.rows.column[axis.axis];
-  const std::uint32_t before = found;
+  const std::uint32_t* known = out;
+  const std::uint32_t* const end = out + found;
   for (std::uint32_t c = 0; c < axis.count; ++c) {
     const float from = axis.from[c];
     const float to = axis.to[c];
     for (std::uint32_t r = start[c]; r < start[c + 1]; ++r) {
       const bool kept = (low[r] >= from) & (low[r] <= to);
-      if (kept || grid.rows.id[r] == ~0U || holds(out, before, r)) continue;
-      out[found++] = r;
+      if (kept || grid.rows.id[r] == ~0U) continue;
+      while (known != end && *known < r) ++known;
+      if (known == end || *known != r) out[found++] = r;
     }
   }
   return found;

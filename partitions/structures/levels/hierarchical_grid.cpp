@@ -318,7 +318,7 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
   if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
   plan.list.set_size(rows);
-  for_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+  for_even_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, plan.list.data());
   });
   const SizeClasses classes(pool(), {plan.list.data(), rows}, execution());
@@ -351,9 +351,10 @@ void HierarchicalGrid::sort_by_level(const SizeClasses& classes, const RowPlan& 
     level[o] = own < all_levels_ ? static_cast<std::uint32_t>(own) : CountingSort::kNone;
   }
   Column<std::uint32_t>& list = plan.list;
-  for_stretches(execution(), list.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) list[row] = level[list[row]];
-  });
+  for_even_stretches(execution(), list.size(), kRowsPerStretch,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t row = begin; row < end; ++row) list[row] = level[list[row]];
+                     });
   CountingSort sort({list.data(), list.size()}, std::span(first_of_level_).first(all_levels_ + 1),
                     execution());
   sort.count();
@@ -417,10 +418,11 @@ void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
              .line_bits = static_cast<unsigned>(std::bit_width(last_line)),
              .step_bits = static_cast<unsigned>(std::bit_width(level.steps))};
   sorted_.packed = sorted_.line_bits + sorted_.step_bits <= 32;
-  for_stretches(execution(), rows.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
-    level_rows_kernels().places(level, box_columns(pool()).data(), rows.data(), begin, end,
-                                sorted_.step_bits, !sorted_.packed, plan.items.data());
-  });
+  for_even_stretches(
+      execution(), rows.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+        level_rows_kernels().places(level, box_columns(pool()).data(), rows.data(), begin, end,
+                                    sorted_.step_bits, !sorted_.packed, plan.items.data());
+      });
   find_places_of_moved(plan);
 }
 

@@ -137,7 +137,7 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
   planned_.node.clear();
   planned_.bounds.clear();
   planned_start_.clear();
-  const SceneSample sample(pool());
+  const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.cells.choose(sample, axes_, loose_)) {
     leave_all(plan);
     return Planned::done;
@@ -154,7 +154,7 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
 
 void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
   std::uint64_t* const items = plan.items.data();
-  for_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+  for_even_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = first + begin; row < first + end; ++row) {
       const std::size_t now = row_now(plan, row);
       const bool live = pool().ids()[now] != kNoObject;

@@ -162,7 +162,7 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
 
 // Leaves the strip of each row in the list.
 Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
-  const SceneSample sample(pool());
+  const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
     leave_all(plan);
