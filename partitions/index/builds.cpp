@@ -91,17 +91,18 @@ bool SpatialIndex::start_plan(Structure& structure) noexcept {
   refreshes_before_plan_ = departures_.refreshes();
   changed_at_plan_ = changed();
   lull_ = 0;
-  return plan_.start(rows_, structure, spare_rows(structure), wanted_parts());
+  return plan_.start(rows_, structure, spare_rows(structure), wanted_parts(structure));
 }
 
 // Where rays and regions are asked for, in many refreshes or before anything else, they are worth
 // an order that takes longer to find. One that is torn at once is not worth much.
-KdParts SpatialIndex::wanted_parts() const noexcept {
+KdParts SpatialIndex::wanted_parts(const Structure& structure) const noexcept {
   constexpr std::size_t kOften = 4;
   constexpr std::size_t kTorn = 2;
   const std::size_t asked = asked_.load(std::memory_order_relaxed);
   if (asked > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
-  return builds_ != 0 && departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
+  if (builds_ == 0) return structure.first_parts();
+  return departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
 }
 
 // The rows are untouched until everything that can fail is done.

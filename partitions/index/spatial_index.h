@@ -159,7 +159,7 @@ class SpatialIndex {
   /// `moved` says that objects may have since the plan was begun.
   Status take_order(bool moved);
   [[nodiscard]] bool start_plan(Structure& structure) noexcept;
-  [[nodiscard]] KdParts wanted_parts() const noexcept;
+  [[nodiscard]] KdParts wanted_parts(const Structure& structure) const noexcept;
   void take_next_structure() noexcept;
   Status build_flat();
   Status absorb_changes(bool all);

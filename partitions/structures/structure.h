@@ -157,6 +157,8 @@ class Structure {
                                            Column<std::uint32_t>&) noexcept {
     return Ordered::none;
   }
+  /// How the order of the rest is found by a first build, if nobody asks for rays or regions.
+  [[nodiscard]] virtual KdParts first_parts() const noexcept { return KdParts::tiles; }
   /// What a build costs in tests of 16 volumes per object. The default was measured on both sides
   /// of the decision to build anew.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }

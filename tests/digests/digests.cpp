@@ -76,11 +76,12 @@ class Numbers {
   std::uint64_t state_;
 };
 
-std::vector<Aabb> boxes(std::size_t count, std::uint64_t seed) {
+/// Cubes of so many sizes.
+std::vector<Aabb> boxes(std::size_t count, std::uint64_t seed, std::size_t sizes = 4) {
   Numbers numbers(seed);
   std::vector<Aabb> boxes(count);
   for (Aabb& box : boxes) {
-    const auto size = static_cast<float>(1U << numbers.below(4)) * 0.5F;
+    const auto size = static_cast<float>(1U << numbers.below(sizes)) * 0.5F;
     for (int k = 0; k < 3; ++k) {
       box.min[k] = static_cast<float>(numbers.coordinate(16));
       box.max[k] = box.min[k] + size;
@@ -100,9 +101,9 @@ void add(Digest& digest, std::span<const Hit> hits) {
 }
 
 /// Pairs in the order found, of all objects and of what moved.
-void pairs(StructureKind structure, const Execution& execution, Digest& digest) {
+void pairs_of(std::vector<Aabb> given, StructureKind structure, const Execution& execution,
+              Digest& digest) {
   Partition partition(structure, {.execution = execution});
-  std::vector<Aabb> given = boxes(structure == n_squared() ? 60 : 1500, 1);
   std::vector<Key> keys(given.size());
   bool good = partition.insert(given, {}, keys) == Status::ok;
   PairBuffer found;
@@ -120,6 +121,13 @@ void pairs(StructureKind structure, const Execution& execution, Digest& digest) 
     }
   }
   digest.add(good ? 1.0 : 0.0);
+}
+
+/// Of many sizes, which structures of cells may leave to a tree, and of one.
+void pairs(StructureKind structure, const Execution& execution, Digest& digest) {
+  const std::size_t count = structure == n_squared() ? 60 : 1500;
+  pairs_of(boxes(count, 1), structure, execution, digest);
+  pairs_of(boxes(count, 1, 1), structure, execution, digest);
 }
 
 void queries(StructureKind structure, const Execution& execution, Digest& digest) {

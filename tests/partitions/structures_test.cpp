@@ -150,6 +150,22 @@ void expect_all_refused(Partition& partition, Status status) {
   partition.release_memory();
 }
 
+TEST(Structures, of_cells_leave_all_to_the_tree_where_many_objects_suit_no_cell) {
+  constexpr std::size_t kObjects = 4000;
+  const auto cells = [](StructureKind kind, const std::vector<Aabb>& boxes) {
+    Partition partition(kind, {.execution = Execution::serial()});
+    std::vector<Key> keys(boxes.size());
+    EXPECT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+    EXPECT_EQ(partition.refresh(), Status::ok);
+    return partition.statistics().cells;
+  };
+  constexpr std::size_t kBlocks = kObjects / 16;
+  for (const StructureKind kind : {flat_grid(), sweep_and_prune()}) {
+    EXPECT_EQ(cells(kind, mixed_boxes(kObjects)), kBlocks) << kind.name();
+    EXPECT_NE(cells(kind, uniform_boxes(kObjects)), kBlocks) << kind.name();
+  }
+}
+
 TEST(Structures, that_are_none_are_refused) {
   Partition partition{StructureKind{}};
   expect_all_refused(partition, Status::invalid_argument);

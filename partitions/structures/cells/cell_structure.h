@@ -29,6 +29,8 @@ class CellStructure : public Structure {
         },
         rows, most);
   }
+  /// What is left to the tree of a first build, which is to be there soon, is cut coarsely.
+  [[nodiscard]] KdParts first_parts() const noexcept final { return KdParts::cells; }
   [[nodiscard]] std::size_t pair_tasks() const noexcept final { return pair_cut().tasks(); }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept final {
     const TaskCut cut = pair_cut();
@@ -61,6 +63,18 @@ class CellStructure : public Structure {
   /// Writes to `out` the rows of places [begin, end) that left; returns how many.
   virtual std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
                                     std::uint32_t* out) const noexcept = 0;
+
+  /// Rows that do not fit cells ask all cells that they cross: where more than a tenth of a scene
+  /// does so, the tree serves all of it better.
+  [[nodiscard]] static bool are_too_many_apart(std::size_t apart, const RowPlan& plan) noexcept {
+    return apart > plan.objects / 10;
+  }
+  /// Makes every live row part of the rest, whatever the plan has listed.
+  void leave_cells(const RowPlan& plan) const noexcept {
+    plan.regular.clear();
+    plan.rest.clear();
+    leave_all(plan);
+  }
 
   /// Makes those live rows that have no cell in the plan's list part of the rest; `regular` others
   /// have one.

@@ -23,7 +23,8 @@ constexpr CellDemand kDemand{.rows_per_block = 10};
 /// met once and no object is stored twice. Cells are wider than the boxes by a slack that objects
 /// may drift within, so that slow scenes keep their order for many frames. Cell size, the axis that
 /// runs fastest, and which objects are too large for cells come from a sample of the scene at each
-/// build. Objects too large or in overfull cells go to a block tree and are asked against the grid.
+/// build. Objects too large or in overfull cells go to a block tree and are asked against the grid;
+/// where they are many all do.
 /// Self pairs: O(n + cells + pairs) where density is even. Exact.
 class FlatGrid final : public CellStructure {
  public:
@@ -91,6 +92,7 @@ void FlatGrid::sort_by_cell(const RowPlan& plan) noexcept {
   sort.count();
   if (drop_overfull(sort, plan)) sort.count();
   plan.regular.set_size(sort.find_starts());
+  if (are_too_many_apart(plan.objects - plan.regular.size(), plan)) return leave_cells(plan);
   sort.place(plan.regular.data());
   list_rest(plan.regular.size(), plan);
 }

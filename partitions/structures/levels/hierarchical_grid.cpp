@@ -196,6 +196,10 @@ class HierarchicalGrid final : public CellStructure {
       const std::uint64_t key = items[i] >> 32U;
       return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
     }
+    /// Where keys are packed.
+    [[nodiscard]] std::uint32_t step(std::size_t i) const {
+      return static_cast<std::uint32_t>(items[i] >> 32U & ((std::uint64_t{1} << step_bits) - 1));
+    }
   };
 
   [[nodiscard]] Planned begin_plan(const RowPlan& plan) noexcept;
@@ -215,8 +219,9 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] std::uint32_t step_of(const RowPlan& plan, std::size_t i) const noexcept;
   [[nodiscard]] bool lay_lines(const RowPlan& plan) noexcept;
   bool add_line(std::size_t begin, std::size_t end, const RowPlan& plan);
-  static std::uint32_t leave_crowd(const RowPlan& plan, std::uint32_t begin,
-                                   std::uint32_t end) noexcept;
+  void fill_cells(std::span<std::uint32_t> start, const GridLine& line, std::size_t begin,
+                  std::size_t end, const RowPlan& plan) noexcept;
+  static void leave_crowds(std::span<std::uint32_t> start, const RowPlan& plan) noexcept;
   bool rank_lines(GridLevel& level);
   void bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept;
   [[nodiscard]] std::uint32_t line_of(const GridLevel& level, const Place& place,
@@ -461,8 +466,8 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
 }
 
 std::uint32_t HierarchicalGrid::step_of(const RowPlan& plan, std::size_t i) const noexcept {
+  if (sorted_.packed) return sorted_.step(i);
   const GridLevel& level = planned_.level[planned_.levels];
-  if (sorted_.packed) return static_cast<std::uint32_t>(sorted_.items[i] >> 32U) & level.steps;
   return place_on(level, place_of(row_now(plan, sorted_.row(i)))).step;
 }
 
@@ -489,17 +494,6 @@ bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
   return rank_lines(level);
 }
 
-// Rows [begin, end) are those of a cell: where they are too many the tree takes them. Returns where
-// the next cell begins.
-std::uint32_t HierarchicalGrid::leave_crowd(const RowPlan& plan, std::uint32_t begin,
-                                            std::uint32_t end) noexcept {
-  if (end - begin <= kCrowd) return end;
-  for (std::uint32_t row = begin; row < end; ++row) {
-    (void)plan.rest.push_back(plan.regular.data()[row]);
-  }
-  return begin;
-}
-
 // Cuts a line into cells of a few objects each, were they spread evenly.
 bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPlan& plan) {
   const std::size_t most = (end - begin + kInCell - 1) / kInCell;
@@ -514,19 +508,7 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   if (!make_room(starts, starts.size() + cells)) return false;
   starts.set_size(starts.size() + cells);
   const std::size_t before = plan.regular.size();
-  std::uint32_t* const start = starts.data() + line.cell;
-  // Room for all was made.
-  std::uint32_t* const rows = plan.regular.data();
-  auto to = static_cast<std::uint32_t>(before);
-  std::size_t next_cell = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t cell = (step_of(plan, i) - line.first) >> line.shift;
-    if (cell >= next_cell && next_cell != 0) to = leave_crowd(plan, start[next_cell - 1], to);
-    while (next_cell <= cell) start[next_cell++] = to;
-    rows[to++] = sorted_.row(i);
-  }
-  to = leave_crowd(plan, start[next_cell - 1], to);
-  plan.regular.set_size(to);
+  fill_cells({starts.data() + line.cell, cells}, line, begin, end, plan);
   if (plan.regular.size() == before) {
     starts.set_size(line.cell);
     return true;
@@ -534,6 +516,61 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   const std::size_t lines = planned_.line.size() + 1;
   if (!make_room(planned_.line, lines) || !make_room(planned_.number, lines)) return false;
   return planned_.line.push_back(line) && planned_.number.push_back(sorted_.line(begin));
+}
+
+// Appends the rows of a line, which lie in the order of cells, and writes where these begin: no
+// branch, since where one ends cannot be foreseen.
+void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine& line,
+                                  std::size_t begin, std::size_t end,
+                                  const RowPlan& plan) noexcept {
+  std::ranges::fill(start, ~0U);
+  const auto first = static_cast<std::uint32_t>(plan.regular.size());
+  // Of copies: the originals might be what is written to.
+  const Sorted sorted = sorted_;
+  const auto note = [start, first, begin, end, line](auto&& step_at) {
+    for (std::size_t i = end; i-- > begin;) {
+      start[(step_at(i) - line.first) >> line.shift] =
+          first + static_cast<std::uint32_t>(i - begin);
+    }
+  };
+  if (sorted.packed) {
+    note([sorted](std::size_t i) { return sorted.step(i); });
+  } else {
+    note([&](std::size_t i) { return step_of(plan, i); });
+  }
+  const auto behind = first + static_cast<std::uint32_t>(end - begin);
+  std::uint32_t most = 0;
+  std::uint32_t next = behind;
+  for (std::size_t cell = start.size(); cell-- > 0;) {
+    start[cell] = std::min(start[cell], next);
+    most = std::max(most, next - start[cell]);
+    next = start[cell];
+  }
+  // Room for all was made.
+  std::uint32_t* const rows = plan.regular.data() + first;
+  for (std::size_t i = begin; i < end; ++i) rows[i - begin] = sorted.row(i);
+  plan.regular.set_size(behind);
+  if (most > kCrowd) leave_crowds(start, plan);
+}
+
+// Gives the tree those cells of a line, the last rows, that are too full.
+void HierarchicalGrid::leave_crowds(std::span<std::uint32_t> start, const RowPlan& plan) noexcept {
+  std::uint32_t* const rows = plan.regular.data();
+  const auto behind = static_cast<std::uint32_t>(plan.regular.size());
+  std::uint32_t to = start.front();
+  for (std::size_t c = 0; c < start.size(); ++c) {
+    std::uint32_t row = std::exchange(start[c], to);
+    const std::uint32_t last = c + 1 < start.size() ? start[c + 1] : behind;
+    const bool crowd = last - row > kCrowd;
+    for (; row < last; ++row) {
+      if (crowd) {
+        (void)plan.rest.push_back(rows[row]);
+      } else {
+        rows[to++] = rows[row];
+      }
+    }
+  }
+  plan.regular.set_size(to);
 }
 
 // A table of all lines where they are not many more than the objects.

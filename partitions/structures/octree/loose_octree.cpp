@@ -154,14 +154,16 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
 
 void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
   std::uint64_t* const items = plan.items.data();
-  for_even_stretches(execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = first + begin; row < first + end; ++row) {
-      const std::size_t now = row_now(plan, row);
-      const bool live = pool().ids()[now] != kNoObject;
-      const std::uint32_t key = live ? planned_.cells.key_of(pool(), now) : LooseOctreeCells::kNone;
-      items[row] = std::uint64_t{key} << 32U | row;
-    }
-  });
+  for_even_stretches(execution(), last - first, kRowsPerTask,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t row = first + begin; row < first + end; ++row) {
+                         const std::size_t now = row_now(plan, row);
+                         const bool live = pool().ids()[now] != kNoObject;
+                         const std::uint32_t key =
+                             live ? planned_.cells.key_of(pool(), now) : LooseOctreeCells::kNone;
+                         items[row] = std::uint64_t{key} << 32U | row;
+                       }
+                     });
 }
 
 bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {

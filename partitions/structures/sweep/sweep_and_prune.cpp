@@ -25,9 +25,6 @@ constexpr std::size_t kPadding = 16;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Objects of a strip that begin within reach of one another.
 constexpr std::uint32_t kCrowded = 384;
-// Rows that do not fit strips ask every strip that they cross. Where more than this share of a
-// scene does so, the tree serves all of it better.
-constexpr double kMostApart = 0.1;
 constexpr CellDemand kDemand{
     .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
 
@@ -45,10 +42,6 @@ std::uint32_t sortable_of(SweepItem item) noexcept {
 }
 float key_of(SweepItem item) noexcept {
   return from_sortable(sortable_of(item));
-}
-// Objects that may be in the tree beside strips.
-std::size_t most_apart(const RowPlan& plan) noexcept {
-  return static_cast<std::size_t>(kMostApart * static_cast<double>(plan.objects));
 }
 
 // Sorts items by key and row: in bins of equal width, of which each mostly holds one.
@@ -121,7 +114,6 @@ class SweepAndPrune final : public CellStructure {
   [[nodiscard]] Planned fill_strips(const RowPlan& plan) noexcept;
   [[nodiscard]] bool sort_strips(const RowPlan& plan, std::size_t begin, std::size_t end) noexcept;
   void drop_crowded(const RowPlan& plan) noexcept;
-  void leave_strips(const RowPlan& plan) const noexcept;
   [[nodiscard]] float crowd_window() const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
@@ -155,7 +147,7 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
     default:
       crowded_ |= sort_strips(plan, half, planned_.cells());
       if (crowded_) drop_crowded(plan);
-      if (plan.rest.size() > most_apart(plan)) leave_strips(plan);
+      if (are_too_many_apart(plan.rest.size(), plan)) leave_cells(plan);
       return Planned::done;
   }
 }
@@ -182,19 +174,13 @@ Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
                       execution());
   strips.count();
   plan.regular.set_size(strips.find_starts());
-  if (plan.objects - plan.regular.size() > most_apart(plan)) {
-    leave_strips(plan);
+  if (are_too_many_apart(plan.objects - plan.regular.size(), plan)) {
+    leave_cells(plan);
     return Planned::done;
   }
   strips.place(plan.regular.data());
   list_rest(plan.regular.size(), plan);
   return Planned::goes_on;
-}
-
-void SweepAndPrune::leave_strips(const RowPlan& plan) const noexcept {
-  plan.regular.clear();
-  plan.rest.clear();
-  leave_all(plan);
 }
 
 // Sorts the rows of each strip of [first, last) by their keys, which it leaves in the items and, as
