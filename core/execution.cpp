@@ -1,4 +1,9 @@
 #include <winnow/core/execution.h>
+#include "core/threads/atomic_ref.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
 
 #if WINNOW_HAVE_TBB
 #include <tbb/blocked_range.h>
@@ -22,17 +27,56 @@ std::size_t arena_threads() noexcept {
   return threads > 1 ? static_cast<std::size_t>(threads) : 1;
 }
 
+// Of more threads than this some have nothing to do.
+constexpr std::size_t kMostShares = 64;
+
+/// Tasks in a stretch for each thread, which takes them one by one and then what others have left:
+/// neighbours stay with one thread, and a task costs one addition.
+class SharedTasks {
+ public:
+  SharedTasks(std::size_t count, std::size_t shares, void* tasks, JobSystem::Task task) noexcept
+      : shares_(shares), tasks_(tasks), task_(task) {
+    for (std::size_t s = 0; s < shares; ++s) {
+      share_[s] = {.next = count * s / shares, .end = count * (s + 1) / shares};
+    }
+  }
+
+  /// Does tasks of a share, then of the others, until none is left that nobody has begun.
+  void run(std::size_t own) noexcept {
+    for (std::size_t k = 0; k < shares_; ++k) {
+      Share& share = share_[own + k < shares_ ? own + k : own + k - shares_];
+      for (std::size_t i = take(share); i < share.end; i = take(share)) task_(tasks_, i);
+    }
+  }
+
+ private:
+  struct alignas(64) Share {
+    std::size_t next;
+    std::size_t end;
+  };
+  static std::size_t take(Share& share) noexcept {
+    return AtomicRef<std::size_t>(share.next).fetch_add(1, std::memory_order_relaxed);
+  }
+
+  std::array<Share, kMostShares> share_;  // as many as there are have values
+  const std::size_t shares_;
+  void* const tasks_;
+  const JobSystem::Task task_;
+};
+
 // Workers keep the floating-point environment of when the arena was made: they take the caller's,
 // so that its rounding, and what it makes of denormal numbers, are those of all tasks. Isolated:
 // whoever cancels the work that the call is part of must not leave it half done.
 void run_in_arena(std::size_t count, void* tasks, JobSystem::Task task) {
   using Context = tbb::task_group_context;
   Context environment(Context::isolated, Context::default_traits | Context::fp_settings);
+  const std::size_t shares = std::min({count, arena_threads(), kMostShares});
+  SharedTasks shared(count, shares, tasks, task);
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, 1),
+        tbb::blocked_range<std::size_t>(0, shares, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) task(tasks, i);
+          for (std::size_t s = range.begin(); s != range.end(); ++s) shared.run(s);
         },
         tbb::simple_partitioner(), environment);
   });

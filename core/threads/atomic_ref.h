@@ -15,6 +15,9 @@ class AtomicRef {
  public:
   explicit AtomicRef(T& value) noexcept : value_(&value) {}
   [[nodiscard]] T load() const noexcept { return __atomic_load_n(value_, __ATOMIC_SEQ_CST); }
+  T fetch_add(T summand, std::memory_order /*order*/) const noexcept {
+    return __atomic_fetch_add(value_, summand, __ATOMIC_SEQ_CST);
+  }
   bool compare_exchange_weak(T& expected, T wanted) const noexcept {
     return exchange(expected, wanted, true);
   }
