@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostOwners = 8;
 /// for cache lines than the looking costs.
 [[nodiscard]] inline std::size_t owners_of_rows(std::size_t rows,
                                                 const Execution& execution) noexcept {
-  constexpr std::size_t kRowsPerOwner = 4096;
+  constexpr std::size_t kRowsPerOwner = 8192;
   return std::clamp<std::size_t>(rows / kRowsPerOwner, 1,
                                  std::min(kMostOwners, execution.concurrency()));
 }
