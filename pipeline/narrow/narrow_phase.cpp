@@ -16,6 +16,23 @@ namespace {
 constexpr std::uint32_t kTopBit = 1U << 31U;
 constexpr std::uint8_t kMirrored = 0x80;
 
+/// Of the kinds of two shapes the number of their pair, with kMirrored if they are given the other
+/// way round.
+struct KindCodes {
+  static constexpr std::uint32_t kKinds = ShapeId{}.kind_index() + 1;
+  std::uint8_t of[kKinds][kKinds] = {};
+
+  constexpr KindCodes() {
+    for (std::uint32_t a = 0; a < kShapeKinds; ++a) {
+      for (std::uint32_t b = 0; b < kShapeKinds; ++b) {
+        const std::uint32_t code = KindPairs::index(std::min(a, b), std::max(a, b));
+        of[a][b] = static_cast<std::uint8_t>(code | (a > b ? kMirrored : 0U));
+      }
+    }
+  }
+};
+constexpr KindCodes kKindCodes;
+
 // True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.
 [[nodiscard]] bool all_below(std::span<const BodyPair> pairs, std::uint32_t limit) noexcept {
   std::uint32_t outside = 0;
@@ -40,7 +57,7 @@ constexpr std::uint8_t kMirrored = 0x80;
                            std::uint32_t limit) noexcept {
   const std::uint32_t base = kind << ShapeId::kIndexBits;
   std::uint32_t outside = 0;
-  for (const ShapeId id : shapes) {
+  for (const ShapeId& id : shapes) {  // by reference: compilers make no copy wide
     const std::uint32_t index = id.bits - base;
     outside |= index | (limit - 1 - index);
   }
@@ -91,8 +108,10 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   if (!order.resize(pairs.size())) return Status::out_of_memory;
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::fill(counts_, 0U);
-  // A scene of one kind needs no look at every pair.
-  const std::uint32_t only = only_kind(tables);
+  // A scene of one kind needs no look at every pair, unless these are few among many bodies.
+  constexpr std::size_t kLook = 8;  // at a pair takes as long as at so many bodies
+  const std::uint32_t only =
+      shapes.size() / kLook <= pairs.size() ? only_kind(tables) : kShapeKinds;
   if (only != kShapeKinds && all_are(shapes, only, tables.count[only])) {
     counts_[KindPairs::index(only, only)] = static_cast<std::uint32_t>(pairs.size());
     return add_runs(runs);
@@ -118,9 +137,10 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
 Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId> shapes,
                              std::span<const BodyPair> pairs, std::uint32_t& bad_body) {
   if (!codes_.resize(pairs.size())) return Status::out_of_memory;
-  std::uint32_t limit[ShapeId{}.kind_index() + 1] = {};
+  std::uint32_t limit[KindCodes::kKinds] = {};
   std::copy_n(tables.count, kShapeKinds, limit);
-  std::uint32_t any = 0;
+  // They take turns: where one kind of pair follows itself, none waits for the count before.
+  std::uint32_t counts[2][kMirrored + KindPairs::kCount] = {};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const ShapeId a = shapes[pairs[i].a];
     const ShapeId b = shapes[pairs[i].b];
@@ -128,15 +148,16 @@ Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId>
       bad_body = a.index() >= limit[a.kind_index()] ? pairs[i].a : pairs[i].b;
       return Status::invalid_key;
     }
-    const std::uint32_t low = std::min(a.kind_index(), b.kind_index());
-    const std::uint32_t high = std::max(a.kind_index(), b.kind_index());
-    const std::uint32_t code = KindPairs::index(low, high);
-    const std::uint32_t flag = is_mirrored(a, b) ? kMirrored : 0U;
-    any |= flag;
-    ++counts_[code];
-    codes_[i] = static_cast<std::uint8_t>(code | flag);
+    const std::uint8_t code = kKindCodes.of[a.kind_index()][b.kind_index()];
+    ++counts[i % 2][code];
+    codes_[i] = code;
   }
-  any_mirrored_ = any != 0;
+  for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
+    for (const auto& some : counts) {
+      counts_[code] += some[code] + some[code | kMirrored];
+      any_mirrored_ = any_mirrored_ || some[code | kMirrored] != 0;
+    }
+  }
   return Status::ok;
 }
 
