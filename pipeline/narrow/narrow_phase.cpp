@@ -1,11 +1,14 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include "core/hooks/stage_scope.h"
+#include "core/memory/columns.h"
 #include "core/memory/new_in.h"
+#include "core/sort/stretches.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -33,6 +36,13 @@ struct KindCodes {
 };
 constexpr KindCodes kKindCodes;
 
+// The longest stretch of so many pairs that a task looks at.
+[[nodiscard]] constexpr std::size_t longest_stretch(std::size_t pairs) noexcept {
+  constexpr std::size_t kLeast = 16384;
+  constexpr std::size_t kMostStretches = 64;
+  return std::max(kLeast, pairs / (kMostStretches - 8) + 1);
+}
+
 // True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.
 [[nodiscard]] bool all_below(std::span<const BodyPair> pairs, std::uint32_t limit) noexcept {
   std::uint32_t outside = 0;
@@ -53,15 +63,21 @@ constexpr KindCodes kKindCodes;
   return only;
 }
 
-[[nodiscard]] bool all_are(std::span<const ShapeId> shapes, std::uint32_t kind,
-                           std::uint32_t limit) noexcept {
+[[nodiscard]] bool all_are(std::span<const ShapeId> shapes, std::uint32_t kind, std::uint32_t limit,
+                           const Execution& execution) noexcept {
+  constexpr std::size_t kShapesPerTask = 65536;
   const std::uint32_t base = kind << ShapeId::kIndexBits;
-  std::uint32_t outside = 0;
-  for (const ShapeId& id : shapes) {  // by reference: compilers make no copy wide
-    const std::uint32_t index = id.bits - base;
-    outside |= index | (limit - 1 - index);
-  }
-  return (outside & kTopBit) == 0;
+  std::atomic<std::uint32_t> any_outside{0};
+  for_even_stretches(
+      execution, shapes.size(), kShapesPerTask, [&](std::size_t first, std::size_t end) {
+        std::uint32_t outside = 0;
+        for (const ShapeId& id : shapes.subspan(first, end - first)) {  // no copy: not made wide
+          const std::uint32_t index = id.bits - base;
+          outside |= index | (limit - 1 - index);
+        }
+        any_outside.fetch_or(outside, std::memory_order_relaxed);
+      });
+  return (any_outside.load(std::memory_order_relaxed) & kTopBit) == 0;
 }
 
 }  // namespace
@@ -70,73 +86,95 @@ constexpr KindCodes kKindCodes;
 class PairBuckets {
  public:
   explicit PairBuckets(std::pmr::memory_resource* memory) noexcept
-      : sorted_(memory), codes_(memory) {}
+      : sorted_(memory), codes_(memory), looks_(memory) {}
 
   /// Sorts, or finds that nothing is to be sorted. `order` is set to the place of each sorted pair
   /// in the input. `invalid_argument` for a body that does not exist, `invalid_key` for a shape
   /// that does not (`bad_body` says whose).
   Status sort(const ShapeTables& tables, std::span<const ShapeId> shapes,
-              std::span<const BodyPair> pairs, Column<std::uint32_t>& order,
-              Column<NarrowRun>& runs, std::uint32_t& bad_body);
+              std::span<const BodyPair> pairs, const Execution& execution,
+              Column<std::uint32_t>& order, Column<NarrowRun>& runs, std::uint32_t& bad_body);
 
   [[nodiscard]] const BodyPair* pairs() const noexcept { return pairs_; }
   /// True if some pair is given the other way round than it was.
   [[nodiscard]] bool any_mirrored() const noexcept { return any_mirrored_; }
-  [[nodiscard]] Bytes bytes() const noexcept;
+  [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(sorted_, codes_, looks_); }
 
  private:
-  Status classify(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                  std::span<const BodyPair> pairs, std::uint32_t& bad_body);
+  /// What a task found that looked at a stretch of the pairs.
+  struct Look {
+    Status status;
+    std::uint32_t bad_body;
+    std::uint32_t mirrored;
+    /// Of each pair of kinds. Later: where the next pair of it goes.
+    std::uint32_t counts[KindPairs::kCount];
+  };
+
+  void look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
+               std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept;
+  Status sum_up(std::uint32_t& bad_body) noexcept;
+  void place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
+             std::uint32_t* order) noexcept;
   Status add_runs(Column<NarrowRun>& runs) const;
 
   Column<BodyPair> sorted_;
   Column<std::uint8_t> codes_;
+  Column<Look> looks_;
   std::uint32_t counts_[KindPairs::kCount] = {};
   const BodyPair* pairs_ = nullptr;
   bool any_mirrored_ = false;
 };
 
 Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                         std::span<const BodyPair> pairs, Column<std::uint32_t>& order,
-                         Column<NarrowRun>& runs, std::uint32_t& bad_body) {
+                         std::span<const BodyPair> pairs, const Execution& execution,
+                         Column<std::uint32_t>& order, Column<NarrowRun>& runs,
+                         std::uint32_t& bad_body) {
   runs.clear();
   any_mirrored_ = false;
   pairs_ = pairs.data();
-  if (shapes.size() >= kTopBit || !all_below(pairs, static_cast<std::uint32_t>(shapes.size()))) {
-    return Status::invalid_argument;
-  }
-  if (!order.resize(pairs.size())) return Status::out_of_memory;
-  std::iota(order.begin(), order.end(), 0U);
   std::ranges::fill(counts_, 0U);
+  if (shapes.size() >= kTopBit) return Status::invalid_argument;
+  const std::size_t length = even_stretch(pairs.size(), longest_stretch(pairs.size()));
+  const auto for_looks = [&](auto&& body) {
+    for_stretches(execution, pairs.size(), length, [&](std::size_t first, std::size_t end) {
+      body(pairs.subspan(first, end - first), first, looks_[first / length]);
+    });
+  };
   // A scene of one kind needs no look at every pair, unless these are few among many bodies.
   constexpr std::size_t kLook = 8;  // at a pair takes as long as at so many bodies
   const std::uint32_t only =
       shapes.size() / kLook <= pairs.size() ? only_kind(tables) : kShapeKinds;
-  if (only != kShapeKinds && all_are(shapes, only, tables.count[only])) {
-    counts_[KindPairs::index(only, only)] = static_cast<std::uint32_t>(pairs.size());
-    return add_runs(runs);
+  const bool one_kind = only != kShapeKinds && all_are(shapes, only, tables.count[only], execution);
+  if (!order.resize(pairs.size()) || !looks_.resize((pairs.size() + length - 1) / length) ||
+      (!one_kind && !codes_.resize(pairs.size()))) {
+    return Status::out_of_memory;
   }
-  const Status status = classify(tables, shapes, pairs, bad_body);
-  if (status != Status::ok) return status;
+  for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
+    look = {};
+    std::iota(order.data() + first, order.data() + first + some.size(),
+              static_cast<std::uint32_t>(first));
+    if (!all_below(some, static_cast<std::uint32_t>(shapes.size()))) {
+      look.status = Status::invalid_argument;
+    } else if (one_kind) {
+      look.counts[KindPairs::index(only, only)] = static_cast<std::uint32_t>(some.size());
+    } else {
+      look_at(tables, shapes, some, first, look);
+    }
+  });
+  if (const Status status = sum_up(bad_body); status != Status::ok) return status;
   const bool one_run = std::ranges::count_if(counts_, [](auto n) { return n != 0; }) <= 1;
   if (one_run && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
-  std::uint32_t next[KindPairs::kCount];
-  std::exclusive_scan(std::begin(counts_), std::end(counts_), std::begin(next), 0U);
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-    const std::uint32_t code = codes_[i];
-    const std::uint32_t at = next[code & (kMirrored - 1U)]++;
-    const BodyPair pair = pairs[i];
-    sorted_[at] = (code & kMirrored) != 0 ? BodyPair{pair.b, pair.a} : pair;
-    order[at] = i;
-  }
+  for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
+    place(some, first, look, order.data());
+  });
   pairs_ = sorted_.data();
   return add_runs(runs);
 }
 
-Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                             std::span<const BodyPair> pairs, std::uint32_t& bad_body) {
-  if (!codes_.resize(pairs.size())) return Status::out_of_memory;
+// Pairs of bodies that exist.
+void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                          std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept {
   std::uint32_t limit[KindCodes::kKinds] = {};
   std::copy_n(tables.count, kShapeKinds, limit);
   // They take turns: where one kind of pair follows itself, none waits for the count before.
@@ -145,20 +183,52 @@ Status PairBuckets::classify(const ShapeTables& tables, std::span<const ShapeId>
     const ShapeId a = shapes[pairs[i].a];
     const ShapeId b = shapes[pairs[i].b];
     if (a.index() >= limit[a.kind_index()] || b.index() >= limit[b.kind_index()]) [[unlikely]] {
-      bad_body = a.index() >= limit[a.kind_index()] ? pairs[i].a : pairs[i].b;
-      return Status::invalid_key;
+      look.bad_body = a.index() >= limit[a.kind_index()] ? pairs[i].a : pairs[i].b;
+      look.status = Status::invalid_key;
+      return;
     }
     const std::uint8_t code = kKindCodes.of[a.kind_index()][b.kind_index()];
     ++counts[i % 2][code];
-    codes_[i] = code;
+    codes_[first + i] = code;
   }
   for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
-    for (const auto& some : counts) {
-      counts_[code] += some[code] + some[code | kMirrored];
-      any_mirrored_ = any_mirrored_ || some[code | kMirrored] != 0;
+    const std::uint32_t mirrored = counts[0][code | kMirrored] + counts[1][code | kMirrored];
+    look.counts[code] = counts[0][code] + counts[1][code] + mirrored;
+    look.mirrored += mirrored;
+  }
+}
+
+// Of all looks; each is left knowing where its pairs go. A body that does not exist comes before a
+// shape that does not.
+Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
+  Status status = Status::ok;
+  for (const Look& look : looks_) {
+    if (look.status == Status::invalid_argument) return Status::invalid_argument;
+    if (status == Status::ok && look.status != Status::ok) {
+      status = look.status;
+      bad_body = look.bad_body;
     }
+    any_mirrored_ = any_mirrored_ || look.mirrored != 0;
+  }
+  if (status != Status::ok) return status;
+  std::uint32_t next = 0;
+  for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
+    const std::uint32_t begin = next;
+    for (Look& look : looks_) next += std::exchange(look.counts[code], next);
+    counts_[code] = next - begin;
   }
   return Status::ok;
+}
+
+void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
+                        std::uint32_t* order) noexcept {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::uint32_t code = codes_[first + i];
+    const std::uint32_t at = look.counts[code & (kMirrored - 1U)]++;
+    const BodyPair pair = pairs[i];
+    sorted_[at] = (code & kMirrored) != 0 ? BodyPair{pair.b, pair.a} : pair;
+    order[at] = static_cast<std::uint32_t>(first + i);
+  }
 }
 
 Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
@@ -171,12 +241,6 @@ Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
     first += counts_[code];
   }
   return Status::ok;
-}
-
-Bytes PairBuckets::bytes() const noexcept {
-  Bytes bytes = sorted_.bytes();
-  bytes += codes_.bytes();
-  return bytes;
 }
 
 namespace {
@@ -402,8 +466,8 @@ Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   if (!has_level || !std::isfinite(options.margin) || options.margin < 0.0) {
     return Status::invalid_argument;
   }
-  const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, result.order_,
-                                     result.runs_, bad_body);
+  const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
+                                     result.order_, result.runs_, bad_body);
   if (status != Status::ok) return status;
   return result.resize(call.pairs.size(), options.level) ? run(call, result)
                                                          : Status::out_of_memory;

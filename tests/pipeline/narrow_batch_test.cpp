@@ -106,6 +106,37 @@ TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
   }
 }
 
+TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
+  constexpr std::size_t kMany = 50000;  // several tasks sort them
+  const std::size_t few = scene_.pairs.size();
+  for (std::size_t i = 0; scene_.pairs.size() < kMany; ++i) {
+    scene_.pairs.push_back(scene_.pairs[i * 7919 % few]);
+  }
+  const auto collide = [&](const Execution& execution, NarrowResult& result) {
+    NarrowPhase phase;
+    ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), scene_.pairs,
+                            {.level = ContactLevel::boolean, .execution = execution}, result),
+              Status::ok);
+  };
+  NarrowResult serial;
+  collide(Execution::serial(), serial);
+  // Stable: of one kind in the order of the input, a mirrored pair among the others.
+  for (const NarrowRun& run : serial.runs()) {
+    for (std::uint32_t i = 1; i < run.count; ++i) {
+      ASSERT_LT(serial.pair_of(run.first + i - 1), serial.pair_of(run.first + i));
+    }
+  }
+  for (const int threads : {2, 3, 8}) {
+    NarrowResult parallel;
+    Threads(threads).run([&] { collide(Execution::parallel(), parallel); });
+    ASSERT_EQ(parallel.size(), serial.size());
+    for (std::uint32_t i = 0; i < serial.size(); ++i) {
+      ASSERT_EQ(parallel.pair_of(i), serial.pair_of(i)) << threads << " threads";
+      ASSERT_EQ(parallel.overlap()[i], serial.overlap()[i]) << threads << " threads";
+    }
+  }
+}
+
 TEST_F(Batches, levels_agree) {
   for (const NarrowTier tier : kTiers) {
     const auto yes_no = ask(scene_, {.level = ContactLevel::boolean, .tier = tier});

@@ -108,6 +108,37 @@ TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
   }
 }
 
+TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) {
+  constexpr std::size_t kMany = 100000;  // several tasks look at them
+  const std::vector<BodyPair> few = scene_.pairs;
+  while (scene_.pairs.size() < kMany) {
+    scene_.pairs.insert(scene_.pairs.end(), few.begin(), few.end());
+  }
+  const NarrowOptions options{.level = ContactLevel::boolean, .execution = Execution::parallel()};
+  for (const int threads : {1, 2, 5}) {
+    const auto refused = [&](Status expected) {
+      Threads(threads).run([&] { expect_refused(expected, options); });
+    };
+    // Bodies of their own: the first one in the order of the pairs is named.
+    const auto last = static_cast<std::uint32_t>(scene_.shapes.size());
+    scene_.shapes.insert(scene_.shapes.end(), {ShapeId{}, ShapeId{}});
+    scene_.poses.resize(scene_.shapes.size());
+    const BodyPair before[] = {scene_.pairs[kMany / 3], scene_.pairs[kMany - 2]};
+    scene_.pairs[kMany / 3].b = last + 1;
+    scene_.pairs[kMany - 2].a = last;
+    refused(Status::invalid_key);
+    EXPECT_EQ(phase_.bad_body(), last + 1);
+    // A body that is not there is told first, wherever it is.
+    scene_.pairs[kMany - 2].a = last + 2;
+    refused(Status::invalid_argument);
+    scene_.pairs[kMany / 3] = before[0];
+    scene_.pairs[kMany - 2] = before[1];
+    scene_.shapes.resize(last);
+    scene_.poses.resize(last);
+    Threads(threads).run([&] { EXPECT_EQ(collide(options), Status::ok); });
+  }
+}
+
 TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
   const auto reference = ask(scene_, {});
   for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
