@@ -10,7 +10,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace winnow {
@@ -101,18 +104,39 @@ class PairBuckets {
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(sorted_, codes_, looks_); }
 
  private:
+  /// Numbers of pairs of kinds, from the lowest to the highest that there is.
+  struct Codes {
+    std::uint32_t low = KindPairs::kCount;
+    std::uint32_t high = 0;
+
+    void add(std::uint32_t code) noexcept {
+      low = std::min(low, code);
+      high = std::max(high, code);
+    }
+  };
   /// What a task found that looked at a stretch of the pairs.
   struct Look {
     Status status;
     std::uint32_t bad_body;
     std::uint32_t mirrored;
-    /// Of each pair of kinds. Later: where the next pair of it goes.
+    Codes codes;
+    /// Of each pair of kinds. Where pairs are sorted, later: where the next of it goes.
     std::uint32_t counts[KindPairs::kCount];
+
+    void add(std::uint32_t code, std::uint32_t pairs) noexcept {
+      counts[code] += pairs;
+      codes.add(code);
+    }
   };
 
+  template <typename Note>
+  void for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                 std::span<const BodyPair> pairs, std::size_t first, Look& look,
+                 Note&& note) noexcept;
   void look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
                std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept;
   Status sum_up(std::uint32_t& bad_body) noexcept;
+  void find_places() noexcept;
   void place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
              std::uint32_t* order) noexcept;
   Status add_runs(Column<NarrowRun>& runs) const;
@@ -121,6 +145,7 @@ class PairBuckets {
   Column<std::uint8_t> codes_;
   Column<Look> looks_;
   std::uint32_t counts_[KindPairs::kCount] = {};
+  Codes there_;
   const BodyPair* pairs_ = nullptr;
   bool any_mirrored_ = false;
 };
@@ -133,6 +158,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   any_mirrored_ = false;
   pairs_ = pairs.data();
   std::ranges::fill(counts_, 0U);
+  there_ = {};
   if (shapes.size() >= kTopBit) return Status::invalid_argument;
   const std::size_t length = even_stretch(pairs.size(), longest_stretch(pairs.size()));
   const auto for_looks = [&](auto&& body) {
@@ -150,21 +176,24 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
     return Status::out_of_memory;
   }
   for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
-    look = {};
+    look.status = Status::ok;
+    look.mirrored = 0;
+    look.codes = {};
+    std::ranges::fill(look.counts, 0U);
     std::iota(order.data() + first, order.data() + first + some.size(),
               static_cast<std::uint32_t>(first));
     if (!all_below(some, static_cast<std::uint32_t>(shapes.size()))) {
       look.status = Status::invalid_argument;
     } else if (one_kind) {
-      look.counts[KindPairs::index(only, only)] = static_cast<std::uint32_t>(some.size());
+      look.add(KindPairs::index(only, only), static_cast<std::uint32_t>(some.size()));
     } else {
       look_at(tables, shapes, some, first, look);
     }
   });
   if (const Status status = sum_up(bad_body); status != Status::ok) return status;
-  const bool one_run = std::ranges::count_if(counts_, [](auto n) { return n != 0; }) <= 1;
-  if (one_run && !any_mirrored_) return add_runs(runs);
+  if (there_.low >= there_.high && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
+  find_places();
   for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
     place(some, first, look, order.data());
   });
@@ -172,13 +201,13 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   return add_runs(runs);
 }
 
-// Pairs of bodies that exist.
-void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                          std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept {
+// Calls note(i, code) for all pairs, of bodies that exist, unless a shape does not.
+template <typename Note>
+void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                            std::span<const BodyPair> pairs, std::size_t first, Look& look,
+                            Note&& note) noexcept {
   std::uint32_t limit[KindCodes::kKinds] = {};
   std::copy_n(tables.count, kShapeKinds, limit);
-  // They take turns: where one kind of pair follows itself, none waits for the count before.
-  std::uint32_t counts[2][kMirrored + KindPairs::kCount] = {};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const ShapeId a = shapes[pairs[i].a];
     const ShapeId b = shapes[pairs[i].b];
@@ -188,18 +217,35 @@ void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> sh
       return;
     }
     const std::uint8_t code = kKindCodes.of[a.kind_index()][b.kind_index()];
-    ++counts[i % 2][code];
+    note(i, code);
     codes_[first + i] = code;
   }
+}
+
+void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                          std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept {
+  constexpr std::size_t kFew = 64;
+  if (pairs.size() < kFew) {
+    return for_codes(tables, shapes, pairs, first, look, [&](std::size_t, std::uint32_t code) {
+      look.add(code & (kMirrored - 1U), 1);
+      look.mirrored += code / kMirrored;
+    });
+  }
+  // They take turns: where one kind of pair follows itself, none waits for the count before.
+  constexpr std::size_t kTurns = 2;
+  std::uint32_t counts[kTurns][kMirrored + KindPairs::kCount];
+  for (auto& some : counts) std::ranges::fill(some, 0U);
+  for_codes(tables, shapes, pairs, first, look,
+            [&](std::size_t i, std::uint32_t code) { ++counts[i % kTurns][code]; });
   for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
     const std::uint32_t mirrored = counts[0][code | kMirrored] + counts[1][code | kMirrored];
-    look.counts[code] = counts[0][code] + counts[1][code] + mirrored;
+    const std::uint32_t all = counts[0][code] + counts[1][code] + mirrored;
+    if (all != 0) look.add(code, all);
     look.mirrored += mirrored;
   }
 }
 
-// Of all looks; each is left knowing where its pairs go. A body that does not exist comes before a
-// shape that does not.
+// A body that does not exist comes before a shape that does not.
 Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
   Status status = Status::ok;
   for (const Look& look : looks_) {
@@ -209,15 +255,21 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
       bad_body = look.bad_body;
     }
     any_mirrored_ = any_mirrored_ || look.mirrored != 0;
+    for (std::uint32_t code = look.codes.low; code <= look.codes.high; ++code) {
+      counts_[code] += look.counts[code];
+    }
+    there_.low = std::min(there_.low, look.codes.low);
+    there_.high = std::max(there_.high, look.codes.high);
   }
-  if (status != Status::ok) return status;
+  return status;
+}
+
+// Tells every look where its pairs go.
+void PairBuckets::find_places() noexcept {
   std::uint32_t next = 0;
-  for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
-    const std::uint32_t begin = next;
+  for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
     for (Look& look : looks_) next += std::exchange(look.counts[code], next);
-    counts_[code] = next - begin;
   }
-  return Status::ok;
 }
 
 void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
@@ -233,7 +285,7 @@ void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, Look
 
 Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
   std::uint32_t first = 0;
-  for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
+  for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
     if (counts_[code] == 0) continue;
     const NarrowRun run{static_cast<ShapeKind>(KindPairs::first(code)),
                         static_cast<ShapeKind>(KindPairs::second(code)), first, counts_[code]};
@@ -294,6 +346,22 @@ struct Chunk {
   ChunkOutcome outcome;
   /// Where its contacts begin among those of a wave.
   std::size_t contacts_from = 0;
+};
+
+/// Chunks that are answered together. A call of few pairs makes no more than it needs.
+class Wave {
+ public:
+  [[nodiscard]] Chunk& add() noexcept { return *std::construct_at(first() + size_++); }
+  void clear() noexcept { size_ = 0; }
+  [[nodiscard]] bool full() const noexcept { return size_ == kWave; }
+  [[nodiscard]] std::span<Chunk> chunks() noexcept { return {first(), size_}; }
+
+ private:
+  static_assert(std::is_trivially_destructible_v<Chunk>);
+  [[nodiscard]] Chunk* first() noexcept { return reinterpret_cast<Chunk*>(room_); }
+
+  std::size_t size_ = 0;
+  alignas(Chunk) std::byte room_[kWave * sizeof(Chunk)];
 };
 
 void write_contacts(const NarrowJob& job, std::uint32_t i, const PairAnswer& answer,
@@ -410,8 +478,8 @@ struct NarrowPhase::State {
 
   [[nodiscard]] Status collide(const Call& call, NarrowResult& result);
   [[nodiscard]] Status run(const Call& call, NarrowResult& result);
-  [[nodiscard]] Chunk chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
-                               std::uint32_t first, std::uint32_t count) const noexcept;
+  void begin(Chunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
+             std::uint32_t count) const noexcept;
   [[nodiscard]] bool answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result);
   static void take_contacts(const Chunk& chunk, NarrowResult& result) noexcept;
   [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
@@ -474,20 +542,20 @@ Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
 }
 
 Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
-  Chunk wave[kWave];
-  std::size_t filled = 0;
+  Wave wave;
   for (const NarrowRun& run : result.runs()) {
     const NarrowKernel kernel = pick(run, call.options);
     if (kernel == nullptr) statistics.without_lanes += run.count;
     for (std::uint32_t at = 0; at < run.count; at += kJobPairs) {
-      const std::uint32_t count = std::min(kJobPairs, run.count - at);
-      wave[filled++] = chunk_of(call, result, kernel, run.first + at, count);
-      if (filled < kWave) continue;
-      if (!answer_wave(call, {wave, filled}, result)) return Status::out_of_memory;
-      filled = 0;
+      Chunk& chunk = wave.add();
+      chunk.kernel = kernel;
+      begin(chunk, call, result, run.first + at, std::min(kJobPairs, run.count - at));
+      if (!wave.full()) continue;
+      if (!answer_wave(call, wave.chunks(), result)) return Status::out_of_memory;
+      wave.clear();
     }
   }
-  if (!answer_wave(call, {wave, filled}, result)) return Status::out_of_memory;
+  if (!answer_wave(call, wave.chunks(), result)) return Status::out_of_memory;
   // Chunks write where there is room for all that they may find: with this much, a call that finds
   // no more than this one needs no more room, wherever in it its contacts are.
   if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
@@ -498,9 +566,10 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   return bad_body == ~0U ? Status::ok : Status::invalid_pose;
 }
 
-Chunk NarrowPhase::State::chunk_of(const Call& call, NarrowResult& result, NarrowKernel kernel,
-                                   std::uint32_t first, std::uint32_t count) const noexcept {
-  NarrowJob job{};
+void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& result,
+                               std::uint32_t first, std::uint32_t count) const noexcept {
+  chunk.first = first;
+  NarrowJob& job = chunk.job;
   job.pairs = buckets.pairs() + first;
   job.count = count;
   job.shapes = call.bodies.shapes.data();
@@ -516,7 +585,6 @@ Chunk NarrowPhase::State::chunk_of(const Call& call, NarrowResult& result, Narro
   }
   job.contact_first = offset(result.contact_first_.data(), first);
   job.contact_count = offset(result.contact_count_.data(), first);
-  return {.job = job, .kernel = kernel, .first = first, .outcome = {}};
 }
 
 bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
