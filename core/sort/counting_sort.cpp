@@ -69,6 +69,14 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
   }
   for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
     Counts& next = counts_[stretch];
+    if (buckets_ == 1) {
+      // Where it goes need not be looked up, and no row waits for the one before.
+      std::uint32_t* to = order + next[0];
+      for (std::size_t row = first; row < end; ++row) {
+        if (bucket_[row] != kNone) *to++ = static_cast<std::uint32_t>(row);
+      }
+      return;
+    }
     for (std::size_t row = first; row < end; ++row) {
       if (bucket_[row] != kNone) order[next[bucket_[row]]++] = static_cast<std::uint32_t>(row);
     }

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace winnow {
 namespace {
 
+// Of long digits there are fewer passes, of short ones more ends of buckets in the cache: threads
+// that share a pass wait for each other after it.
 constexpr unsigned kMostDigitBits = 11;
+constexpr unsigned kShortDigitBits = 9;
 constexpr std::size_t kMostDigits = std::size_t{1} << kMostDigitBits;
 constexpr std::size_t kMaxChunks = 8;
 constexpr std::size_t kItemsPerChunk = 4096;
@@ -50,18 +54,52 @@ void pass(const std::uint64_t* from, std::uint64_t* to, std::size_t count, const
   });
 }
 
+/// Digits of one length that a key is cut into.
+struct Digits {
+  unsigned passes;
+  unsigned length;
+
+  Digits(unsigned bits, unsigned most)
+      : passes((bits + most - 1) / most), length(passes == 0 ? 0 : (bits + passes - 1) / passes) {}
+};
+
+// The passes one after the other on one thread: the digits of all are counted at once.
+std::uint64_t* sort_serially(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
+                             unsigned bits, unsigned first_bit) {
+  constexpr std::size_t kMostPasses = (64 + kShortDigitBits - 1) / kShortDigitBits;
+  std::array<std::array<std::uint32_t, std::size_t{1} << kShortDigitBits>, kMostPasses> start;
+  const Digits digits(bits, kShortDigitBits);
+  if (count == 0 || digits.passes == 0) return items;
+  const std::size_t values = std::size_t{1} << digits.length;
+  for (unsigned p = 0; p < digits.passes; ++p) std::fill_n(start[p].begin(), values, 0U);
+  const std::uint64_t whole = ~std::uint64_t{0} >> (64 - bits);
+  const auto digit_of = [&](std::uint64_t item, unsigned p) {
+    return (item >> first_bit & whole) >> (p * digits.length) & (values - 1);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    for (unsigned p = 0; p < digits.passes; ++p) ++start[p][digit_of(items[i], p)];
+  }
+  for (unsigned p = 0; p < digits.passes; ++p) {
+    auto& at = start[p];
+    if (at[digit_of(items[0], p)] == count) continue;
+    std::exclusive_scan(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(values), at.begin(),
+                        0U);
+    for (std::size_t i = 0; i < count; ++i) spare[at[digit_of(items[i], p)]++] = items[i];
+    std::swap(items, spare);
+  }
+  return items;
+}
+
 }  // namespace
 
 std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
                           unsigned bits, const Execution& execution, unsigned first_bit) noexcept {
-  const bool share = execution.concurrency() > 1 && count >= 2 * kItemsPerChunk;
   const std::size_t chunks =
-      share ? std::min({kMaxChunks, count / kItemsPerChunk, execution.concurrency()}) : 1;
-  // Digits of one length: the fewer buckets, the more of their ends are in the cache.
-  const unsigned passes = (bits + kMostDigitBits - 1) / kMostDigitBits;
-  const unsigned length = passes == 0 ? 0 : (bits + passes - 1) / passes;
-  for (unsigned shift = 0; shift < bits; shift += length) {
-    const Digit digit{first_bit + shift, std::size_t{1} << std::min(length, bits - shift)};
+      std::min({kMaxChunks, count / kItemsPerChunk, execution.concurrency()});
+  if (chunks <= 1) return sort_serially(items, spare, count, bits, first_bit);
+  const Digits digits(bits, kMostDigitBits);
+  for (unsigned shift = 0; shift < bits; shift += digits.length) {
+    const Digit digit{first_bit + shift, std::size_t{1} << std::min(digits.length, bits - shift)};
     pass(items, spare, count, digit, chunks, execution);
     std::swap(items, spare);
   }
