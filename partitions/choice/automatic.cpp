@@ -62,7 +62,7 @@ bool is_brute_force(StructureKind kind) noexcept {
 }
 
 bool far_apart(std::size_t a, std::size_t b) noexcept {
-  return 2 * a > 3 * b + 64 || 2 * b > 3 * a + 64;
+  return a > 2 * b + 64 || b > 2 * a + 64;
 }
 
 /// Picks a structure for the scene it is given and goes on picking. At a refresh it may have the
@@ -177,6 +177,11 @@ std::size_t number_of(StructureKind kind) noexcept {
   return static_cast<std::size_t>(std::ranges::find(all, kind) - all.begin());
 }
 
+std::size_t number_of_brute_force() noexcept {
+  const auto all = candidates();
+  return static_cast<std::size_t>(std::ranges::find_if(all, is_brute_force) - all.begin());
+}
+
 FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
   const auto each = [this](std::size_t count) { return (count + frames_ - 1) / frames_; };
   FrameWork frame;
@@ -223,7 +228,9 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
   if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
   const PredictedCosts costs(features_, frame,
                              features_.pairs * static_cast<double>(features_.objects));
-  const std::size_t best = costs.cheapest(kFramesAhead);
+  // The costs are known of more objects.
+  const std::size_t best =
+      features_.objects <= kTooFew ? number_of_brute_force() : costs.cheapest(kFramesAhead);
   if (left_[best] != 0) return;
   wanted_ = candidates()[best];
   reason_ = is_brute_force(wanted_) ? "so few objects that no structure pays"

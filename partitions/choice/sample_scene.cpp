@@ -1,8 +1,12 @@
 #include "partitions/choice/sample_scene.h"
 
+#include "core/sort/end_values.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <span>
 
 namespace winnow {
 namespace {
@@ -31,24 +35,26 @@ struct Sample {
   Sample(const BoundsPool& pool, std::size_t live) noexcept {
     const std::size_t wanted = std::clamp<std::size_t>(live / 8, 64, kMost);
     const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+    const std::array<const float*, 6> box = box_columns(pool);
     for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
       if (pool.ids()[row] == kNoObject) continue;
       longest[count] = 0.0F;
       for (std::size_t a = 0; a < 3; ++a) {
-        low[a][count] = pool.column(a)[row];
-        edge[a][count] = pool.column(3 + a)[row] - low[a][count];
+        low[a][count] = box[a][row];
+        edge[a][count] = box[3 + a][row] - low[a][count];
         longest[count] = std::max(longest[count], edge[a][count]);
       }
       ++count;
     }
   }
 
-  // The value that a share of all lies below. Reorders the values.
-  [[nodiscard]] double quantile(std::array<float, kMost>& values, double share) const noexcept {
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(count - 1));
-    std::nth_element(values.begin(), values.begin() + at,
-                     values.begin() + static_cast<std::ptrdiff_t>(count));
-    return static_cast<double>(values[static_cast<std::size_t>(at)]);
+  // The value that a share of all lies below, which is a small one, or that a small one lies above.
+  [[nodiscard]] double quantile(const std::array<float, kMost>& values,
+                                double share) const noexcept {
+    const auto at = static_cast<std::size_t>(share * static_cast<double>(count - 1));
+    const std::span<const float> all(values.data(), count);
+    return static_cast<double>(share < 0.5 ? value_near_end(all, at, std::less<>())
+                                           : value_near_end(all, count - 1 - at, std::greater<>()));
   }
 
   [[nodiscard]] double mean_edge(std::size_t axis) const noexcept {
@@ -69,11 +75,16 @@ struct Axis {
   double from = 0.0;
   double range = 0.0;
   std::size_t cells = 1;
+  double cells_of_length = 0.0;  // one
 
+  void divide(std::size_t count) noexcept {
+    cells = count;
+    cells_of_length = count == 1 ? 0.0 : static_cast<double>(count) / range;
+  }
   [[nodiscard]] std::size_t cell_of(float low) const noexcept {
-    if (cells == 1) return 0;
-    const double at = (static_cast<double>(low) - from) / range * static_cast<double>(cells);
-    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(cells - 1)));
+    const double at = (static_cast<double>(low) - from) * cells_of_length;
+    // Written so that NaN, of an axis without end, becomes the first.
+    return at > 0.0 ? static_cast<std::size_t>(std::min(at, static_cast<double>(cells - 1))) : 0;
   }
 };
 
@@ -82,7 +93,7 @@ void divide(std::array<Axis, 3>& axes, const std::array<double, 3>& room) noexce
   constexpr std::array<std::size_t, 4> kEach{1, 64, 8, 4};
   const auto roomy = [](double r) { return r > 4.0; };
   const auto count = static_cast<std::size_t>(std::count_if(room.begin(), room.end(), roomy));
-  for (std::size_t a = 0; a < 3; ++a) axes[a].cells = roomy(room[a]) ? kEach[count] : 1;
+  for (std::size_t a = 0; a < 3; ++a) axes[a].divide(roomy(room[a]) ? kEach[count] : 1);
 }
 
 double crowding_of(const Sample& sample, const std::array<Axis, 3>& axes) noexcept {
@@ -110,12 +121,10 @@ SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
   Sample sample(pool, live);
   if (sample.count < 2) return features;
   std::array<Axis, 3> axes;
-  std::array<float, kMost> scratch;
   double pairs_of_one = 0.5 * static_cast<double>(live);
   for (std::size_t a = 0; a < 3; ++a) {
-    scratch = sample.low[a];
-    axes[a].from = sample.quantile(scratch, 0.02);
-    axes[a].range = sample.quantile(scratch, 0.98) - axes[a].from;
+    axes[a].from = sample.quantile(sample.low[a], 0.02);
+    axes[a].range = sample.quantile(sample.low[a], 0.98) - axes[a].from;
     const double edge = sample.mean_edge(a);
     features.room[a] = std::min(axes[a].range / std::max(edge, 1e-30), 1e12);
     // Two objects meet on this axis where their lower ends are less than an edge apart.

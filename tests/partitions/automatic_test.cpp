@@ -4,6 +4,8 @@
 #include <winnow/partitions/partition.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "tests/support/counting_memory.h"
@@ -21,7 +23,7 @@ namespace {
 
 constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
 constexpr std::size_t kMany = 1200;  // and the worst
-constexpr std::size_t kFramesOfEach = 64;
+constexpr std::size_t kFramesOfEach = 80;
 
 // A world whose number of objects changes so much that its structure must.
 class TurningWorld {
@@ -95,6 +97,32 @@ TEST_P(AutomaticChoice, keep_keys_filters_data_and_pairs_when_they_change) {
   }
   EXPECT_GE(scene.changes(), 2U);
   EXPECT_GE(chosen.size(), 2U);
+}
+
+// Of one object no cost of a structure is known, and a scene that grows soon leaves what it began
+// with.
+TEST_P(AutomaticChoice, begin_with_brute_force_where_hardly_anything_is) {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{8}, kFew}) {
+    TurningWorld scene(config());
+    PairBuffer buffer;
+    scene.fill(count);
+    ASSERT_TRUE(scene.world.agrees(buffer));
+    EXPECT_EQ(scene.chosen(), "BoundsNSquared") << count << " objects";
+  }
+}
+
+TEST_P(AutomaticChoice, look_at_scenes_in_which_many_objects_have_no_end) {
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  World world(config());
+  std::vector<Aabb> boxes = mixed_boxes(kMany);
+  for (std::size_t i = 0; i < boxes.size(); i += 5) {
+    boxes[i].min[static_cast<int>(i % 3)] = -kEndless;
+    if (i % 2 == 0) boxes[i].max[static_cast<int>(i % 3)] = kEndless;
+  }
+  (void)world.insert(boxes, std::vector<ClientData>(boxes.size(), 7));
+  PairBuffer buffer;
+  EXPECT_TRUE(world.agrees(buffer));
+  EXPECT_TRUE(std::isfinite(world.partition().choice().features.crowding));
 }
 
 // The ids of pairs that began or ended.

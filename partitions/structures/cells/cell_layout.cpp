@@ -1,5 +1,6 @@
 #include "partitions/structures/cells/cell_layout.h"
 
+#include "core/sort/end_values.h"
 #include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_layout.kernel.h"
 #include "partitions/structures/roots.h"
@@ -34,16 +35,6 @@ float value_at(std::span<float> values, std::size_t at) noexcept {
     std::nth_element(values.begin(), place, values.end());
   }
   return *place;
-}
-
-// The value that comes at place `at`, below kMostTail, of all in the order of `before`. So near an
-// end most values need one comparison, which is foreseen.
-constexpr std::size_t kMostTail = SceneSample::kMost / 50 + 1;
-template <typename Before>
-float value_near_end(std::span<const float> values, std::size_t at, Before before) noexcept {
-  std::array<float, kMostTail> tail;
-  std::partial_sort_copy(values.begin(), values.end(), tail.begin(), tail.begin() + at + 1, before);
-  return tail[at];
 }
 
 // The least and the largest lower end on an axis.

@@ -1,11 +1,13 @@
 #include "partitions/structures/levels/level_layout.h"
 
+#include "core/sort/end_values.h"
 #include "core/sort/stretches.h"
 #include "partitions/structures/roots.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace winnow {
@@ -48,14 +50,12 @@ Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowO
     if (pool.ids()[row] != kNoObject) low[n++] = pool.column(axis)[row];
   }
   if (n == 0) return {};
-  const auto at = [&](std::size_t i) { return low.begin() + static_cast<std::ptrdiff_t>(i); };
-  const auto [least, most] = std::minmax_element(at(0), at(n));
-  const double first = static_cast<double>(*least);
-  const double last = static_cast<double>(*most);
-  std::nth_element(at(0), at(n / 50), at(n));
-  if (n > 2) std::nth_element(at(n / 50 + 1), at(n - 1 - n / 50), at(n));
-  const double q02 = static_cast<double>(low[n / 50]);
-  const double q98 = static_cast<double>(low[n - 1 - n / 50]);
+  const std::span<const float> ends(low.data(), n);
+  const auto [least, most] = std::ranges::minmax(ends);
+  const double first = static_cast<double>(least);
+  const double last = static_cast<double>(most);
+  const double q02 = static_cast<double>(value_near_end(ends, n / 50, std::less<>()));
+  const double q98 = static_cast<double>(value_near_end(ends, n / 50, std::greater<>()));
   const double margin = 0.5 * (q98 - q02);
   return {std::max(first, q02 - margin), std::min(last, q98 + margin)};
 }
