@@ -92,20 +92,21 @@ struct SizeClasses::Group {
 
 SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave,
                          const Execution& execution) noexcept {
-  // Of every second row, which need not wait for each other.
-  using Halves = std::array<std::array<std::uint32_t, kOctaves>, 2>;
+  // Of every fourth row, which need not wait for each other.
+  using Quarters = std::array<std::array<std::uint32_t, kOctaves>, 4>;
   // Only those of stretches that there are get values.
-  std::array<Halves, kMostSizeStretches> part;
+  std::array<Quarters, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
-    Halves& half = part[begin / length];
-    half = {};
-    for (std::size_t row = begin; row < end; ++row) ++half[row & 1U][octave[row]];
+    Quarters& quarter = part[begin / length];
+    quarter = {};
+    for (std::size_t row = begin; row < end; ++row) ++quarter[row % 4][octave[row]];
   });
   Counts count{};
   for (std::size_t p = 0; p * length < octave.size(); ++p) {
-    const Halves& half = part[p];
-    for (std::size_t o = 0; o < kNoOctave; ++o) count[o] += half[0][o] + half[1][o];
+    for (const auto& quarter : part[p]) {
+      for (std::size_t o = 0; o < kNoOctave; ++o) count[o] += quarter[o];
+    }
   }
   choose_octaves(count);
   for (std::size_t o = 0; o < kOctaves; ++o) {
@@ -127,12 +128,26 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
     const std::size_t count = class_[c].count;
     step[c] = 1 + count / std::clamp(count / kSampled, kLeastSampled, kMostSampled);
   }
+  // Where all objects are of one class, that.
+  const auto holds = [](const Class& c) { return c.count != 0; };
+  const auto only = static_cast<std::size_t>(std::ranges::find_if(class_, holds) - class_.begin());
+  const bool one_class = std::ranges::count_if(class_, holds) == 1;
   std::array<std::array<Sample, kClasses>, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
+    part[begin / length] = {};
+    if (one_class) {
+      // The same as below, but that no row waits for the one before.
+      std::size_t wait = 0;
+      for (std::size_t row = begin; row < end; ++row) {
+        if (class_at[octave[row]] != only || wait-- != 0) continue;
+        wait = step[only] - 1;
+        part[begin / length][only].add(pool, row);
+      }
+      return;
+    }
     std::array<std::size_t, kClasses + 1> wait{};
     wait[kClasses] = octave.size();
-    part[begin / length] = {};
     for (std::size_t row = begin; row < end; ++row) {
       const std::size_t own = class_at[octave[row]];
       if (wait[own]-- != 0) continue;
