@@ -18,6 +18,8 @@ struct HilbertCurve {
   /// By state and cell (bit a of a cell is its half of axis a): place on the curve, and the state
   /// within, as next << N | place.
   std::array<std::uint8_t, kStates * kCells> step{};
+  /// By state and place: the cell, and the state within, as next << N | cell.
+  std::array<std::uint8_t, kStates * kCells> back{};
 
   constexpr HilbertCurve() noexcept {
     for (unsigned state = 0; state < kStates; ++state) {
@@ -27,10 +29,25 @@ struct HilbertCurve {
         const unsigned place = gray_inverse(rotate_right(cell ^ entry, axis + 1));
         const unsigned next_entry = entry ^ rotate_left(entry_of(place), axis + 1);
         const unsigned next_axis = (axis + axis_of(place) + 1) % N;
-        step[state * kCells + cell] =
-            static_cast<std::uint8_t>((next_entry * N + next_axis) << N | place);
+        const unsigned next = (next_entry * N + next_axis) << N;
+        step[state * kCells + cell] = static_cast<std::uint8_t>(next | place);
+        back[state * kCells + place] = static_cast<std::uint8_t>(next | cell);
       }
     }
+  }
+
+  /// The Morton code, bit 0 of axis 0 its lowest, of the cell that comes at a place of the curve
+  /// through a cube halved so many times.
+  [[nodiscard]] constexpr std::uint32_t morton_code(std::uint32_t place,
+                                                    unsigned levels) const noexcept {
+    std::uint32_t code = 0;
+    unsigned state = 0;
+    for (unsigned level = levels; level-- > 0;) {
+      const unsigned one = back[state << N | (place >> (N * level) & (kCells - 1))];
+      code = code << N | (one & (kCells - 1));
+      state = one >> N;
+    }
+    return code;
   }
 
  private:
@@ -61,8 +78,8 @@ struct HilbertCurve {
 /// The same curve, `Levels` levels per step.
 template <unsigned N, unsigned Levels>
 struct HilbertSteps {
+  static constexpr unsigned kAxes = N;
   static constexpr unsigned kBits = N * Levels;  // of a cell, and of a place on the curve
-  static constexpr unsigned kAxisMask = (1U << Levels) - 1U;
   static constexpr unsigned kPlaceMask = (1U << kBits) - 1U;
 
   /// By state and cell, whose number on axis a stands above `Levels` * a bits: place on the curve,

@@ -5,6 +5,7 @@
 #include "partitions/structures/octree/loose_octree_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <span>
 
@@ -93,8 +94,6 @@ class LooseTree : public CellStructure {
   void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
   [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
   [[nodiscard]] bool lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept;
-  [[nodiscard]] std::uint32_t code_of(std::span<const std::uint64_t> cell,
-                                      const RowPlan& plan) const noexcept;
 
   const std::size_t axes_;
   const float loose_;
@@ -154,27 +153,34 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
 
 void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
   std::uint64_t* const items = plan.items.data();
-  for_even_stretches(execution(), last - first, kRowsPerTask,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t row = first + begin; row < first + end; ++row) {
-                         const std::size_t now = row_now(plan, row);
-                         const bool live = pool().ids()[now] != kNoObject;
-                         const std::uint32_t key =
-                             live ? planned_.cells.key_of(pool(), now) : LooseOctreeCells::kNone;
-                         items[row] = std::uint64_t{key} << 32U | row;
-                       }
-                     });
+  const ObjectId* const ids = pool().ids();
+  constexpr std::size_t kTogether = 256;
+  for_even_stretches(
+      execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+        std::array<std::uint32_t, kTogether> key;
+        for (std::size_t from = first + begin; from < first + end; from += kTogether) {
+          const std::size_t to = std::min(first + end, from + kTogether);
+          planned_.cells.find_keys(pool(), from, to, key.data());
+          for (std::size_t row = from; row < to; ++row) {
+            std::uint32_t& own = key[row - from];
+            if (ids[row] == kNoObject) {
+              const std::size_t now = row_now(plan, row);
+              own = LooseOctreeCells::kNone;
+              if (ids[now] != kNoObject) planned_.cells.find_keys(pool(), now, now + 1, &own);
+            }
+            items[row] = std::uint64_t{own} << 32U | row;
+          }
+        }
+      });
 }
 
 bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {
   std::size_t first = 0;
   while (first < plan.rows && key_in(sorted_[first]) != LooseOctreeCells::kNone) {
-    const std::uint32_t cell = planned_.cells.cell_of_key(key_in(sorted_[first]));
+    const std::uint32_t key = key_in(sorted_[first]);
+    const unsigned within = planned_.cells.bits_within_cell(key);
     std::size_t last = first + 1;
-    while (last < plan.rows && key_in(sorted_[last]) != LooseOctreeCells::kNone &&
-           planned_.cells.cell_of_key(key_in(sorted_[last])) == cell) {
-      ++last;
-    }
+    while (last < plan.rows && (key_in(sorted_[last]) ^ key) >> within == 0) ++last;
     if (!lay_node({sorted_ + first, last - first}, plan)) return false;
     first = last;
   }
@@ -188,31 +194,24 @@ bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {
 // The node of the rows that had keys of one cell, but for those that too many have the same key of.
 bool LooseTree::lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept {
   const auto begin = static_cast<std::uint32_t>(plan.regular.size());
-  std::size_t run = 0;
-  while (run < cell.size()) {
-    std::size_t end = run + 1;
-    while (end < cell.size() && key_in(cell[end]) == key_in(cell[run])) ++end;
-    Column<std::uint32_t>& rows = end - run <= kLongRun ? plan.regular : plan.rest;
-    for (; run < end; ++run) (void)rows.push_back(static_cast<std::uint32_t>(cell[run]));
+  const auto append = [&](Column<std::uint32_t>& rows, std::size_t from, std::size_t to) {
+    std::uint32_t* const row = rows.end();
+    for (std::size_t i = from; i < to; ++i) row[i - from] = static_cast<std::uint32_t>(cell[i]);
+    rows.set_size(rows.size() + (to - from));
+  };
+  for (std::size_t run = 0; run < cell.size();) {
+    std::size_t end = cell.size();
+    if (end > kLongRun) {
+      end = run + 1;
+      while (end < cell.size() && key_in(cell[end]) == key_in(cell[run])) ++end;
+    }
+    append(end - run <= kLongRun ? plan.regular : plan.rest, run, end);
+    run = end;
   }
   if (plan.regular.size() == begin) return true;
-  const std::uint32_t code = code_of(cell, plan);
+  const std::uint32_t code = planned_.cells.code_of(key_in(cell[0]));
   return planned_.node.push_back(code) && planned_start_.push_back(begin) &&
          planned_.bounds.push_back(planned_.cells.loose_bounds(code));
-}
-
-// An object that has not left the cell since its key was found says which cell that is; where none
-// has stayed, any cell is as good.
-std::uint32_t LooseTree::code_of(std::span<const std::uint64_t> cell,
-                                 const RowPlan& plan) const noexcept {
-  const LooseOctreeCells& cells = planned_.cells;
-  const std::uint32_t key = key_in(cell[0]);
-  const auto row_of = [&](std::uint64_t item) {
-    return row_now(plan, static_cast<std::uint32_t>(item));
-  };
-  const auto stayed = std::ranges::find_if(
-      cell, [&](std::uint64_t item) { return cells.has_key(pool(), row_of(item), key); });
-  return cells.code_of(pool(), row_of(stayed == cell.end() ? cell.back() : *stayed), key);
 }
 
 void LooseTree::finish_build(const RowPlan&, bool) noexcept {

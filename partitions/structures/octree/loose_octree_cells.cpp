@@ -35,28 +35,54 @@ double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objec
 constexpr unsigned kBits3 = 9;
 constexpr unsigned kBits2 = 14;
 
-/// Where a place of `Bits` bits on each of N axes comes along Hilbert's curve, found `Levels`
-/// levels at a time.
-template <unsigned N, unsigned Levels, unsigned Bits>
-std::uint32_t along_curve(const std::array<std::uint32_t, 3>& place) noexcept {
-  using Steps = HilbertSteps<N, Levels>;
-  static constexpr Steps kCurve;
-  constexpr unsigned kSteps = (Bits + Levels - 1) / Levels;
-  // Bits below the last: a place within the finest cell, which changes nothing above.
-  constexpr unsigned kBelow = kSteps * Levels - Bits;
-  std::uint64_t code = 0;
-  unsigned state = 0;
-  for (unsigned bit = kSteps * Levels; bit != 0;) {
-    bit -= Levels;
-    unsigned cell = 0;
-    for (unsigned a = 0; a < N; ++a) {
-      cell |= ((place[a] << kBelow) >> bit & Steps::kAxisMask) << (Levels * a);
-    }
-    const unsigned step = kCurve.step[state << Steps::kBits | cell];
-    code = code << Steps::kBits | (step & Steps::kPlaceMask);
-    state = step >> Steps::kBits;
+/// Moves groups of `Levels` bits so far apart that those of N numbers fit between them: of up to
+/// 10 bits, in twos of three numbers, or 16, in fours of two.
+template <unsigned N, unsigned Levels>
+constexpr std::uint32_t spread(std::uint32_t x) noexcept {
+  static_assert((N == 3 && Levels == 2) || (N == 2 && Levels == 4));
+  if constexpr (N == 3) {
+    x = (x | x << 16U) & 0x030000FFU;
+    x = (x | x << 8U) & 0x0300F00FU;
+    return (x | x << 4U) & 0x030C30C3U;
   }
-  return static_cast<std::uint32_t>(code >> (N * kBelow));
+  x = (x | x << 8U) & 0x00FF00FFU;
+  return (x | x << 4U) & 0x0F0F0F0FU;
+}
+
+/// Hilbert's curve through places of `Bits` bits on each of N axes, found `Levels` levels at a
+/// time.
+template <unsigned N, unsigned Levels, unsigned Bits>
+struct Curve {
+  using Steps = HilbertSteps<N, Levels>;
+  static constexpr unsigned kSteps = (Bits + Levels - 1) / Levels;
+  // Bits below the last: a place within the finest cell, which changes nothing above.
+  static constexpr unsigned kBelow = kSteps * Levels - Bits;
+
+  /// What a place on an axis contributes to the cells of all steps.
+  static constexpr std::uint32_t cells_of(std::uint32_t place, unsigned axis) noexcept {
+    return spread<N, Levels>(place << kBelow) << (Levels * axis);
+  }
+  /// Where the cells come.
+  static std::uint32_t place_of(std::uint32_t cells) noexcept {
+    static constexpr Steps kCurve;
+    std::uint64_t code = 0;
+    unsigned state = 0;
+    for (unsigned s = kSteps; s-- > 0;) {
+      const unsigned cell = cells >> (Steps::kBits * s) & Steps::kPlaceMask;
+      const unsigned step = kCurve.step[state << Steps::kBits | cell];
+      code = code << Steps::kBits | (step & Steps::kPlaceMask);
+      state = step >> Steps::kBits;
+    }
+    return static_cast<std::uint32_t>(code >> (N * kBelow));
+  }
+};
+using Curve3 = Curve<3, 2, kBits3>;
+using Curve2 = Curve<2, 4, kBits2>;
+
+template <unsigned N>
+std::uint32_t morton_code(std::uint32_t place, unsigned levels) noexcept {
+  static constexpr HilbertCurve<N> kCurve;
+  return kCurve.morton_code(place, levels);
 }
 
 }  // namespace
@@ -98,6 +124,9 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
   double doubled = edge;
   for (; finest_ < bits_ && doubled < longest; ++finest_) doubled *= 2.0;
   edge_ = std::max(longest, doubled);
+  // A box by its centre reaches out by half of its edge.
+  double limit = 2.0 * reach_ * edge_;
+  for (std::uint32_t level = 0; level <= finest_; ++level, limit *= 0.5) longest_[level] = limit;
   scale_ = static_cast<double>(1U << bits_) / edge_;
   for (std::size_t k = 0; k < axes_; ++k) {
     origin_[k] = static_cast<double>(sample.low[axis_[k]]) - 0.5 * (edge_ - range[k]);
@@ -105,58 +134,74 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
   return true;
 }
 
-std::uint32_t LooseOctreeCells::level_of(const BoundsPool& pool, std::size_t row) const noexcept {
-  float longest = 0.0F;
-  for (std::size_t k = 0; k < axes_; ++k) {
-    const std::size_t a = axis_[k];
-    longest = std::max(longest, pool.column(3 + a)[row] - pool.column(a)[row]);
+std::uint32_t LooseOctreeCells::level_of(float longest) const noexcept {
+  // Most are on the finest.
+  for (std::uint32_t level = finest_ + 1; level-- > 0;) {
+    if (static_cast<double>(longest) <= longest_[level]) return level;
   }
-  // A box by its centre reaches out by half of its edge.
-  double edge = 2.0 * reach_ * edge_;
-  if (!(static_cast<double>(longest) <= edge)) return kNone;
-  std::uint32_t level = 0;
-  while (level < finest_ && static_cast<double>(longest) <= (edge *= 0.5)) ++level;
-  return level;
+  return kNone;
 }
 
-bool LooseOctreeCells::find_place(const BoundsPool& pool, std::size_t row,
-                                  std::array<std::uint32_t, 3>& place) const noexcept {
+// Step by step for some rows at once, so that compilers do each step for several of them.
+template <typename Curve>
+void LooseOctreeCells::find_some_keys(const BoxColumns& box, std::size_t first, std::size_t count,
+                                      std::uint32_t* key) const noexcept {
+  std::array<float, kTogether> longest;
+  std::array<double, kTogether> at;
+  std::array<double, kTogether> inside;
+  std::array<std::uint32_t, kTogether> cells;
+  longest.fill(0.0F);
+  inside.fill(1.0);
+  cells.fill(0);
   const double places = static_cast<double>(1U << bits_);
-  for (std::size_t k = 0; k < axes_; ++k) {
-    const std::size_t a = axis_[k];
-    const float centre = 0.5F * pool.column(a)[row] + 0.5F * pool.column(3 + a)[row];
-    const double at = (static_cast<double>(centre) - origin_[k]) * scale_;
-    if (!(at >= 0.0 && at < places)) return false;
-    place[k] = static_cast<std::uint32_t>(at);
+  const double last = places - 1.0;
+  const double scale = scale_;
+  for (unsigned k = 0; k < Curve::Steps::kAxes; ++k) {
+    const float* const low = box[axis_[k]] + first;
+    const float* const high = box[3 + axis_[k]] + first;
+    const double origin = origin_[k];
+    for (std::size_t i = 0; i < count; ++i) {
+      longest[i] = std::max(longest[i], high[i] - low[i]);
+      const float centre = 0.5F * low[i] + 0.5F * high[i];
+      at[i] = (static_cast<double>(centre) - origin) * scale;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      inside[i] = at[i] >= 0.0 && at[i] < places ? inside[i] : 0.0;
+      // Written so that NaN becomes 0.
+      const double from = at[i] > 0.0 ? at[i] : 0.0;
+      const double to = from < last ? from : last;
+      cells[i] |= Curve::cells_of(static_cast<std::uint32_t>(static_cast<std::int32_t>(to)), k);
+    }
   }
-  return true;
-}
-
-std::uint32_t LooseOctreeCells::key_of(const BoundsPool& pool, std::size_t row) const noexcept {
-  std::array<std::uint32_t, 3> place{};
-  const std::uint32_t level = level_of(pool, row);
-  if (level == kNone || !find_place(pool, row, place)) return kNone;
-  const std::uint32_t code =
-      axes_ == 3 ? along_curve<3, 2, kBits3>(place) : along_curve<2, 4, kBits2>(place);
-  return level << kLevelShift | code;
-}
-
-std::uint32_t LooseOctreeCells::cell_of_key(std::uint32_t key) const noexcept {
-  const std::uint32_t level = key >> kLevelShift;
-  const unsigned within = static_cast<unsigned>(axes_) * (bits_ - level);
-  return level << kLevelShift | (key & kCodeMask) >> within;
-}
-
-std::uint32_t LooseOctreeCells::code_of(const BoundsPool& pool, std::size_t row,
-                                        std::uint32_t key) const noexcept {
-  const std::uint32_t level = key >> kLevelShift;
-  std::array<std::uint32_t, 3> place{};
-  (void)find_place(pool, row, place);
-  std::uint32_t code = 0;
-  for (unsigned bit = bits_; bit-- > bits_ - level;) {
-    for (std::size_t k = axes_; k-- > 0;) code = code << 1U | (place[k] >> bit & 1U);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t level = level_of(longest[i]);
+    const bool none = level == kNone || inside[i] == 0.0;
+    key[i] = none ? kNone : level << kLevelShift | Curve::place_of(cells[i]);
   }
-  return level << kLevelShift | code;
+}
+
+void LooseOctreeCells::find_keys(const BoundsPool& pool, std::size_t begin, std::size_t end,
+                                 std::uint32_t* key) const noexcept {
+  const BoxColumns box = box_columns(pool);
+  for (std::size_t first = begin; first < end; first += kTogether) {
+    const std::size_t count = std::min(kTogether, end - first);
+    if (axes_ == 3) {
+      find_some_keys<Curve3>(box, first, count, key + (first - begin));
+    } else {
+      find_some_keys<Curve2>(box, first, count, key + (first - begin));
+    }
+  }
+}
+
+unsigned LooseOctreeCells::bits_within_cell(std::uint32_t key) const noexcept {
+  return static_cast<unsigned>(axes_) * (bits_ - (key >> kLevelShift));
+}
+
+std::uint32_t LooseOctreeCells::code_of(std::uint32_t key) const noexcept {
+  const std::uint32_t level = key >> kLevelShift;
+  const std::uint32_t place = (key & kCodeMask) >> bits_within_cell(key);
+  return level << kLevelShift |
+         (axes_ == 3 ? morton_code<3>(place, level) : morton_code<2>(place, level));
 }
 
 LooseOctreeCells::Bounds LooseOctreeCells::bounds_of(std::uint32_t code,

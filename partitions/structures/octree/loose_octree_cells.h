@@ -24,24 +24,20 @@ class LooseOctreeCells {
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   /// Cells are loose by this much of their edge more, so that a box which only just fits may move.
-  static constexpr double kSpare = 0.25;
-  /// Where a row stands in the order: by level, coarse ones first, and within a level along
-  /// Hilbert's curve through cells much finer than its own. kNone if it is too large, or lies
-  /// outside of the root.
-  [[nodiscard]] std::uint32_t key_of(const BoundsPool& pool, std::size_t row) const noexcept;
-  /// True if it stands there within its cell.
-  [[nodiscard]] bool has_key(const BoundsPool& pool, std::size_t row,
-                             std::uint32_t key) const noexcept {
-    const std::uint32_t own = key_of(pool, row);
-    return own != kNone && cell_of_key(own) == cell_of_key(key);
-  }
-  /// The part of a key that rows of one cell have in common.
-  [[nodiscard]] std::uint32_t cell_of_key(std::uint32_t key) const noexcept;
+  /// A box that has moved so far widens the block that it is in, and wear tells what that costs: a
+  /// build for it would cost more.
+  static constexpr double kSpare = 0.75;
+  /// Writes where each of the rows [begin, end) stands in the order: by level, coarse ones first,
+  /// and within a level along Hilbert's curve through cells much finer than its own. kNone if it is
+  /// too large, or lies outside of the root.
+  void find_keys(const BoundsPool& pool, std::size_t begin, std::size_t end,
+                 std::uint32_t* key) const noexcept;
+  /// Keys are of one cell that differ in no more than so many of their lowest bits.
+  [[nodiscard]] unsigned bits_within_cell(std::uint32_t key) const noexcept;
 
   /// Level and Morton code (the linear code of Gargantini, "An effective way to represent
-  /// quadtrees", CACM 25(12), 1982) of the cell of a row that has a key.
-  [[nodiscard]] std::uint32_t code_of(const BoundsPool& pool, std::size_t row,
-                                      std::uint32_t key) const noexcept;
+  /// quadtrees", CACM 25(12), 1982) of a key's cell.
+  [[nodiscard]] std::uint32_t code_of(std::uint32_t key) const noexcept;
 
   /// What the boxes of a cell keep to, by divided axis.
   struct Bounds {
@@ -70,15 +66,21 @@ class LooseOctreeCells {
 
  private:
   [[nodiscard]] Bounds bounds_of(std::uint32_t code, double reach) const noexcept;
-  [[nodiscard]] std::uint32_t level_of(const BoundsPool& pool, std::size_t row) const noexcept;
-  [[nodiscard]] bool find_place(const BoundsPool& pool, std::size_t row,
-                                std::array<std::uint32_t, 3>& place) const noexcept;
+  using BoxColumns = std::array<const float*, 6>;  // lower ends, then upper ends
+  [[nodiscard]] std::uint32_t level_of(float longest) const noexcept;
+  template <typename Curve>
+  void find_some_keys(const BoxColumns& box, std::size_t first, std::size_t count,
+                      std::uint32_t* key) const noexcept;
+
+  static constexpr std::size_t kMostLevels = 15;
+  static constexpr std::size_t kTogether = 128;
 
   std::array<std::uint32_t, 3> axis_{};
   std::array<double, 3> origin_{};
-  double edge_ = 0.0;   // of the root
-  double scale_ = 0.0;  // finest places on the root's edge, by its length
-  double reach_ = 1.0;  // out of a cell on either side, in its edges
+  double edge_ = 0.0;                          // of the root
+  double scale_ = 0.0;                         // finest places on the root's edge, by its length
+  double reach_ = 1.0;                         // out of a cell on either side, in its edges
+  std::array<double, kMostLevels> longest_{};  // edge of a box by level, at most
   std::size_t axes_ = 3;
   unsigned bits_ = 9;  // of a place, by axis
   std::uint32_t finest_ = 0;
