@@ -192,8 +192,8 @@ std::size_t SpatialIndex::planning_work(const Structure& structure) const noexce
   if (build_budget_ != 0) return build_budget_;
   const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
   const std::size_t refreshes = std::max<std::size_t>(1, 2 * life / 5);
-  const std::size_t passes = (structure.plan_passes() + refreshes - 1) / refreshes;
-  return passes * (plan_.underway() ? plan_.rows() : rows_.pool().rows());
+  const std::size_t rows = plan_.underway() ? plan_.rows() : rows_.pool().rows();
+  return (structure.plan_passes() * rows + refreshes - 1) / refreshes;
 }
 
 std::size_t SpatialIndex::changed() const noexcept {

@@ -70,10 +70,11 @@ class Tiles {
     int order[3];
     order_by_length(length, order);
     const TileCuts cuts(axis[order[0]], axis[order[1]], axis[order[2]], count_);
-    const std::uint32_t parts[3] = {0, cuts.mid, cuts.slow};
+    constexpr std::uint32_t kPartsOfLine = 64;
+    const std::uint32_t parts[3] = {kPartsOfLine, cuts.mid, cuts.slow};
     for (int k = 0; k < 3; ++k) {
       axis[order[k]].find_places(count_, place_[k]);
-      if (parts[k] != 1 && is_heaped(place_[k])) return false;
+      if (parts[k] != 1 && is_heaped(place_[k], parts[k])) return false;
     }
     find_lines(cuts);
     place_rows(cuts.slow * cuts.mid);
@@ -94,11 +95,12 @@ class Tiles {
     }
   }
 
-  /// True if so many points are at one place that they have to be told apart by other means.
-  [[nodiscard]] bool is_heaped(const std::uint8_t* place) const {
+  /// True if so many points are at one place that they have to be told apart by other means. Of an
+  /// axis that is cut into parts one may be twice as large: the other axes cut that further.
+  [[nodiscard]] bool is_heaped(const std::uint8_t* place, std::uint32_t parts) const {
     std::uint32_t points[kPlaces] = {};
     for_sample([&](std::size_t i) { ++points[place[i]]; });
-    return most_at_a_place(points) * step() > count_ / 32 + kStep;
+    return most_at_a_place(points) * step() > 2 * count_ / parts + kStep;
   }
 
   /// Lines are numbered like a snake.
