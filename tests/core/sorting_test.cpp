@@ -107,6 +107,31 @@ TEST(RadixSort, sorts_keys_of_any_length_and_keeps_the_order_of_equal_ones) {
   }
 }
 
+TEST(RadixSort, goes_by_bits_anywhere_in_an_item_and_by_no_others) {
+  Random random(3);
+  for (const auto& [first, bits] : {std::pair{0U, 64U}, {0U, 48U}, {5U, 30U}, {32U, 28U}}) {
+    for (const std::size_t count : {0U, 1U, 700U, 20000U}) {
+      std::vector<std::uint64_t> items(count);
+      // Some bits, as those of a level that all are on, do not differ.
+      for (std::uint64_t& item : items) item = random.bits() & ~(std::uint64_t{0x3FFFF} << 20U);
+      const std::uint64_t whole = ~std::uint64_t{0} >> (64U - bits);
+      const auto key = [&](std::uint64_t item) { return item >> first & whole; };
+      std::vector<std::uint64_t> expected = items;
+      std::ranges::stable_sort(expected, {}, key);
+      for (const int threads : {1, 3}) {
+        std::vector<std::uint64_t> from = items;
+        std::vector<std::uint64_t> spare(items.size());
+        Threads arena(threads);
+        arena.run([&] {
+          const std::uint64_t* const sorted = radix_sort(from.data(), spare.data(), from.size(),
+                                                         bits, Execution::parallel(), first);
+          EXPECT_TRUE(std::equal(expected.begin(), expected.end(), sorted)) << first << ' ' << bits;
+        });
+      }
+    }
+  }
+}
+
 TEST(Sortable, orders_floats_and_gives_them_back) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<float> ascending{-kInfinity, -3.5F,  -1e-40F, -0.0F,
