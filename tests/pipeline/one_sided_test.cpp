@@ -100,7 +100,7 @@ TEST(OneSided, the_mid_phase_leaves_out_what_stands_behind) {
     }
     EXPECT_EQ(parts_met(front, i, 0.1), expected);
   }
-  EXPECT_GT(behind, 20U);
+  EXPECT_GT(behind, 10U);
 }
 
 /// A scene of one body, asked by rays, balls that move and balls that stand.

@@ -164,14 +164,14 @@ std::size_t FlatGrid::cells() const noexcept {
 }
 
 constexpr StructureCosts kCosts{.has_cells = true,
-                                .keep = 20.8,
+                                .keep = 19,
                                 .level = 0.023,
-                                .crowd = 3.6,
-                                .pair = 8.5,
+                                .crowd = 2.8,
+                                .pair = 3.4,
                                 .moved = 430,
                                 .rest = 0.4,
-                                .build = 27,
-                                .anew = 17,
+                                .build = 12,
+                                .anew = 28,
                                 .ask_level = 36,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);
