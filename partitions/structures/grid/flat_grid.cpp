@@ -164,6 +164,7 @@ std::size_t FlatGrid::cells() const noexcept {
 }
 
 constexpr StructureCosts kCosts{.has_cells = true,
+                                .frame = 5000,
                                 .keep = 19,
                                 .level = 0.023,
                                 .crowd = 2.8,
