@@ -224,7 +224,7 @@ void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> 
 
 void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
                           std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept {
-  constexpr std::size_t kFew = 64;
+  constexpr std::size_t kFew = 192;
   if (pairs.size() < kFew) {
     return for_codes(tables, shapes, pairs, first, look, [&](std::size_t, std::uint32_t code) {
       look.add(code & (kMirrored - 1U), 1);

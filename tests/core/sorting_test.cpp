@@ -109,7 +109,13 @@ TEST(RadixSort, sorts_keys_of_any_length_and_keeps_the_order_of_equal_ones) {
 
 TEST(RadixSort, goes_by_bits_anywhere_in_an_item_and_by_no_others) {
   Random random(3);
-  for (const auto& [first, bits] : {std::pair{0U, 64U}, {0U, 48U}, {5U, 30U}, {32U, 28U}}) {
+  struct Digits {
+    unsigned first;
+    unsigned bits;
+  };
+  for (const Digits digits : {Digits{0, 64}, Digits{0, 48}, Digits{5, 30}, Digits{32, 28}}) {
+    const unsigned first = digits.first;
+    const unsigned bits = digits.bits;
     for (const std::size_t count : {0U, 1U, 700U, 20000U}) {
       std::vector<std::uint64_t> items(count);
       // Some bits, as those of a level that all are on, do not differ.
