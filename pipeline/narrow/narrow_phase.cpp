@@ -39,11 +39,11 @@ struct KindCodes {
 };
 constexpr KindCodes kKindCodes;
 
-// The longest stretch of so many pairs that a task looks at.
-[[nodiscard]] constexpr std::size_t longest_stretch(std::size_t pairs) noexcept {
+// The length of the stretches of so many pairs that tasks look at.
+[[nodiscard]] constexpr std::size_t stretch_of(std::size_t pairs) noexcept {
   constexpr std::size_t kLeast = 16384;
   constexpr std::size_t kMostStretches = 64;
-  return std::max(kLeast, pairs / (kMostStretches - 8) + 1);
+  return even_stretch(pairs, std::max(kLeast, pairs / (kMostStretches - 8) + 1));
 }
 
 // True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.
@@ -123,12 +123,20 @@ class PairBuckets {
     /// Of each pair of kinds. Where pairs are sorted, later: where the next of it goes.
     std::uint32_t counts[KindPairs::kCount];
 
+    void clear() noexcept {
+      status = Status::ok;
+      mirrored = 0;
+      codes = {};
+      std::ranges::fill(counts, 0U);
+    }
     void add(std::uint32_t code, std::uint32_t pairs) noexcept {
       counts[code] += pairs;
       codes.add(code);
     }
   };
 
+  template <typename Body>
+  void for_looks(std::span<const BodyPair> pairs, const Execution& execution, Body&& body);
   template <typename Note>
   void for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
                  std::span<const BodyPair> pairs, std::size_t first, Look& look,
@@ -160,26 +168,19 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   std::ranges::fill(counts_, 0U);
   there_ = {};
   if (shapes.size() >= kTopBit) return Status::invalid_argument;
-  const std::size_t length = even_stretch(pairs.size(), longest_stretch(pairs.size()));
-  const auto for_looks = [&](auto&& body) {
-    for_stretches(execution, pairs.size(), length, [&](std::size_t first, std::size_t end) {
-      body(pairs.subspan(first, end - first), first, looks_[first / length]);
-    });
-  };
   // A scene of one kind needs no look at every pair, unless these are few among many bodies.
   constexpr std::size_t kLook = 8;  // at a pair takes as long as at so many bodies
   const std::uint32_t only =
       shapes.size() / kLook <= pairs.size() ? only_kind(tables) : kShapeKinds;
   const bool one_kind = only != kShapeKinds && all_are(shapes, only, tables.count[only], execution);
-  if (!order.resize(pairs.size()) || !looks_.resize((pairs.size() + length - 1) / length) ||
+  const std::size_t looks =
+      (pairs.size() + stretch_of(pairs.size()) - 1) / stretch_of(pairs.size());
+  if (!order.resize(pairs.size()) || !looks_.resize(looks) ||
       (!one_kind && !codes_.resize(pairs.size()))) {
     return Status::out_of_memory;
   }
-  for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
-    look.status = Status::ok;
-    look.mirrored = 0;
-    look.codes = {};
-    std::ranges::fill(look.counts, 0U);
+  for_looks(pairs, execution, [&](std::span<const BodyPair> some, std::size_t first, Look& look) {
+    look.clear();
     std::iota(order.data() + first, order.data() + first + some.size(),
               static_cast<std::uint32_t>(first));
     if (!all_below(some, static_cast<std::uint32_t>(shapes.size()))) {
@@ -194,11 +195,21 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   if (there_.low >= there_.high && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
   find_places();
-  for_looks([&](std::span<const BodyPair> some, std::size_t first, Look& look) {
+  for_looks(pairs, execution, [&](std::span<const BodyPair> some, std::size_t first, Look& look) {
     place(some, first, look, order.data());
   });
   pairs_ = sorted_.data();
   return add_runs(runs);
+}
+
+// Calls body(pairs, the number of the first, look) for each stretch of the pairs.
+template <typename Body>
+void PairBuckets::for_looks(std::span<const BodyPair> pairs, const Execution& execution,
+                            Body&& body) {
+  const std::size_t length = stretch_of(pairs.size());
+  for_stretches(execution, pairs.size(), length, [&](std::size_t first, std::size_t end) {
+    body(pairs.subspan(first, end - first), first, looks_[first / length]);
+  });
 }
 
 // Calls note(i, code) for all pairs, of bodies that exist, unless a shape does not.
