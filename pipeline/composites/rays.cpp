@@ -89,20 +89,19 @@ struct RayTarget {
   SurfaceFrame frame;
 };
 
-/// A vector in a frame, added in the order of its columns.
-void put_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
+/// A vector in a frame that is turned, added in the order of its columns.
+void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
   const auto& column = frame.to_own;
   for (int i = 0; i < 3; ++i) {
-    own[i] =
-        frame.is_turned ? column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2] : v[i];
+    own[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
   }
 }
 /// The largest coordinate that it has there whatever the signs of its own.
-[[nodiscard]] double largest_in(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
+[[nodiscard]] double largest_turned(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) {
     const auto part = [&](int k) { return std::abs(frame.to_own[k][i]) * std::abs(v[k]); };
-    largest = std::max(largest, frame.is_turned ? part(0) + part(1) + part(2) : std::abs(v[i]));
+    largest = std::max(largest, part(0) + part(1) + part(2));
   }
   return largest;
 }
@@ -138,14 +137,22 @@ template <std::uint32_t Room>
   }
   double way[3];
   double from[3];
-  put_into(frame, ray.direction, way);
-  put_into(frame, start, from);
-  const double stretch = scale_to_one(largest_of(way));
+  double coordinate = 0.0;
+  if (frame.is_turned) {
+    turn_into(frame, ray.direction, way);
+    turn_into(frame, start, from);
+    coordinate = largest_turned(frame, start);
+  } else {
+    std::copy_n(ray.direction, 3, way);
+    std::copy_n(start, 3, from);
+    coordinate = largest_of(start);
+  }
+  const double stretch = scale_to_one(frame.is_turned ? largest_of(way) : fastest);
   for (int axis = 0; axis < 3; ++axis) {
     own.ray.origin[axis][lane] = from[axis];
     own.ray.direction[axis][lane] = way[axis] * stretch;
   }
-  own.slack[lane] = kRaySlack * (largest_in(frame, start) + frame.reach);
+  own.slack[lane] = kRaySlack * (coordinate + frame.reach);
   own.shift[lane] = shift;
   own.stretch[lane] = stretch;
   return true;

@@ -28,7 +28,6 @@ inline constexpr float kNearUnits = 0x1p22F;
 /// the largest bound: 32 u, where 12 are met, or 24 in a mode that rounds to one side.
 inline constexpr float kNearShare = 0x1p-19F;
 inline constexpr float kNearDoubt = 0.5F;
-inline constexpr float kNearStandingRate = 1e-4F;
 
 /// Three numbers of one vector.
 struct Numbers {
@@ -223,7 +222,23 @@ struct ReadyRays {
   alignas(kAlignment) float inverse[kRows][kFloats];
   alignas(kAlignment) float near[kRows][kFloats];
   alignas(kAlignment) float far[kRows][kFloats];
+  /// Times the inverse of the fastest axis: an area beside the ray, in units of the others, that
+  /// leaves no doubt of its sign in double either.
+  alignas(kAlignment) float surely[kFloats];
 };
+
+/// The same of a ray that begins so far away from the lower bounds of a mesh by the sum of its
+/// axes, where `longest` is one over the pace.
+///
+/// The volume of an area is that by what the ray moves along the axis; it is in doubt by less than
+/// half of this (see cross_sides), of which the lengths of direction are less than 3, and each of
+/// three corners is no farther from the start than `away` and the extent of the mesh on all axes.
+template <typename L>
+[[gnu::always_inline]] inline L sure_area(const MeshSpan& mesh, const L& away, const L& slack,
+                                          const L& longest) {
+  const L far = L(3.0) * away + L(9.0 * mesh.extent);
+  return L(2.1 * 3.0 * mesh.units_volume) * longest * far * (L(0x1p-48) * far + L(4.0) * slack);
+}
 
 /// The part of [0, limit] in which a ray is within bounds on an axis, grown by its slack: it enters
 /// them then, or is there from the beginning.
@@ -325,6 +340,9 @@ template <typename Rays>
   store(at, ready.at, first);
   store(grow, ready.grow, first);
   store(rate, ready.inverse, first);
+  const V away = abs_of(start - spread<V>(mesh.low));
+  store(sure_area(mesh, away.x + away.y + away.z, own_slack, select(is_slack, longest, extent)),
+        ready.surely + first);
   store(near, ready.near, first);
   store(far, ready.far, first);
   return come;
@@ -341,16 +359,15 @@ template <typename Rays>
   const auto& way = ray.ray.direction;
   const double slack = ray.slack[0];
   const FloatAxes units = load_axes(mesh.float_units);
-  const FloatAxes at =
-      float_axes(start[0][0] - mesh.low[0], start[1][0] - mesh.low[1], start[2][0] - mesh.low[2]) *
-      units;
+  const Numbers from{start[0][0] - mesh.low[0], start[1][0] - mesh.low[1],
+                     start[2][0] - mesh.low[2]};
+  const FloatAxes at = float_axes(from.x, from.y, from.z) * units;
   const FloatAxes away = absolute(at);
   if (!(are_all_below(away, kNearUnits) && slack <= 0x1p-10 * mesh.extent)) return false;
-  const FloatAxes given =
-      load_axes(mesh.float_inverse) / float_axes(way[0][0], way[1][0], way[2][0]);
-  const FloatAxes inverse =
-      select_below(absolute(given), 1.0F / kNearStandingRate, given,
-                   signed_as(spread_axes(static_cast<float>(kStandingInverse)), given));
+  const FloatAxes rate = float_axes(way[0][0], way[1][0], way[2][0]);
+  const FloatAxes given = load_axes(mesh.float_inverse) / rate;
+  const FloatAxes inverse = signed_as(
+      lesser_axes(absolute(given), spread_axes(static_cast<float>(kStandingInverse))), rate);
   const FloatAxes grow = spread_axes(static_cast<float>(1.001 * slack)) * units +
                          (away * spread_axes(kNearShare) + spread_axes(kNearDoubt));
   const FloatAxes forward_grow = signed_as(grow, inverse);
@@ -361,6 +378,8 @@ template <typename Rays>
   store_axes(inverse, ready.inverse[0]);
   store_axes((forward_grow + at) * -inverse, ready.near[0]);
   store_axes((forward_grow - at) * inverse, ready.far[0]);
+  const double sum = abs(from.x) + abs(from.y) + abs(from.z);
+  ready.surely[0] = static_cast<float>(sure_area(mesh, sum, slack, mesh.extent));
   return true;
 }
 

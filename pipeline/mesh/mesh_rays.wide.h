@@ -24,20 +24,32 @@ struct CornersAcross {
   Floats y[3];
 };
 
-/// Which of those triangles the line of the ray may meet, if coordinates are wrong by less than
-/// `wrong`, less 0.05 units for roundings of products, of 6 u of a coordinate of 2^17.
+/// Triangles of a leaf that the line of a ray may meet, and those of them that it is sure to meet.
+struct LineTriangles {
+  Mask16 may;
+  Mask16 sure;
+};
+
+/// Which of those triangles the line of the ray meets, if coordinates are wrong by less than
+/// `wrong`, less 0.05 units for roundings of products, of 6 u of a coordinate of 2^17. It is sure
+/// of those whose areas beside it are larger, by `surely` more, than what is wrong with them.
 ///
 /// The product of two corners is wrong by less than `wrong` times the coordinates of both and twice
 /// its square.
-[[gnu::always_inline]] inline Mask16 around_line(const CornersAcross& at, float wrong) {
+[[gnu::always_inline]] inline LineTriangles around_line(const CornersAcross& at, float wrong,
+                                                        float surely) {
   const auto taxicab = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
   const Floats doubt = multiply_add(taxicab(0) + taxicab(1) + taxicab(2), Floats(wrong),
                                     Floats(2.1F * wrong * wrong));
   const Floats a = at.x[2] * at.y[1] - at.y[2] * at.x[1];
   const Floats b = at.x[0] * at.y[2] - at.y[0] * at.x[2];
   const Floats c = at.x[1] * at.y[0] - at.y[1] * at.x[0];
-  const LaneMask<float> misses = (max(max(a, b), c) > doubt) & (min(min(a, b), c) < -doubt);
-  return ~bits(misses) & 0xFFFFU;
+  const Floats most = max(max(a, b), c);
+  const Floats least = min(min(a, b), c);
+  const Floats beyond = doubt + Floats(surely);
+  const LaneMask<float> misses = (most > doubt) & (least < -doubt);
+  const LaneMask<float> sure = (least > beyond) | (most < -beyond);
+  return {~bits(misses) & 0xFFFFU, bits(sure)};
 }
 
 /// The line of a ray, in units.
@@ -48,23 +60,24 @@ class RayLine {
     constexpr std::uint32_t kNext[3] = {1, 2, 0};
     const auto size = [&](std::uint32_t axis) { return __builtin_fabsf(rays.inverse[axis][ray]); };
     const std::uint32_t faster = size(1) < size(0) ? 1 : 0;
-    const std::uint32_t fastest = size(2) < size(faster) ? 2 : faster;
-    const std::uint32_t side[2] = {kNext[fastest], kNext[kNext[fastest]]};
+    fastest_ = size(2) < size(faster) ? 2 : faster;
+    side_[0] = kNext[fastest_];
+    side_[1] = kNext[side_[0]];
+    const float along = rays.inverse[fastest_][ray];
     float wrong[2];
     for (std::uint32_t k = 0; k < 2; ++k) {
-      const std::uint32_t axis = side[k];
-      const float slope = -rays.inverse[fastest][ray] / rays.inverse[axis][ray];
-      across_[k][fastest] = slope;
-      across_[k][axis] = 1.0F;
-      across_[k][side[1 - k]] = 0.0F;
-      at_[k] = rays.at[axis][ray] + slope * rays.at[fastest][ray];
-      wrong[k] = rays.grow[axis][ray] + __builtin_fabsf(slope) * rays.grow[fastest][ray];
+      const std::uint32_t axis = side_[k];
+      const float slope = -along / rays.inverse[axis][ray];
+      slope_[k] = slope;
+      at_[k] = rays.at[axis][ray] + slope * rays.at[fastest_][ray];
+      wrong[k] = rays.grow[axis][ray] + __builtin_fabsf(slope) * rays.grow[fastest_][ray];
     }
     wrong_ = larger(wrong[0], wrong[1]) + kRoundings;
+    surely_ = rays.surely[ray] * __builtin_fabsf(along);
   }
 
   /// Which triangles of a leaf it may meet.
-  [[gnu::always_inline]] Mask16 near(const MeshView& mesh, std::uint32_t leaf) const {
+  [[gnu::always_inline]] LineTriangles near(const MeshView& mesh, std::uint32_t leaf) const {
     const int blocks = mesh.leaf_point != nullptr ? vertex_blocks(mesh, leaf) : 0;
     if (blocks == 1) return near_listed<1>(mesh, leaf);
     if (blocks == 2) return near_listed<2>(mesh, leaf);
@@ -79,28 +92,35 @@ class RayLine {
 
   /// By way of the vertices that the leaf lists, which are wrong by half a step each.
   template <int Blocks>
-  [[gnu::always_inline]] Mask16 near_listed(const MeshView& mesh, std::uint32_t leaf) const {
+  [[gnu::always_inline]] LineTriangles near_listed(const MeshView& mesh, std::uint32_t leaf) const {
+    constexpr float kShare = 1.0F / kMaxLeafPoint;
     const std::uint16_t* const bounds = mesh.node[0] + place_of_bound(leaf, 0);
-    float row[2][3];
-    float from[2] = {-at_[0], -at_[1]};
-    float steps[2] = {0.0F, 0.0F};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto low = static_cast<float>(bounds[axis * kLanes]);
-      const auto high = static_cast<float>(bounds[(3 + axis) * kLanes]);
-      const float step = (high - low) * (1.0F / kMaxLeafPoint);
-      for (int k = 0; k < 2; ++k) {
-        row[k][axis] = across_[k][axis] * step;
-        from[k] += across_[k][axis] * low;
-        steps[k] += __builtin_fabsf(row[k][axis]);
-      }
+    const auto low = [&](std::uint32_t axis) { return static_cast<float>(bounds[axis * kLanes]); };
+    const auto extent = [&](std::uint32_t axis) {
+      return static_cast<float>(bounds[(3 + axis) * kLanes] - bounds[axis * kLanes]);
+    };
+    const float low_along = low(fastest_);
+    const float extent_along = extent(fastest_);
+    float from[2];
+    float step[2];
+    float tilt[2];
+    float steps[2];
+    for (int k = 0; k < 2; ++k) {
+      from[k] = (low(side_[k]) - at_[k]) + slope_[k] * low_along;
+      step[k] = extent(side_[k]) * kShare;
+      tilt[k] = extent_along * (slope_[k] * kShare);
+      steps[k] = step[k] + __builtin_fabsf(tilt[k]);
     }
     Floats x[Blocks];
     Floats y[Blocks];
     for (int block = 0; block < Blocks; ++block) {
-      Floats point[3];
-      load_packed(mesh.leaf_point + block_of(mesh, leaf, block) * kMeshFanout, point);
-      x[block] = along(row[0], point, from[0]);
-      y[block] = along(row[1], point, from[1]);
+      const std::uint32_t* const points =
+          mesh.leaf_point + block_of(mesh, leaf, block) * kMeshFanout;
+      const Floats along = load_packed(points, fastest_);
+      x[block] = multiply_add(load_packed(points, side_[0]), Floats(step[0]),
+                              multiply_add(along, Floats(tilt[0]), Floats(from[0])));
+      y[block] = multiply_add(load_packed(points, side_[1]), Floats(step[1]),
+                              multiply_add(along, Floats(tilt[1]), Floats(from[1])));
     }
     CornersAcross at;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -108,11 +128,12 @@ class RayLine {
       at.x[k] = places.pick(x);
       at.y[k] = places.pick(y);
     }
-    return around_line(at, wrong_ + 0.51F * larger(steps[0], steps[1]));
+    return around_line(at, wrong_ + 0.51F * larger(steps[0], steps[1]), surely_);
   }
 
   /// By way of each corner's own vertex.
-  [[gnu::always_inline]] Mask16 near_corners(const MeshView& mesh, std::uint32_t leaf) const {
+  [[gnu::always_inline]] LineTriangles near_corners(const MeshView& mesh,
+                                                    std::uint32_t leaf) const {
     CornersAcross at;
     for (std::size_t k = 0; k < 3; ++k) {
       Floats corner[3];
@@ -121,159 +142,221 @@ class RayLine {
         corner[axis] =
             (corner[axis] - Floats(mesh.origin[axis])) * Floats(mesh.span.float_units[axis]);
       }
-      at.x[k] = along(across_[0], corner, -at_[0]);
-      at.y[k] = along(across_[1], corner, -at_[1]);
+      const Floats along = corner[fastest_];
+      at.x[k] = multiply_add(along, Floats(slope_[0]), corner[side_[0]] - Floats(at_[0]));
+      at.y[k] = multiply_add(along, Floats(slope_[1]), corner[side_[1]] - Floats(at_[1]));
     }
-    return around_line(at, wrong_);
+    return around_line(at, wrong_, surely_);
   }
 
-  [[gnu::always_inline]] static Floats along(const float* row, const Floats (&at)[3], float from) {
-    return multiply_add(
-        at[0], Floats(row[0]),
-        multiply_add(at[1], Floats(row[1]), multiply_add(at[2], Floats(row[2]), Floats(from))));
-  }
-
-  /// Rows that take a vector across it, and where it is across itself.
-  float across_[2][3];
+  /// The axis along which it is fastest, and the others.
+  std::uint32_t fastest_;
+  std::uint32_t side_[2];
+  /// By how much a vector is moved to those sides for each unit along it, to be measured from it,
+  /// and where it is itself so.
+  float slope_[2];
   float at_[2];
   float wrong_;
+  /// See ReadyRays.
+  float surely_;
 };
 
-/// What a ray does next: goes into a node, asks for the vertices of a leaf whose corners are there,
-/// finds out which of its triangles its line may meet, looks whether it does, turns to the nodes
-/// that wait, or has come to its end.
+/// What a ray does next: goes into a node, or a leaf, to find which of its triangles it may meet,
+/// asks for the vertices of those whose corners are there, looks whether it meets them, turns to
+/// the nodes that wait, or has come to its end.
 enum RayStep : std::uint32_t {
   kEnterInner,
   kEnterLeaf,
   kFetchVertices,
-  kFindTriangles,
   kCrossTriangles,
   kTakeNext,
   kEnd,
   kRaySteps
 };
 
+/// A node that a ray goes to, and when it enters that.
+struct RayNode {
+  std::uint32_t level;
+  std::uint32_t number;
+  float entry;
+
+  [[gnu::always_inline]] static RayNode none() { return {0, ~0U, 0.0F}; }
+  [[nodiscard, gnu::always_inline]] bool is_some() const { return number != ~0U; }
+  [[nodiscard, gnu::always_inline]] bool is_inner() const { return is_some() && level != 0; }
+};
+
 /// A ray on its way: the nodes that wait for it, of which it goes to the nearest of those that came
 /// last. What is needed soon is asked for before: by a ray that goes alone all that may be needed
-/// of a leaf, since it has nothing else to do meanwhile.
+/// of a leaf, since it has nothing else to do meanwhile. Where it goes on is branched on, as soon
+/// as it is known: processors foresee more than half of it, and begin what comes after.
 template <bool Alone>
 class RayWalk {
  public:
   static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
 
-  /// `ray`: its place among those that are ready, and as its visitor knows it. Gives its first
-  /// step.
-  RayStep start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
-                const ReadyRays<kRoom>& rays, std::uint32_t ray, double limit) {
+  /// `ray`: its place among those that are ready, and as its visitor knows it. Gives the first node
+  /// that it goes to.
+  [[gnu::always_inline]] RayNode start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
+                                       const ReadyRays<kRoom>& rays, std::uint32_t ray,
+                                       double limit) {
     own_ = &own;
     rays_ = &rays;
     ray_ = ray;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const std::uint32_t upper = __builtin_bit_cast(std::uint32_t, rays.inverse[axis][ray]) >> 31U;
+      const auto bits_of_way = __builtin_bit_cast(std::uint64_t, own.ray.direction[axis][ray]);
+      const auto upper = static_cast<std::uint32_t>(bits_of_way >> 63U);
       near_bound_[axis] = (axis + 3U * upper) * kMeshFanout;
       far_bound_[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
     }
     if (mesh.box == nullptr) line_.set(rays, ray);
-    set_limit(limit);
-    size_ = 0;
+    set_last(limit);
+    open_ = 0;
+    first_place_ = 0;
     // What is below a top level of few nodes is nearly as soon asked.
     const std::uint32_t top = mesh.levels - 1;
     if (top != 0 && mesh.count[top] == 2) return start_between_two(mesh, top - 1);
-    const std::uint32_t level = top != 0 && mesh.count[top] == 1 ? top - 1 : top;
-    return meet(mesh, level, 0) ? step_into(level << kLevelShift) : kTakeNext;
+    if (top == 0 || mesh.count[top] != 1) return meet(mesh, top, 0);
+    first_place_ = 1;
+    return meet(mesh, top - 1, 0);
   }
 
-  /// Turns to the nearest of the nodes that came last; or drops those that are left of them, if it
-  /// begins behind what was met. Which it is, is as hard to foresee as a coin.
-  [[gnu::always_inline]] RayStep take_next() {
-    if (size_ == 0) return kEnd;
-    const std::uint32_t at = size_ - 1;
-    const std::uint32_t key = nearest(at);
-    const bool is_before = aim(key, first_node_[at]);
-    if (Alone && !is_before) {
-      --size_;
-      return kTakeNext;
+  /// Turns to the nearest of the nodes that came last, of which there are some.
+  [[gnu::always_inline]] RayNode take_next() {
+    const auto at = 31U - static_cast<std::uint32_t>(__builtin_clz(open_));
+    const Floats key = Floats::load(key_[at]);
+    const std::uint32_t nearest =
+        reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
+    gone_to_[at] = __builtin_bit_cast(float, nearest);
+    open_ ^= (is_open(key, gone_to_[at]) ^ 1U) << at;
+    return node_of(nearest, level_[at], first_node_[at]);
+  }
+  /// Goes into an inner node, and gives the nearest of those in it that the ray meets.
+  [[gnu::always_inline]] RayNode enter_inner(const MeshView& mesh, const RayNode& node) {
+    return meet(mesh, node.level - 1, node.number * kLanes);
+  }
+  [[nodiscard, gnu::always_inline]] bool is_anyone_waiting() const { return open_ != 0; }
+  /// The whole way of one ray. A leaf whose triangles have boxes is looked at after the next nodes,
+  /// while its vertices come; of others nearly all is at hand.
+  [[gnu::always_inline]] void go(const MeshView& mesh, RayNode node,
+                                 const RaySlotVisitor& visitor) {
+    if (mesh.box != nullptr) return go_through_boxes(mesh, node, visitor);
+    for (;;) {
+      while (node.is_inner()) node = enter_inner(mesh, node);
+      if (node.is_some()) {
+        const std::uint32_t leaf = node.number;
+        if (mesh.leaf_vertex != nullptr) fetch_some_vertices(mesh, leaf);
+        const LineTriangles line = line_.near(mesh, leaf);
+        const Mask16 triangles = triangles_of(mesh, leaf) & line.may;
+        if (triangles != 0 && !cross_triangles(mesh, {leaf, 0.0F, triangles, line.sure}, visitor)) {
+          return;
+        }
+      }
+      if (!is_anyone_waiting()) return;
+      node = take_next();
     }
-    const bool is_last = (rest_[at] & (rest_[at] - 1)) == 0;
-    gone_to_[at] = __builtin_bit_cast(float, key);
-    rest_[at] &= ~(1U << key % kLanes);
-    size_ -= is_last || !is_before ? 1U : 0U;
-    return is_before ? step_into(first_node_[at]) : kTakeNext;
   }
-  /// Goes into that inner node, and gives the step after.
+
+  // What follows is for rays that go side by side, and is kept from step to step.
+
+  /// Sets what it goes to, and gives the step that does so.
+  [[gnu::always_inline]] RayStep step_to(const RayNode& node) {
+    node_ = node;
+    if (!node.is_some()) return next_step();
+    return node.level != 0 ? kEnterInner : kEnterLeaf;
+  }
+  /// What comes where it goes no farther.
+  [[nodiscard, gnu::always_inline]] RayStep next_step() const {
+    return is_anyone_waiting() ? kTakeNext : kEnd;
+  }
   [[gnu::always_inline]] RayStep enter_inner(const MeshView& mesh) {
-    const std::uint32_t level = (node_ >> kLevelShift) - 1;
-    const bool is_met = meet(mesh, level, (node_ & kNodeMask) * kLanes);
-    return is_met ? step_into(level << kLevelShift) : kTakeNext;
+    return step_to(enter_inner(mesh, node_));
   }
-  /// Goes to that leaf: false if none of its triangles need be looked at. Before they are, their
+  /// Goes to its leaf: false if none of its triangles need be looked at. Before they are, their
   /// vertices are to be fetched.
   [[gnu::always_inline]] bool enter_leaf(const MeshView& mesh) {
-    ask(mesh, node_, entry_);
+    asked_ = ask(mesh, node_);
     return asked_.triangles != 0;
   }
   /// Asks for what of that leaf is looked at first, before it is waited for. Of nodes there are few
   /// enough to be at hand.
-  [[gnu::always_inline]] void fetch_leaf(const MeshView& mesh) const { fetch(mesh, node_); }
+  [[gnu::always_inline]] void fetch_leaf(const MeshView& mesh) const { fetch(mesh, node_.number); }
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
     fetch_vertices(mesh, asked_);
   }
-  /// False if its line meets none of them.
+  /// The same where triangles have no boxes: false if its line meets none of them. Vertices of the
+  /// first are asked for, since there is hardly ever another.
   [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
-    asked_.triangles &= line_.near(mesh, asked_.leaf);
+    const LineTriangles line = line_.near(mesh, node_.number);
+    asked_ = {node_.number, node_.entry, triangles_of(mesh, node_.number) & line.may, line.sure};
+    fetch_vertices(mesh, node_.number * kMeshFanout + first(asked_.triangles | 1U << (kLanes - 1)));
+    __builtin_prefetch(mesh.triangle + node_.number * kMeshFanout);
     return asked_.triangles != 0;
   }
   /// False if the visitor has seen enough.
-  bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
+  [[gnu::always_inline]] bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
     return cross_triangles(mesh, asked_, visitor);
-  }
-  /// The whole way of one ray. A leaf whose triangles have boxes is looked at after the next nodes,
-  /// while its vertices come; of others nearly all is at hand.
-  void go(const MeshView& mesh, RayStep step, const RaySlotVisitor& visitor) {
-    asked_.triangles = 0;
-    for (;;) {
-      while (step == kEnterInner || step == kTakeNext) {
-        step = step == kEnterInner ? enter_inner(mesh) : take_next();
-      }
-      if (mesh.box == nullptr) {
-        if (step == kEnd) return;
-        step = kTakeNext;
-        if (mesh.leaf_vertex != nullptr) fetch_some_vertices(mesh, node_);
-        if (enter_leaf(mesh) && find_triangles(mesh) && !cross_triangles(mesh, visitor)) return;
-        continue;
-      }
-      const Asked asked = asked_;
-      asked_.triangles = 0;
-      if (step == kEnterLeaf && enter_leaf(mesh)) fetch_vertices(mesh);
-      if (asked.triangles != 0 && asked.entry <= last_ && !cross_triangles(mesh, asked, visitor)) {
-        return;
-      }
-      if (step == kEnd && asked_.triangles == 0) return;
-      step = kTakeNext;
-    }
   }
 
  private:
-  /// Above the number of a node is its level.
-  static constexpr std::uint32_t kLevelShift = 28;
-  static constexpr std::uint32_t kNodeMask = (1U << kLevelShift) - 1U;
   static constexpr float kLeastTau = 0x1p-100F;
   static constexpr float kMostTau = 1e38F;
   /// The key of a node that does not wait: more than kMostTau.
   static constexpr float kNobody = __FLT_MAX__;
+  /// Keys tell one node of so many.
+  static constexpr std::uint32_t kNumbers = 2 * kLanes;
 
-  /// A leaf that was gone to: when it is entered, and which of its triangles may be met.
+  /// A leaf that was gone to: when it is entered, and which of its triangles may be met, or are for
+  /// sure.
   struct Asked {
-    std::uint32_t leaf;
-    float entry;
-    Mask16 triangles;
+    std::uint32_t leaf = 0;
+    float entry = 0.0F;
+    Mask16 triangles = 0;
+    Mask16 sure = 0;
   };
 
-  void set_limit(double limit) {
+  void go_through_boxes(const MeshView& mesh, RayNode node, const RaySlotVisitor& visitor) {
+    Asked before;
+    for (;;) {
+      while (node.is_inner()) node = enter_inner(mesh, node);
+      Asked now;
+      if (node.is_some()) {
+        now = ask(mesh, node);
+        if (now.triangles != 0) fetch_vertices(mesh, now);
+      }
+      if (before.triangles != 0 && before.entry <= last_ &&
+          !cross_triangles(mesh, before, visitor)) {
+        return;
+      }
+      before = now;
+      if (is_anyone_waiting()) {
+        node = take_next();
+      } else {
+        if (now.triangles == 0) return;
+        node = RayNode::none();
+      }
+    }
+  }
+
+  void set_last(double limit) {
     limit_ = limit;
-    const double rest = (limit - rays_->entry[ray_]) * rays_->pace[ray_] * (1.0 + 0x1p-20);
+    const double rest = (limit - rays_->entry[place()]) * rays_->pace[place()] * (1.0 + 0x1p-20);
     const float most = rest < 1e38 ? static_cast<float>(rest) : kMostTau;
     last_ = most > kLeastTau ? most : kLeastTau;
+    last_key_ =
+        __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, last_) | (kNumbers - 1U));
+  }
+  /// Nodes that begin behind it wait no longer. Since it comes to a leaf, there are keys at every
+  /// place.
+  void set_limit(const MeshView& mesh, double limit) {
+    set_last(limit);
+    open_ = 0;
+    for (std::uint32_t at = first_place_; at < mesh.levels; ++at) {
+      open_ |= is_open(Floats::load(key_[at]), gone_to_[at]) << at;
+    }
+  }
+  /// 1 if some nodes with these keys come after that one and before the end, else 0.
+  [[nodiscard, gnu::always_inline]] std::uint32_t is_open(const Floats& key, float gone_to) const {
+    return bits((key > Floats(gone_to)) & (key <= Floats(last_key_))) != 0 ? 1U : 0U;
   }
 
   /// Which of sixteen boxes, in columns from `bounds` on, the ray meets, and when it enters them.
@@ -281,94 +364,93 @@ class RayWalk {
     in = Floats(kLeastTau);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
-      const Floats inverse(rays_->inverse[axis][ray_]);
+      const Floats inverse(rays_->inverse[axis][place()]);
       const Floats near = load_short(bounds + near_bound_[axis]);
       const Floats far = load_short(bounds + far_bound_[axis]);
-      in = larger_positive(in, multiply_add(near, inverse, Floats(rays_->near[axis][ray_])));
-      out = smaller_positive(out, multiply_add(far, inverse, Floats(rays_->far[axis][ray_])));
+      in = larger_positive(in, multiply_add(near, inverse, Floats(rays_->near[axis][place()])));
+      out = smaller_positive(out, multiply_add(far, inverse, Floats(rays_->far[axis][place()])));
     }
     return in <= out;
   }
 
-  /// Which of sixteen nodes the ray meets, and their keys.
+  /// Which of sixteen nodes the ray meets, and their keys, which tell them by `number` and those
+  /// after it.
   [[gnu::always_inline]] Mask16 find(const MeshView& mesh, std::uint32_t level,
-                                     std::uint32_t first_node, Floats& key) {
-    alignas(64) static constexpr std::uint32_t kNumbers[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                                   8, 9, 10, 11, 12, 13, 14, 15};
+                                     std::uint32_t first_node, std::uint32_t number, Floats& key) {
+    alignas(64) static constexpr std::uint32_t kEach[kNumbers] = {
+        0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+        16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
     Floats in;
     const LaneMask<float> met = enter(mesh.node[level] + std::size_t{6} * first_node, in);
-    const Floats number = Floats::load(reinterpret_cast<const float*>(kNumbers));
-    const Floats without_number(__builtin_bit_cast(float, ~(kLanes - 1U)));
-    key = select(met, (in & without_number) | number, Floats(kNobody));
-    const Mask16 all = bits(met);
-    const Mask16 hits = all & present(mesh.count[level], first_node);
-    if (hits != all) [[unlikely]] {
-      alignas(64) float one[kLanes];
-      key.store(one);
-      for (Mask16 rest = all & ~hits; rest != 0; rest &= rest - 1) one[first(rest)] = kNobody;
-      key = Floats::load(one);
+    const Floats each = Floats::load(reinterpret_cast<const float*>(kEach + number));
+    const Floats without_number(__builtin_bit_cast(float, ~(kNumbers - 1U)));
+    key = select(met, (in & without_number) | each, Floats(kNobody));
+    Mask16 hits = bits(met);
+    if (first_node + kLanes > mesh.count[level]) [[unlikely]] {
+      hits &= leave_out(present(mesh.count[level], first_node), hits, key);
     }
     if (Alone && level == 0) {
       for (Mask16 rest = hits; rest != 0; rest &= rest - 1) fetch(mesh, first_node + first(rest));
     }
     return hits;
   }
-  /// Where nodes are to wait: whether some are left is as hard to foresee as a coin.
-  [[gnu::always_inline]] void put(const Floats& key, std::uint32_t first_node, Mask16 rest,
-                                  float gone_to) {
-    key.store(key_[size_]);
-    gone_to_[size_] = gone_to;
-    rest_[size_] = rest;
-    first_node_[size_] = first_node;
+  /// Lanes that are not there do not wait, if boxes are grown so much that the ray meets theirs.
+  [[gnu::always_inline]] static Mask16 leave_out(Mask16 there, Mask16 hits, Floats& key) {
+    if ((hits & ~there) == 0) [[likely]]
+      return there;
+    alignas(64) float one[kLanes];
+    key.store(one);
+    for (Mask16 rest = hits & ~there; rest != 0; rest &= rest - 1) one[first(rest)] = kNobody;
+    key = Floats::load(one);
+    return there;
+  }
+  /// Lets nodes wait at a place, but for those that come no later than `gone_to`: `rest` are left.
+  /// Keys tell their numbers from `first_node` on.
+  [[gnu::always_inline]] void put(std::uint32_t at, std::uint32_t level, std::uint32_t first_node,
+                                  const Floats& key, Mask16 rest, float gone_to) {
+    key.store(key_[at]);
+    gone_to_[at] = gone_to;
+    level_[at] = level;
+    first_node_[at] = first_node;
+    open_ |= (rest != 0 ? 1U : 0U) << at;
   }
   /// Lets the nodes that the ray meets on a level of two blocks wait, of which the nearer one comes
   /// last, and turns to the nearest.
-  RayStep start_between_two(const MeshView& mesh, std::uint32_t level) {
+  [[gnu::always_inline]] RayNode start_between_two(const MeshView& mesh, std::uint32_t level) {
     Floats key[2];
-    const Mask16 hits[2] = {find(mesh, level, 0, key[0]), find(mesh, level, kLanes, key[1])};
-    const std::uint32_t nearest[2] = {reduce_min_positive(key[0]), reduce_min_positive(key[1])};
-    const std::uint32_t nearer = nearest[0] < nearest[1] ? 0 : 1;
-    const std::uint32_t least = nearest[0] < nearest[1] ? nearest[0] : nearest[1];
+    const Mask16 hits[2] = {find(mesh, level, 0, 0, key[0]),
+                            find(mesh, level, kLanes, kLanes, key[1])};
+    if ((hits[0] | hits[1]) == 0) return RayNode::none();
+    const std::uint32_t nearest = reduce_min_positive(smaller_positive(key[0], key[1]));
+    const std::uint32_t nearer = nearest / kLanes % 2;
+    const Mask16 both = hits[1] << kLanes | hits[0];
+    const Mask16 rest = both & ~(1U << nearest % kNumbers);
     for (std::uint32_t k = 0; k < 2; ++k) {
-      size_ = k == nearer ? 1U : 0U;
-      put(key[k], level << kLevelShift | k * kLanes, hits[k], 0.0F);
+      put(1 - (k ^ nearer), level, 0, key[k], rest >> k * kLanes & 0xFFFFU,
+          __builtin_bit_cast(float, nearest));
     }
-    gone_to_[1] = __builtin_bit_cast(float, least);
-    rest_[1] &= ~(1U << least % kLanes);
-    size_ = rest_[1] != 0 ? 2 : 1;
-    return aim(least, first_node_[1]) ? step_into(first_node_[1]) : kTakeNext;
+    return node_of(nearest, level, 0);
   }
-  /// Lets those of sixteen nodes wait that the ray meets, and aims at the nearest of them: false if
-  /// there is none.
-  [[gnu::always_inline]] bool meet(const MeshView& mesh, std::uint32_t level,
-                                   std::uint32_t first_node) {
+  /// Lets those of sixteen nodes wait that the ray meets, but for the nearest of them.
+  [[gnu::always_inline]] RayNode meet(const MeshView& mesh, std::uint32_t level,
+                                      std::uint32_t first_node) {
     Floats key;
-    const Mask16 hits = find(mesh, level, first_node, key);
-    if (hits == 0) return false;
+    const Mask16 hits = find(mesh, level, first_node, 0, key);
+    if (hits == 0) return RayNode::none();
     const std::uint32_t nearest = reduce_min_positive(key);
-    const std::uint32_t named = level << kLevelShift | first_node;
-    put(key, named, hits & ~(1U << nearest % kLanes), __builtin_bit_cast(float, nearest));
-    size_ += (hits & (hits - 1)) != 0 ? 1U : 0U;
-    return aim(nearest, named);
+    put(mesh.levels - 1 - level, level, first_node, key, hits & ~(1U << nearest % kLanes),
+        __builtin_bit_cast(float, nearest));
+    return node_of(nearest, level, first_node);
   }
-  /// At the node with that key; false if it begins behind what was met.
-  [[gnu::always_inline]] bool aim(std::uint32_t key, std::uint32_t first_node) {
-    const std::uint32_t lane = key % kLanes;
-    node_ = first_node + lane;
-    entry_ = __builtin_bit_cast(float, key - lane);
-    return entry_ <= last_;
-  }
-  /// Into nodes of the level of this one.
-  [[nodiscard]] static RayStep step_into(std::uint32_t node) {
-    return node >> kLevelShift != 0 ? kEnterInner : kEnterLeaf;
+  /// The node with that key.
+  [[gnu::always_inline]] static RayNode node_of(std::uint32_t key, std::uint32_t level,
+                                                std::uint32_t first_node) {
+    const std::uint32_t number = key % kNumbers;
+    return {level, first_node + number, __builtin_bit_cast(float, key - number)};
   }
 
-  /// The least key of those that still wait: they are gone to by their order.
-  [[nodiscard]] std::uint32_t nearest(std::uint32_t at) const {
-    const Floats key = Floats::load(key_[at]);
-    return reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
-  }
-  static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
+  // Compilers leave out calls of functions that only ask for memory, and these with them.
+  [[gnu::always_inline]] static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
     if (mesh.corner[0] == nullptr) {
       __builtin_prefetch(mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout);
       if (mesh.leaf_point != nullptr) {
@@ -383,27 +465,36 @@ class RayWalk {
     }
   }
 
-  static void fetch(const MeshView& mesh, std::uint32_t leaf) {
+  [[gnu::always_inline]] static void fetch(const MeshView& mesh, std::uint32_t leaf) {
     if (Alone || mesh.box == nullptr) fetch_corners(mesh, leaf);
     if (mesh.box == nullptr) return;
     const std::uint16_t* const box = mesh.box + std::size_t{6} * kMeshFanout * leaf;
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(box + 32 * k);
   }
 
+  /// Those that a leaf has.
+  [[nodiscard, gnu::always_inline]] static Mask16 triangles_of(const MeshView& mesh,
+                                                               std::uint32_t leaf) {
+    const std::uint32_t first_slot = leaf * kMeshFanout;
+    if (first_slot + kLanes <= mesh.triangle_count) [[likely]]
+      return lanes_below(kLanes);
+    return present(mesh.triangle_count, first_slot);
+  }
   /// Finds out which triangles of a leaf are to be looked at: those whose boxes the ray meets where
   /// they have some.
-  [[gnu::always_inline]] void ask(const MeshView& mesh, std::uint32_t leaf, float entry) {
-    const std::uint32_t first_slot = leaf * kMeshFanout;
-    asked_ = {leaf, entry, present(mesh.triangle_count, first_slot)};
-    if (mesh.box == nullptr) return;
+  [[gnu::always_inline]] Asked ask(const MeshView& mesh, const RayNode& leaf) const {
+    Asked asked{leaf.number, leaf.entry, triangles_of(mesh, leaf.number), 0};
+    if (mesh.box == nullptr) return asked;
     Floats in;
-    asked_.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
-    if (!Alone && asked_.triangles != 0) fetch_corners(mesh, leaf);
+    const std::uint32_t first_slot = leaf.number * kMeshFanout;
+    asked.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
+    if (!Alone && asked.triangles != 0) fetch_corners(mesh, leaf.number);
+    return asked;
   }
 
   /// Asks for vertices of a leaf that lists them, before it is known which of its triangles are to
   /// be looked at: they are neighbours.
-  static void fetch_some_vertices(const MeshView& mesh, std::uint32_t leaf) {
+  [[gnu::always_inline]] static void fetch_some_vertices(const MeshView& mesh, std::uint32_t leaf) {
     constexpr std::uint32_t kApart = 2;
     const std::uint32_t* const vertex = mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout;
     for (std::uint32_t i = 0; i < kMeshFanout; i += kApart) {
@@ -413,33 +504,38 @@ class RayWalk {
   }
 
   /// Asks for their vertices, once their corners are there.
-  [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh, const Asked& asked) const {
+  [[gnu::always_inline]] static void fetch_vertices(const MeshView& mesh, std::uint32_t slot) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      __builtin_prefetch(mesh.vertex + std::size_t{3} * corner_of(mesh, k, slot));
+    }
+  }
+  [[gnu::always_inline]] static void fetch_vertices(const MeshView& mesh, const Asked& asked) {
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
     for (Mask16 rest = asked.triangles; rest != 0; rest &= rest - 1) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t corner = corner_of(mesh, k, first_slot + first(rest));
-        __builtin_prefetch(mesh.vertex + std::size_t{3} * corner);
-      }
+      fetch_vertices(mesh, first_slot + first(rest));
     }
     __builtin_prefetch(mesh.triangle + first_slot);
   }
 
   bool cross_triangles(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
-    Mask16 triangles = asked.triangles;
     const std::uint32_t first_slot = asked.leaf * kMeshFanout;
-    for (; triangles != 0; triangles &= triangles - 1) {
-      const std::uint32_t slot = first_slot + first(triangles);
+    for (Mask16 rest = asked.triangles; rest != 0; rest &= rest - 1) {
+      const std::uint32_t lane = first(rest);
+      const std::uint32_t slot = first_slot + lane;
       SurfaceHit hit;
-      const Crossing crossing = cross(crossing_ray(*own_, ray_), load_triangle(mesh, slot), hit);
+      const Crossing crossing =
+          cross_slot((*own_)[place()], mesh, slot, (asked.sure >> lane & 1U) != 0, hit);
       if (crossing == Crossing::none) continue;
       const double limit = crossing == Crossing::found
                                ? visitor.meet(visitor.context, ray_, slot, hit, limit_)
                                : visitor.look(visitor.context, ray_, slot, limit_);
-      if (limit != limit_) set_limit(limit);
       if (limit < 0.0) return false;
+      if (limit != limit_) set_limit(mesh, limit);
     }
     return true;
   }
+  /// Its place in columns.
+  [[nodiscard, gnu::always_inline]] std::uint32_t place() const { return Alone ? 0 : ray_; }
 
   const SurfaceRayColumns<kRoom>* own_;
   const ReadyRays<kRoom>* rays_;
@@ -451,20 +547,21 @@ class RayWalk {
   std::uint32_t far_bound_[3];
   double limit_;
   float last_;
-  /// What it goes to next, and when it enters that.
-  std::uint32_t node_;
-  float entry_;
+  /// No key of a node that begins by then is larger.
+  float last_key_;
+  /// Of rays that go side by side: what it goes to next, and what it asked of the last leaf.
+  RayNode node_;
   Asked asked_;
-  /// Nodes that wait, in blocks of sixteen or fewer that follow each other: no more than one for
-  /// each level but the top one, of which there may be two; and one more, of which none is left.
-  static constexpr std::uint32_t kMostWaiting = kMaxMeshLevels + 2;
-  std::uint32_t size_;
-  Mask16 rest_[kMostWaiting];
-  std::uint32_t first_node_[kMostWaiting];
-  float gone_to_[kMostWaiting];
+  /// Nodes that wait, in blocks of sixteen or fewer: one for each level but the top one, of which
+  /// there may be two, the lowest level last. A bit is set of each of which some are left.
+  std::uint32_t open_;
+  std::uint32_t first_place_;
+  std::uint32_t level_[kMaxMeshLevels];
+  std::uint32_t first_node_[kMaxMeshLevels];
+  float gone_to_[kMaxMeshLevels];
   /// When each is entered, as bits of a positive float that are ordered as it is, but for the last
-  /// four, which tell which it is; kNobody where none ever waited.
-  alignas(64) float key_[kMostWaiting][kLanes];
+  /// five, which tell which it is; kNobody of those that the ray does not meet.
+  alignas(64) float key_[kMaxMeshLevels][kLanes];
 };
 
 /// Rays that have not begun their way, in their order.
@@ -485,7 +582,7 @@ class WaitingRays {
     if (come_ == 0) return false;
     const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
     come_ &= come_ - 1;
-    step = walk.start(mesh_, rays_, ready_, ray, limits_[ray]);
+    step = walk.step_to(walk.start(mesh_, rays_, ready_, ray, limits_[ray]));
     return true;
   }
 
@@ -506,23 +603,19 @@ class RaysSideBySide {
 
   void run() {
     for (Walk& walk : walk_) begin(walk);
-    const RayStep first_step = mesh_.box != nullptr ? kFetchVertices : kFindTriangles;
     while (going_ != 0) {
       // Asked for before other rays take their steps.
       for (Walk* const walk : steps_[kEnterLeaf]) walk->fetch_leaf(mesh_);
-      each(kFindTriangles,
-           [&](Walk& walk) { put(walk, walk.find_triangles(mesh_) ? kFetchVertices : kTakeNext); });
       each(kCrossTriangles, [&](Walk& walk) {
-        put(walk, walk.cross_triangles(mesh_, visitor_) ? kTakeNext : kEnd);
+        put(walk, walk.cross_triangles(mesh_, visitor_) ? walk.next_step() : kEnd);
       });
       each(kFetchVertices, [&](Walk& walk) {
         walk.fetch_vertices(mesh_);
         put(walk, kCrossTriangles);
       });
-      each(kEnterLeaf,
-           [&](Walk& walk) { put(walk, walk.enter_leaf(mesh_) ? first_step : kTakeNext); });
+      enter_leaves();
       each(kEnterInner, [&](Walk& walk) { put(walk, walk.enter_inner(mesh_)); });
-      each(kTakeNext, [&](Walk& walk) { put(walk, walk.take_next()); });
+      each(kTakeNext, [&](Walk& walk) { put(walk, walk.step_to(walk.take_next())); });
       each(kEnd, [&](Walk& walk) {
         --going_;
         begin(walk);
@@ -542,6 +635,17 @@ class RaysSideBySide {
     [[nodiscard]] Walk* const* end() const { return walk + count; }
   };
 
+  /// What triangles have boxes are known by is not yet at hand.
+  [[gnu::always_inline]] void enter_leaves() {
+    if (mesh_.box != nullptr) {
+      return each(kEnterLeaf, [&](Walk& walk) {
+        put(walk, walk.enter_leaf(mesh_) ? kFetchVertices : walk.next_step());
+      });
+    }
+    each(kEnterLeaf, [&](Walk& walk) {
+      put(walk, walk.find_triangles(mesh_) ? kCrossTriangles : walk.next_step());
+    });
+  }
   /// Lets the next ray go whose turn it is, if there is one.
   void begin(Walk& walk) {
     RayStep step;

@@ -116,6 +116,7 @@ MeshSpan span_of(const MeshView& mesh) noexcept {
     span.extent = std::max(span.extent, span.most[axis] - span.least[axis]);
   }
   span.pace = 1.0 / span.extent;
+  span.units_volume = span.units[0] * span.units[1] * span.units[2];
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double kThinnest = 1e-20;
     const double inverse = span.step[axis] * span.pace;

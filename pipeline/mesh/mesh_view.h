@@ -39,6 +39,8 @@ struct MeshSpan {
   /// The longest side of that box, and tau for each t.
   double extent;
   double pace;
+  /// Of units on all axes.
+  double units_volume;
 };
 
 /// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i

@@ -138,9 +138,14 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
 }  // namespace
 
 bool is_valid(const ShapeRay& ray) noexcept {
-  const Eigen::Map<const Vector3d> origin(ray.origin);
-  const Eigen::Map<const Vector3d> direction(ray.direction);
-  return origin.allFinite() && direction.allFinite() && !direction.isZero(0.0) && ray.max_t >= 0.0;
+  double rest = 0.0;
+  bool moves = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Less itself, no number but a finite one is zero.
+    rest += (ray.origin[axis] - ray.origin[axis]) + (ray.direction[axis] - ray.direction[axis]);
+    moves |= ray.direction[axis] != 0.0;
+  }
+  return rest == 0.0 && moves && ray.max_t >= 0.0;
 }
 
 Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,

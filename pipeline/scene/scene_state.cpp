@@ -100,7 +100,7 @@ PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const 
 
 bool SceneState::has_one_origin() const noexcept {
   return std::all_of(std::begin(sets), std::end(sets), [&](const SceneSet& set) {
-    return !set.partition.has_value() || set.partition->size() == 0 || set.origin == origin;
+    return !set.partition.has_value() || set.origin == origin || set.partition->size() == 0;
   });
 }
 

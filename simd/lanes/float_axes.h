@@ -39,10 +39,9 @@ using FloatAxesBits = std::int32_t __attribute__((vector_size(16)));
 [[gnu::always_inline]] inline FloatAxes signed_as(FloatAxes size, FloatAxes of) {
   return from_bits(bits_of(size) | (bits_of(of) & bits_of(spread_axes(-0.0F))));
 }
-/// a where v is at most the limit, b elsewhere and where v is NaN.
-[[gnu::always_inline]] inline FloatAxes select_below(FloatAxes v, float limit, FloatAxes a,
-                                                     FloatAxes b) {
-  const FloatAxesBits mask = v <= spread_axes(limit);
+/// The lesser of both, b where a is NaN.
+[[gnu::always_inline]] inline FloatAxes lesser_axes(FloatAxes a, FloatAxes b) {
+  const FloatAxesBits mask = a < b;
   return from_bits((mask & bits_of(a)) | (~mask & bits_of(b)));
 }
 /// Whether the axes are all at most the limit.

@@ -100,9 +100,7 @@ unsigned emit_lanes(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q
 }
 
 void load_packed_points(const std::uint32_t* p, float (*axis)[kLanes]) {
-  Floats point[3];
-  load_packed(p, point);
-  for (int k = 0; k < 3; ++k) point[k].store_unaligned(axis[k]);
+  for (std::uint32_t k = 0; k < 3; ++k) load_packed(p, k).store_unaligned(axis[k]);
 }
 template <int Blocks>
 void pick_lanes(const float* from, const std::uint8_t* place, float* out) {
