@@ -208,6 +208,7 @@ template <typename Look>
 /// Brings hits from `before` on into their order, each body once: one whose box reaches from one
 /// piece of the path into the next was met in both.
 void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
+  if (hits.size() - before < 2) return;
   SceneHit* const own = hits.begin() + before;
   std::sort(own, hits.end(), is_before);
   const SceneHit* const end = std::unique(
@@ -489,6 +490,27 @@ struct RayInScene {
   return any ? question.any_in_crowds(hit) : question.closest_in_crowds(best.body, best.t, hit);
 }
 
+/// Looks where a ray by itself meets a body, of those that `look_at_few` shows, up to the limit.
+void meet_alone(QueryState& state, const RayInScene& asked, std::uint32_t body, bool any,
+                RayMeetsBody& best, double& limit) {
+  const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
+    best.improve(RayMeetsBody::at(body, part, found.t, found.normal), any, limit);
+    return limit;
+  };
+  const auto look_at = [&](std::size_t, const ConvexPart& part, double most) {
+    RayMeetsBody meeting;
+    if (!asked.meets(body, part, std::min(most, limit), meeting)) return std::min(most, limit);
+    best.improve(meeting, any, limit);
+    return limit;
+  };
+  if (const RaySurface* const mesh = state.surfaces.find(state.parts, state.scene, body)) {
+    state.parts.met_by_ray(*mesh, asked.ray, limit, meet, look_at);
+  } else {
+    const double end = limit;
+    state.parts.met_by_rays(state.placed(body), {&asked.ray, 1}, &end, meet, look_at);
+  }
+}
+
 /// One ray by itself: its first hit, or `any`. It must be valid.
 Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
                  SceneHit& hit) {
@@ -497,22 +519,7 @@ Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, b
   best.body = kNoObject;
   double limit = ray.max_t;
   auto look = [&](std::uint32_t body) {
-    const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
-      best.improve(RayMeetsBody::at(body, part, found.t, found.normal), any, limit);
-      return limit;
-    };
-    const auto look_at = [&](std::size_t, const ConvexPart& part, double most) {
-      RayMeetsBody meeting;
-      if (!asked.meets(body, part, std::min(most, limit), meeting)) return std::min(most, limit);
-      best.improve(meeting, any, limit);
-      return limit;
-    };
-    if (const RaySurface* const mesh = state.surfaces.find(state.parts, state.scene, body)) {
-      state.parts.met_by_ray(*mesh, ray, limit, meet, look_at);
-    } else {
-      const double end = limit;
-      state.parts.met_by_rays(state.placed(body), {&ray, 1}, &end, meet, look_at);
-    }
+    meet_alone(state, asked, body, any, best, limit);
     return false;
   };
   const bool has_crowd = look_at_few(state.scene, filter, look);
@@ -528,9 +535,34 @@ Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, b
   return status;
 }
 
-/// Up to `Room` rays that are asked together, which costs less than to ask one after the other
+/// All that it meets, into the state's `hits`.
+Status ask_all_alone(QueryState& state, const ShapeRay& ray, const Filter& filter) {
+  const RayInScene asked{state, ray};
+  state.hits.clear();
+  bool has_room = true;
+  auto look = [&](std::uint32_t body) {
+    RayMeetsBody best;
+    best.body = kNoObject;
+    double limit = ray.max_t;
+    meet_alone(state, asked, body, false, best, limit);
+    if (best.body == kNoObject) return false;
+    SceneHit hit;
+    asked.show(best, hit);
+    has_room = state.hits.push_back(hit) && has_room;
+    return false;
+  };
+  const bool has_crowd = look_at_few(state.scene, filter, look);
+  if (!has_room) return Status::out_of_memory;
+  if (has_crowd) {
+    const RaySweep swept(state.scene.shapes, ray);
+    return CastQuestion(state, swept, filter).all_in_crowds(0);
+  }
+  order_hits(state.hits, 0);
+  return Status::ok;
+}
+
+/// Up to kRaysAtOnce rays that are asked together, which costs less than to ask one after the other
 /// wherever they come to the same surfaces, and what each of them meets first.
-template <std::size_t Room>
 class RaysTogether {
  public:
   RaysTogether(QueryState& state, const Filter& filter) noexcept : state_(state), filter_(filter) {}
@@ -556,15 +588,14 @@ class RaysTogether {
   std::size_t count_ = 0;
   bool any_ = false;
   /// As they were given: where a surface is met depends on that alone.
-  ShapeRay ray_[Room];
+  ShapeRay ray_[kRaysAtOnce];
   /// What each has met so far, or its end; with `any`, below zero once it has met something.
-  double limit_[Room];
-  RayMeetsBody best_[Room];
-  SceneHit hit_[Room];
+  double limit_[kRaysAtOnce];
+  RayMeetsBody best_[kRaysAtOnce];
+  SceneHit hit_[kRaysAtOnce];
 };
 
-template <std::size_t Room>
-void RaysTogether<Room>::meet_few(std::uint32_t body) {
+void RaysTogether::meet_few(std::uint32_t body) {
   const auto meet = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
     best_[i].improve(RayMeetsBody::at(body, part, hit.t, hit.normal), any_, limit_[i]);
     return limit_[i];
@@ -576,17 +607,11 @@ void RaysTogether<Room>::meet_few(std::uint32_t body) {
     best_[i].improve(meeting, any_, limit_[i]);
     return limit_[i];
   };
-  if constexpr (Room == 1) {
-    if (const RaySurface* const mesh = state_.surfaces.find(state_.parts, state_.scene, body)) {
-      return state_.parts.met_by_ray(*mesh, ray_[0], limit_[0], meet, look);
-    }
-  }
   state_.parts.met_by_rays(state_.placed(body), {ray_, count_}, limit_, meet, look);
 }
 
-template <std::size_t Room>
-void RaysTogether<Room>::start(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
-                               bool any) noexcept {
+void RaysTogether::start(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                         bool any) noexcept {
   count_ = count;
   any_ = any;
   for (std::size_t i = 0; i < count; ++i) {
@@ -596,9 +621,8 @@ void RaysTogether<Room>::start(const ShapeRayBatch& rays, std::size_t first, std
   }
 }
 
-template <std::size_t Room>
-Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
-                               bool any) {
+Status RaysTogether::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                         bool any) {
   start(rays, first, count, any);
   auto look = [&](std::uint32_t body) {
     meet_few(body);
@@ -614,9 +638,8 @@ Status RaysTogether<Room>::ask(const ShapeRayBatch& rays, std::size_t first, std
   return Status::ok;
 }
 
-template <std::size_t Room>
-Status RaysTogether<Room>::list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
-                                    bool& has_crowd) {
+Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                              bool& has_crowd) {
   Column<RayHit>& few = state_.few;
   few.clear();
   bool has_room = true;
@@ -679,7 +702,7 @@ Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filt
                 const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
   if (status != Status::ok) return status;
-  RaysTogether<kRaysAtOnce> group(*state, filter);
+  RaysTogether group(*state, filter);
   for (std::size_t first = 0; first < rays.count; first += kRaysAtOnce) {
     const std::size_t count = std::min<std::size_t>(kRaysAtOnce, rays.count - first);
     status = group.ask(rays, first, count, any);
@@ -696,15 +719,14 @@ Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, Sce
 }
 
 /// Puts all hits of rays that are valid into the state's `hits`, and where those of each begin.
-template <std::size_t Room>
 Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filter) {
   Column<std::size_t>& first = state.hits_first;
   state.hits.clear();
   if (!first.resize(rays.count + 1)) return Status::out_of_memory;
   first[0] = 0;
-  RaysTogether<Room> group(state, filter);
-  for (std::size_t i = 0; i < rays.count; i += Room) {
-    const std::size_t end = std::min(rays.count, i + Room);
+  RaysTogether group(state, filter);
+  for (std::size_t i = 0; i < rays.count; i += kRaysAtOnce) {
+    const std::size_t end = std::min(rays.count, i + kRaysAtOnce);
     bool has_crowd = false;
     Status status = group.list_few(rays, i, end - i, has_crowd);
     if (status != Status::ok) return status;
@@ -762,7 +784,7 @@ Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filte
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
   if (const Status status = check(state_, ray); status != Status::ok) return status;
-  const Status status = ask_all<1>(*state_, std::span<const ShapeRay>(&ray, 1), filter);
+  const Status status = ask_all_alone(*state_, ray, filter);
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
 }
@@ -779,7 +801,7 @@ Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
   if (const Status status = check(state_, rays); status != Status::ok) return status;
-  const Status status = ask_all<kRaysAtOnce>(*state_, rays, filter);
+  const Status status = ask_all(*state_, rays, filter);
   if (status != Status::ok) return status;
   const Column<std::size_t>& first = state_->hits_first;
   hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
