@@ -424,31 +424,6 @@ Status CastQuestion::all_in_crowds(std::size_t before) {
   return Status::ok;
 }
 
-/// Where a ray meets a body: kNoObject if it meets none.
-struct RayMeetsBody {
-  std::uint32_t body;
-  std::uint32_t part;
-  double t;
-  double normal[3];
-
-  [[nodiscard]] static RayMeetsBody at(std::uint32_t body, std::uint32_t part, double t,
-                                       const double (&normal)[3]) noexcept {
-    return {body, part, t, {normal[0], normal[1], normal[2]}};
-  }
-  /// Takes another meeting if it is the first one by the limit, up to which the ray goes on then;
-  /// with `any`, no farther.
-  void improve(const RayMeetsBody& other, bool any, double& limit) noexcept {
-    if (other.t > limit) return;
-    // Equal t are ordered by the bodies' ids, then by part.
-    if (body != kNoObject && other.t == t &&
-        (body != other.body ? body < other.body : part < other.part)) {
-      return;
-    }
-    *this = other;
-    limit = any ? -1.0 : other.t;
-  }
-};
-
 /// One ray in a scene, where a surface is met depends on it alone.
 struct RayInScene {
   const QueryState& state;
@@ -573,15 +548,16 @@ class RaysTogether {
   /// says whether there are crowds besides.
   Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool& has_crowd);
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
+  /// What ray i of them meets so.
+  [[nodiscard]] SceneHit shown(std::size_t i, const RayMeetsBody& at) const noexcept {
+    SceneHit hit;
+    RayInScene{state_, ray_[i]}.show(at, hit);
+    return hit;
+  }
 
  private:
   void start(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any) noexcept;
   void meet_few(std::uint32_t body);
-  [[nodiscard]] SceneHit shown(std::size_t i) const noexcept {
-    SceneHit hit;
-    RayInScene{state_, ray_[i]}.show(best_[i], hit);
-    return hit;
-  }
 
   QueryState& state_;
   const Filter& filter_;
@@ -629,7 +605,7 @@ Status RaysTogether::ask(const ShapeRayBatch& rays, std::size_t first, std::size
     return false;
   };
   const bool has_crowd = look_at_few(state_.scene, filter_, look);
-  for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i);
+  for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i, best_[i]);
   if (!has_crowd) return Status::ok;
   for (std::size_t i = 0; i < count; ++i) {
     const Status status = ask_crowds(state_, ray_[i], filter_, best_[i], any_, hit_[i]);
@@ -647,7 +623,7 @@ Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std:
     start(rays, first, count, false);
     meet_few(body);
     for (std::size_t i = 0; i < count; ++i) {
-      if (best_[i].body != kNoObject) has_room = few.push_back({first + i, shown(i)}) && has_room;
+      if (best_[i].body != kNoObject) has_room = few.push_back({first + i, best_[i]}) && has_room;
     }
     return false;
   };
@@ -733,7 +709,7 @@ Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filte
     const RayHit* next = state.few.begin();
     for (std::size_t k = i; k < end; ++k) {
       for (; next != state.few.end() && next->ray == k; ++next) {
-        if (!state.hits.push_back(next->hit)) return Status::out_of_memory;
+        if (!state.hits.push_back(group.shown(k - i, next->at))) return Status::out_of_memory;
       }
       if (has_crowd) {
         const ShapeRay ray = rays[k];

@@ -11,10 +11,35 @@
 
 namespace winnow {
 
-/// A hit of one of several rays.
+/// Where a ray meets a body: kNoObject if it meets none.
+struct RayMeetsBody {
+  std::uint32_t body;
+  std::uint32_t part;
+  double t;
+  double normal[3];
+
+  [[nodiscard]] static RayMeetsBody at(std::uint32_t body, std::uint32_t part, double t,
+                                       const double (&normal)[3]) noexcept {
+    return {body, part, t, {normal[0], normal[1], normal[2]}};
+  }
+  /// Takes another meeting if it is the first one by the limit, up to which the ray goes on then;
+  /// with `any`, no farther.
+  void improve(const RayMeetsBody& other, bool any, double& limit) noexcept {
+    if (other.t > limit) return;
+    // Equal t are ordered by the bodies' ids, then by part.
+    if (body != kNoObject && other.t == t &&
+        (body != other.body ? body < other.body : part < other.part)) {
+      return;
+    }
+    *this = other;
+    limit = any ? -1.0 : other.t;
+  }
+};
+
+/// The same of one of several rays.
 struct RayHit {
   std::size_t ray;
-  SceneHit hit;
+  RayMeetsBody at;
 };
 
 /// Meshes that rays came to one by one, each as MidPhase::place made it ready where it stood. Of
