@@ -165,10 +165,10 @@ std::size_t FlatGrid::cells() const noexcept {
 
 constexpr StructureCosts kCosts{.has_cells = true,
                                 .frame = 5000,
-                                .keep = 19,
+                                .keep = 18,
                                 .level = 0.023,
                                 .crowd = 2.8,
-                                .pair = 3.4,
+                                .pair = 3.2,
                                 .moved = 430,
                                 .rest = 0.4,
                                 .build = 12,
