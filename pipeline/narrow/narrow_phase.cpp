@@ -256,15 +256,12 @@ void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> sh
   }
 }
 
-// A body that does not exist comes before a shape that does not.
+// A body that does not exist comes before a shape that does not, and is not told.
 Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
-  Status status = Status::ok;
+  const Look* refused = nullptr;
   for (const Look& look : looks_) {
     if (look.status == Status::invalid_argument) return Status::invalid_argument;
-    if (status == Status::ok && look.status != Status::ok) {
-      status = look.status;
-      bad_body = look.bad_body;
-    }
+    if (refused == nullptr && look.status != Status::ok) refused = &look;
     any_mirrored_ = any_mirrored_ || look.mirrored != 0;
     for (std::uint32_t code = look.codes.low; code <= look.codes.high; ++code) {
       counts_[code] += look.counts[code];
@@ -272,7 +269,9 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
     there_.low = std::min(there_.low, look.codes.low);
     there_.high = std::max(there_.high, look.codes.high);
   }
-  return status;
+  if (refused == nullptr) return Status::ok;
+  bad_body = refused->bad_body;
+  return refused->status;
 }
 
 // Tells every look where its pairs go.

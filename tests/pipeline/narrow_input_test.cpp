@@ -131,6 +131,7 @@ TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) 
     // A body that is not there is told first, wherever it is.
     scene_.pairs[kMany - 2].a = last + 2;
     refused(Status::invalid_argument);
+    EXPECT_EQ(phase_.bad_body(), ~0U);
     scene_.pairs[kMany / 3] = before[0];
     scene_.pairs[kMany - 2] = before[1];
     scene_.shapes.resize(last);
