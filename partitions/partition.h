@@ -47,9 +47,9 @@ struct PartitionOptions {
   /// A build that can be seen coming, because objects near the edges of their cells or queries cost
   /// ever more, is planned over the refreshes before it, and so is the exchange of a structure by
   /// the automatic choice. This is how many rows' worth of that work a refresh does: a build takes
-  /// two to five of each row. 0: one or more of each, so that a plan is done within two fifths of
-  /// the refreshes that the last order was good for. The largest number: builds are done at once
-  /// when they are due. Counts, never time: results are the same on every machine.
+  /// two to five of each row. 0: as much as it takes for a plan to be done within two fifths of the
+  /// refreshes that the last order was good for. The largest number: builds are done at once when
+  /// they are due. Counts, never time: results are the same on every machine.
   std::size_t build_budget = 0;
 };
 
