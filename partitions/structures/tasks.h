@@ -43,13 +43,14 @@ template <typename Offset, typename Find>
   };
   const auto sampled = [](std::size_t i) { return i * kOneIn + kOneIn / 2; };
   execution.for_each(tasks / kOneIn, [&](std::size_t i) { run(sampled(i)); });
-  std::size_t seen = 0;
-  std::size_t sum = 0;
+  // Their products may be beyond a size of 32 bits.
+  std::uint64_t seen = 0;
+  std::uint64_t sum = 0;
   for (std::size_t i = 0; i < tasks / kOneIn; ++i) {
-    seen += static_cast<std::size_t>(room(sampled(i) + 1) - room(sampled(i)));
+    seen += static_cast<std::uint64_t>(room(sampled(i) + 1) - room(sampled(i)));
     sum += found[sampled(i)];
   }
-  if (kFewRows * seen > rows && sum * rows > (most + most / 4) * seen) return false;
+  if (kFewRows * seen > rows && sum * rows > (std::uint64_t{most} + most / 4) * seen) return false;
   execution.for_each(tasks, [&](std::size_t task) {
     const bool is_sampled = task / kOneIn < tasks / kOneIn && task == sampled(task / kOneIn);
     if (!is_sampled) run(task);
