@@ -116,7 +116,7 @@ RaySpan common(const RaySpan& a, const RaySpan& b) noexcept {
 
 namespace {
 
-/// The slab of a polygon's extent along its longest side.
+/// The slab of a polygon's extent along its longest side, a grazing distance wider.
 RaySpan length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices) noexcept {
   Eigen::Vector3d longest = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -131,8 +131,8 @@ RaySpan length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertic
     high = std::max(high, axis.dot(vertex));
   }
   PlaneClip clip(ray);
-  clip.below(axis, high);
-  clip.below(-axis, -low);
+  clip.below(axis, high + kGrazing);
+  clip.below(-axis, -low + kGrazing);
   return clip.span();
 }
 
@@ -152,8 +152,7 @@ RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertice
     if (clip.span().is_empty()) return {};
   }
   // The sides of a sliver are parallel, as far as double can tell, and do not end it.
-  if (common(clip.span(), length_span(ray, vertices)).is_empty()) return {};
-  return clip.span();
+  return common(clip.span(), length_span(ray, vertices));
 }
 
 }  // namespace winnow

@@ -3,6 +3,7 @@
 #include <winnow/pipeline/shape_rays.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -139,6 +140,34 @@ TEST(ShapeRays, meet_a_sliver_within_its_edges) {
   EXPECT_EQ(cast(pool.tables(), id, {0, 0.5 * width, 1.3}, {0, 0, -1}).hit.t, 1.0);
   EXPECT_FALSE(cast(pool.tables(), id, {0, 1.1 * width, 1.3}, {0, 0, -1}).hit.hit);
   EXPECT_FALSE(cast(pool.tables(), id, {0, -0.1 * width, 1.3}, {0, 0, -1}).hit.hit);
+}
+
+// Three points of the ray itself, apart from it by their rounding alone: no side ends such a
+// triangle along the ray, and where the ray meets its plane is anywhere.
+TEST(ShapeRays, along_slivers_meet_them_between_their_tips) {
+  Random random(53);
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < scaled(2000); ++i) {
+    const Vector3d along(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    TriangleShape sliver;
+    double first = kInf;
+    double last = 0.0;
+    for (double(&vertex)[3] : sliver.vertex) {
+      const double t = random.uniform(0.001, 0.003);
+      Vector3d::Map(vertex) = t * along;
+      first = std::min(first, t);
+      last = std::max(last, t);
+    }
+    ShapePool pool;
+    ShapeId id;
+    ASSERT_EQ(pool.add(sliver, id), Status::ok);
+    const Cast c = cast(pool.tables(), id, Vector3d::Zero(), along);
+    if (!c.hit.hit) continue;
+    ++met;
+    ASSERT_GE(c.hit.t, first - 1e-12) << i;
+    ASSERT_LE(c.hit.t, last + 1e-12) << i;
+  }
+  EXPECT_GT(met, scaled(1000));
 }
 
 TEST(ShapeRays, meet_cones_along_their_lines) {
