@@ -165,14 +165,15 @@ std::size_t FlatGrid::cells() const noexcept {
 
 constexpr StructureCosts kCosts{.has_cells = true,
                                 .frame = 5000,
-                                .keep = 18,
+                                .keep = 10,
+                                .object = 8,
                                 .level = 0.023,
                                 .crowd = 2.8,
                                 .pair = 3.2,
                                 .moved = 430,
                                 .rest = 0.4,
-                                .build = 12,
-                                .anew = 28,
+                                .build = 20,
+                                .anew = 20,
                                 .ask_level = 36,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);
