@@ -21,9 +21,7 @@ struct CoarseStretches {
   const Execution& execution;
 
   CoarseStretches(std::size_t points, const Execution& e)
-      : count(points),
-        length(even_stretch(points, std::max(kLeast, points / (kMostStretches - 8) + 1))),
-        execution(e) {}
+      : count(points), length(even_stretch(points, kLeast, kMostStretches)), execution(e) {}
 
   /// Calls body(stretch, begin, end).
   template <typename Body>

@@ -43,7 +43,7 @@ constexpr KindCodes kKindCodes;
 [[nodiscard]] constexpr std::size_t stretch_of(std::size_t pairs) noexcept {
   constexpr std::size_t kLeast = 16384;
   constexpr std::size_t kMostStretches = 64;
-  return even_stretch(pairs, std::max(kLeast, pairs / (kMostStretches - 8) + 1));
+  return even_stretch(pairs, kLeast, kMostStretches);
 }
 
 // True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 
@@ -103,12 +102,10 @@ void SceneSample::look_along(std::size_t a, const BoundsPool& pool,
   mean_edge[a] = sum / static_cast<double>(std::max<std::size_t>(1, bounded));
   const std::span<const float> values(ends.data(), count);
   const auto [least, most] = pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
-  // Outliers must not stretch the cells: past the middle 96 % the range goes on by half of it.
-  const double q98 = static_cast<double>(value_near_end(values, count / 50, std::greater<>()));
-  const double q02 = static_cast<double>(value_near_end(values, count / 50, std::less<>()));
-  const double margin = 0.5 * (q98 - q02);
-  low[a] = std::max(least, static_cast<float>(std::max(q02 - margin, -3e38)));
-  high[a] = std::min(most, static_cast<float>(std::min(q98 + margin, 3e38)));
+  // Outliers must not stretch the cells.
+  const RangeOfMost range(values);
+  low[a] = std::max(least, static_cast<float>(std::max(range.low, -3e38)));
+  high[a] = std::min(most, static_cast<float>(std::min(range.high, 3e38)));
 }
 
 /// One way to lay out cells, and what it is expected to cost.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace winnow {
@@ -35,8 +34,7 @@ struct Range {
   [[nodiscard]] double length() const { return high - low; }
 };
 
-// Where the lower ends of rows lie on an axis, from a sample. Outliers must not stretch cells: past
-// the middle 96 % the range goes on by half of it.
+// Where the lower ends of rows lie on an axis, from a sample. Outliers must not stretch cells.
 template <typename RowOf>
 Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowOf&& row_of) {
   constexpr std::size_t kLeast = 64;
@@ -54,10 +52,8 @@ Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowO
   const auto [least, most] = std::ranges::minmax(ends);
   const double first = static_cast<double>(least);
   const double last = static_cast<double>(most);
-  const double q02 = static_cast<double>(value_near_end(ends, n / 50, std::less<>()));
-  const double q98 = static_cast<double>(value_near_end(ends, n / 50, std::greater<>()));
-  const double margin = 0.5 * (q98 - q02);
-  return {std::max(first, q02 - margin), std::min(last, q98 + margin)};
+  const RangeOfMost range(ends);
+  return {std::max(first, range.low), std::min(last, range.high)};
 }
 
 // How many objects an object finds in its own cube of a raster, itself included, from a sample:

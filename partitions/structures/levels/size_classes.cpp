@@ -23,7 +23,7 @@ constexpr std::size_t kMostSizeStretches = 16;
 
 std::size_t stretch_of(std::size_t rows) noexcept {
   constexpr std::size_t kLeastRows = 8192;
-  return even_stretch(rows, std::max(kLeastRows, rows / (kMostSizeStretches - 8) + 1));
+  return even_stretch(rows, kLeastRows, kMostSizeStretches);
 }
 
 // How long the ranges are over which n objects with these sums of places and of their squares would
