@@ -21,12 +21,6 @@
 namespace winnow {
 namespace {
 
-#if WINNOW_HAVE_TBB
-std::size_t arena_threads() noexcept {
-  const int threads = tbb::this_task_arena::max_concurrency();
-  return threads > 1 ? static_cast<std::size_t>(threads) : 1;
-}
-
 // Of more threads than this some have nothing to do.
 constexpr std::size_t kMostShares = 64;
 
@@ -34,12 +28,14 @@ constexpr std::size_t kMostShares = 64;
 /// neighbours stay with one thread, and a task costs one addition.
 class SharedTasks {
  public:
-  SharedTasks(std::size_t count, std::size_t shares, void* tasks, JobSystem::Task task) noexcept
-      : shares_(shares), tasks_(tasks), task_(task) {
-    for (std::size_t s = 0; s < shares; ++s) {
-      share_[s] = {.next = count * s / shares, .end = count * (s + 1) / shares};
+  SharedTasks(std::size_t count, std::size_t threads, void* tasks, JobSystem::Task task) noexcept
+      : shares_(std::min({count, threads, kMostShares})), tasks_(tasks), task_(task) {
+    for (std::size_t s = 0; s < shares_; ++s) {
+      share_[s] = {.next = count * s / shares_, .end = count * (s + 1) / shares_};
     }
   }
+
+  [[nodiscard]] std::size_t shares() const noexcept { return shares_; }
 
   /// Does tasks of a share, then of the others, until none is left that nobody has begun.
   void run(std::size_t own) noexcept {
@@ -64,19 +60,23 @@ class SharedTasks {
   const JobSystem::Task task_;
 };
 
+#if WINNOW_HAVE_TBB
+std::size_t arena_threads() noexcept {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  return threads > 1 ? static_cast<std::size_t>(threads) : 1;
+}
+
 // Workers keep the floating-point environment of when the arena was made: they take the caller's,
 // so that its rounding, and what it makes of denormal numbers, are those of all tasks. Isolated:
 // whoever cancels the work that the call is part of must not leave it half done.
-void run_in_arena(std::size_t count, void* tasks, JobSystem::Task task) {
+void run_in_arena(SharedTasks& tasks) {
   using Context = tbb::task_group_context;
   Context environment(Context::isolated, Context::default_traits | Context::fp_settings);
-  const std::size_t shares = std::min({count, arena_threads(), kMostShares});
-  SharedTasks shared(count, shares, tasks, task);
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, shares, 1),
+        tbb::blocked_range<std::size_t>(0, tasks.shares(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t s = range.begin(); s != range.end(); ++s) shared.run(s);
+          for (std::size_t s = range.begin(); s != range.end(); ++s) tasks.run(s);
         },
         tbb::simple_partitioner(), environment);
   });
@@ -106,15 +106,14 @@ void enter(const FloatEnvironment& environment) noexcept {
 
 /// Tasks that a host's threads run in the environment of the caller, and end in their own.
 struct HostedTasks {
-  void* tasks;
-  JobSystem::Task task;
+  SharedTasks& tasks;
   FloatEnvironment callers = float_environment();
 
-  static void run(void* hosted, std::size_t i) {
+  static void run(void* hosted, std::size_t share) {
     const auto& self = *static_cast<const HostedTasks*>(hosted);
     const FloatEnvironment own = float_environment();
     enter(self.callers);
-    self.task(self.tasks, i);
+    self.tasks.run(share);
     enter(own);
   }
 };
@@ -134,12 +133,13 @@ void Execution::run(std::size_t count, void* context, void (*task)(void*, std::s
     for (std::size_t i = 0; i < count; ++i) task(context, i);
     return;
   }
+  SharedTasks tasks(count, concurrency(), context, task);
   if (jobs_.parallel_for != nullptr) {
-    HostedTasks hosted{context, task};
-    return jobs_.parallel_for(jobs_.context, count, HostedTasks::run, &hosted);
+    HostedTasks hosted{tasks};
+    return jobs_.parallel_for(jobs_.context, tasks.shares(), HostedTasks::run, &hosted);
   }
 #if WINNOW_HAVE_TBB
-  run_in_arena(count, context, task);
+  run_in_arena(tasks);
 #endif
 }
 

@@ -20,8 +20,8 @@ struct JobSystem {
   void (*parallel_for)(void* context, std::size_t count, Task task, void* tasks) = nullptr;
   /// Handed to parallel_for; it outlives everything that the job system was given to.
   void* context = nullptr;
-  /// How many tasks may run at the same time: work is cut into pieces that suit as many. More or
-  /// fewer cost time alone.
+  /// How many tasks may run at the same time, and the most that a call of parallel_for is given.
+  /// More or fewer cost time alone.
   std::size_t threads = 1;
 
   /// The same function, context and number of threads.
