@@ -1,7 +1,8 @@
 """Usage: race.py [FRAMES]
 
-Times the Python package against scipy's cKDTree, and against the same frames in C++, which FRAMES, by
-default winnow_python_frames of build/ci, runs. Prints median milliseconds of a frame.
+Times the Python package against scipy's cKDTree, open3d's search within a radius, and the same frames
+in C++, which FRAMES, by default winnow_python_frames of build/ci, runs. Prints median milliseconds of
+a frame.
 """
 
 import os
@@ -18,6 +19,11 @@ try:
     from scipy.spatial import cKDTree
 except ImportError:
     cKDTree = None
+
+try:
+    from open3d import core as open3d
+except ImportError:
+    open3d = None
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
@@ -52,6 +58,14 @@ def box_pairs_of_a_tree(boxes):
     a, b = pairs.T
     meets = ((lower[a] <= upper[b]) & (lower[b] <= upper[a])).all(axis=1)
     return pairs[meets]
+
+
+def neighbours_by_open3d(points, radius):
+    """Of each point those in a radius, itself among them."""
+    points = open3d.Tensor(points)
+    search = open3d.nns.NearestNeighborSearch(points)
+    search.fixed_radius_index(radius)
+    return search.fixed_radius_search(points, radius)[0]
 
 
 def race_tree(count=100_000, frames=12):
@@ -90,6 +104,17 @@ def race_tree(count=100_000, frames=12):
         median_ms(neighbours_of_a_tree, range(1, 5)),
         "cKDTree",
     )
+    if open3d is None:
+        print("open3d is not here (Debian: python3-open3d)")
+    else:
+        found = len(neighbours_by_open3d(points[1], radius)) - count
+        assert abs(2 * len(neighbours(1)) - found) <= 8
+        row(
+            "neighbours of 100,000 points",
+            median_ms(neighbours, range(1, frames)),
+            median_ms(lambda number: neighbours_by_open3d(points[number], radius), range(1, 5)),
+            "open3d",
+        )
     row(
         "8 nearest of 100,000 points",
         median_ms(lambda number: balls.nearest(points[number], 8), range(1, 4)),
@@ -161,7 +186,7 @@ if __name__ == "__main__":
     default = os.path.join(ROOT, "build", "ci", "bench", "python", "winnow_python_frames")
     program = sys.argv[1] if len(sys.argv) > 1 else default
     if cKDTree is None:
-        print("without scipy there is no cKDTree (Debian: python3-scipy)")
+        print("scipy's cKDTree is not here (Debian: python3-scipy)")
     else:
         race_tree()
     race_cpp(program)
