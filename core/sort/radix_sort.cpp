@@ -74,7 +74,8 @@ std::uint64_t* sort_serially(std::uint64_t* items, std::uint64_t* spare, std::si
   for (unsigned p = 0; p < digits.passes; ++p) std::fill_n(start[p].begin(), values, 0U);
   const std::uint64_t whole = ~std::uint64_t{0} >> (64 - bits);
   const auto digit_of = [&](std::uint64_t item, unsigned p) {
-    return (item >> first_bit & whole) >> (p * digits.length) & (values - 1);
+    return static_cast<std::size_t>((item >> first_bit & whole) >> (p * digits.length)) &
+           (values - 1);
   };
   for (std::size_t i = 0; i < count; ++i) {
     for (unsigned p = 0; p < digits.passes; ++p) ++start[p][digit_of(items[i], p)];
