@@ -19,10 +19,15 @@ endif()
 set(winnow_wasm_flags "--sysroot=/ -isystem ${winnow_wasm_root} -isystem /usr/include/wasm32-wasi \
 -msimd128 -D__SSE__ -D__SSE2__ -D__SSE3__ -D__SSSE3__ -D__SSE4_1__ -D__SSE4_2__")
 set(CMAKE_C_FLAGS_INIT "${winnow_wasm_flags}")
+# Boost would derive from std::unary_function, which libc++ has no longer, include a header of mutexes,
+# which WASI has not, and align numbers as Microsoft's compilers write it, as this is not g++.
+set(winnow_wasm_boost "-DBOOST_NO_CXX98_FUNCTION_BASE -DBOOST_DISABLE_THREADS \
+-DBOOST_SMART_PTR_DETAIL_LIGHTWEIGHT_MUTEX_HPP_INCLUDED -fdeclspec")
 # Nothing is thrown there: what would ends the program. For a compiler that claims to be g++ Eigen has
 # assembler of x86. Googletest would capture output with calls that WASI has not.
 set(CMAKE_CXX_FLAGS_INIT "-nostdinc++ -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1 \
-${winnow_wasm_flags} -fignore-exceptions -fgnuc-version=0 -DGTEST_HAS_STREAM_REDIRECTION=0")
+${winnow_wasm_flags} -fignore-exceptions -fgnuc-version=0 -DGTEST_HAS_STREAM_REDIRECTION=0 \
+${winnow_wasm_boost}")
 set(CMAKE_EXE_LINKER_FLAGS_INIT
     "-L/usr/lib/llvm-16/lib/wasm32-wasi -L/usr/lib/wasm32-wasi -Wl,-z,stack-size=4194304")
 
