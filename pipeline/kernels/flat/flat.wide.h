@@ -344,6 +344,43 @@ template <typename T>
   return select(v > Lanes<T>(T(0)), Lanes<T>(T(1)) / v, Lanes<T>(T(0)));
 }
 
+// Steps of a search by axes, each of a kind of pair's own.
+struct ToBestAxis {
+  template <typename Pair>
+  [[gnu::always_inline]] static auto of(const Pair& pair) {
+    return best_axis(pair);
+  }
+};
+struct ToPointsOfAxis {
+  template <typename Pair, typename Axis>
+  [[gnu::always_inline]] static auto of(const Pair& pair, const Axis& axis) {
+    return axis_points(pair, axis);
+  }
+};
+struct ToClosestByVertices {
+  template <typename Pair>
+  [[gnu::always_inline]] static auto of(const Pair& pair) {
+    return closest_by_vertices(pair);
+  }
+};
+
+template <typename Step, typename... From>
+[[gnu::noinline]] inline auto by_a_function(const From&... from) {
+  return Step::of(from...);
+}
+
+/// A step by a function that all levels share where that costs no time: where a wide type is four
+/// registers little would stay in them, and few pairs come to double. It halves what compilers
+/// take.
+template <typename Step, typename T, typename... From>
+[[gnu::always_inline]] inline auto step(const From&... from) {
+  if constexpr (sizeof(T) == sizeof(double) || kPartsOf<T> == 4) {
+    return by_a_function<Step>(from...);
+  } else {
+    return Step::of(from...);
+  }
+}
+
 /// What the best axis says: a vertex and its foot on a face, or a point of each of two edges.
 template <typename T>
 struct AxisPoints {
@@ -391,10 +428,10 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
   const LaneMask<T> measured = apart & wanted;
   const bool any_measured = bits(measured) != 0;
   if (L == kDistance || any_measured) {
-    const AxisPoints<T> by_axis = axis_points(pair, axis);
+    const AxisPoints<T> by_axis = step<ToPointsOfAxis, T>(pair, axis);
     answer.point = by_axis.points.a;
     if (any_measured) {
-      PointPair<T> points = closest_by_vertices(pair);
+      PointPair<T> points = step<ToClosestByVertices, T>(pair);
       const LaneMask<T> axis_is_closer =
           by_axis.meets & (by_axis.points.square() <= points.square());
       points.a = select(axis_is_closer, by_axis.points.a, points.a);
@@ -480,7 +517,7 @@ template <typename T, typename Staged>
 template <int L, typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_flat(NarrowJob& job, const PairBlock<T>& given,
                                                  const Pair& pair, const T* sign) {
-  const auto axis = best_axis(pair);
+  const auto axis = step<ToBestAxis, T>(pair);
   const Lanes<T> margin(static_cast<T>(job.margin));
   LaneMask<T> wanted = pair.scale == pair.scale;
   if constexpr (L == kManifold) {
@@ -498,6 +535,14 @@ template <int L, typename Staged, typename T, typename Pair>
   return ~certified;
 }
 
+/// Distances of all lanes, of few blocks: of a copy, so that the caller's pair need not be in
+/// memory.
+template <typename Staged, typename T, typename Pair>
+[[gnu::noinline]] inline CoreAnswer<T> measured(Pair pair) {
+  const auto axis = step<ToBestAxis, T>(pair);
+  return measure<kManifold, Staged>(pair, axis, pair.scale == pair.scale);
+}
+
 /// Level boolean: the pairs that `apart` and `over` leave open are measured.
 template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
@@ -508,8 +553,7 @@ template <typename Staged, typename T, typename Pair>
   Mask16 known = hit | bits(apart);
   const Mask16 unknown = ~known & valid & block.lanes();
   if (unknown != 0) {
-    const LaneMask<T> all = pair.scale == pair.scale;
-    CoreAnswer<T> core = measure<kManifold, Staged>(pair, best_axis(pair), all);
+    CoreAnswer<T> core = measured<Staged, T>(pair);
     known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
     hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
   }
