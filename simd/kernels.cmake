@@ -2,7 +2,8 @@
 
 # WINNOW_ISAS, narrowest first, holds sse42 on x86-64: all of winnow is compiled for that, and
 # kernels for each of them; a program takes the widest that its machine has. Each adds its copy of
-# the kernels to a program, and its time to the build.
+# the kernels to a program, and its time to the build. "native" is the widest that this machine runs,
+# and the baseline, of which nothing but its answers is wanted then.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
@@ -13,6 +14,30 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "wasm")
 else()
   message(FATAL_ERROR "winnow has no kernels for ${CMAKE_SYSTEM_PROCESSOR}")
 endif()
+# winnow_native_isas(): makes WINNOW_ISAS the list that is meant by "native".
+function(winnow_native_isas)
+  if(CMAKE_CROSSCOMPILING)
+    message(FATAL_ERROR "WINNOW_ISAS=native asks this machine, and this build is for another")
+  endif()
+  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+    set(WINNOW_ISAS neon64 PARENT_SCOPE)
+    return()
+  endif()
+  include(CheckCXXSourceRuns)
+  set(runs "int main() { return __builtin_cpu_supports")
+  set(and "&& __builtin_cpu_supports")
+  check_cxx_source_runs("${runs}(\"avx2\") ${and}(\"fma\") ? 0 : 1; }" WINNOW_RUNS_AVX2)
+  check_cxx_source_runs("${runs}(\"avx512f\") ${and}(\"avx512cd\") ${and}(\"avx512dq\") \
+${and}(\"avx512bw\") ${and}(\"avx512vl\") ? 0 : 1; }" WINNOW_RUNS_AVX512)
+  if(WINNOW_RUNS_AVX512)
+    set(WINNOW_ISAS "sse42;avx512" PARENT_SCOPE)
+  elseif(WINNOW_RUNS_AVX2)
+    set(WINNOW_ISAS "sse42;avx2" PARENT_SCOPE)
+  else()
+    set(WINNOW_ISAS sse42 PARENT_SCOPE)
+  endif()
+endfunction()
+
 set(WINNOW_FLAGS_sse42 "")
 if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "wasm")
   set(WINNOW_FLAGS_sse42 -msse4.2 -mpopcnt)
@@ -26,6 +51,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 set(WINNOW_FLAGS_neon64 "")
 
+set(winnow_native OFF)
+if(WINNOW_ISAS STREQUAL "native")
+  set(winnow_native ON)
+  winnow_native_isas()
+endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64" AND NOT "sse42" IN_LIST WINNOW_ISAS)
   message(FATAL_ERROR "WINNOW_ISAS must hold the baseline sse42")
 endif()
@@ -45,6 +75,9 @@ set(WINNOW_NARROWER_OPTIMIZATION "" CACHE STRING
     "Optimization of kernels for all instruction sets but the widest; empty: that of all kernels")
 set(WINNOW_KERNELS_FROM "" CACHE PATH
     "Folder of another build, with the same instruction sets, whose kernels are linked; empty: none")
+if(winnow_native AND NOT WINNOW_NARROWER_OPTIMIZATION)
+  set(WINNOW_NARROWER_OPTIMIZATION -O1)
+endif()
 mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_NARROWER_OPTIMIZATION WINNOW_KERNELS_FROM)
 list(GET WINNOW_ISAS -1 winnow_widest_isa)
 

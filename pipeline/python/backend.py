@@ -1,5 +1,6 @@
 """Builds the wheel, for pip (PEP 517) and for `wheel`: CMake makes the module, a zip file holds it
-and the package. Needs what winnow needs, pybind11 and numpy, and no network.
+and the package. Needs what winnow needs, pybind11 and numpy, and no network. What pip builds is fast on
+this machine, as WINNOW_ISAS=native is; what `wheel` writes is on every one.
 
 WINNOW_PYTHON_BUILD names a folder to build in and keep; otherwise that is a temporary one.
 WINNOW_PYTHON_OPTIONS are further options for CMake.
@@ -35,17 +36,28 @@ def tag():
 
 
 def run(*command):
-    """Shows what the command says only if it fails."""
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    if done.returncode != 0:
-        sys.stderr.write(done.stdout)
+    """Tells how far ninja or make is, and what the command says only if it fails."""
+    said = []
+    tenth = 0
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        for line in process.stdout:
+            said.append(line)
+            step = re.match(r"\[ *(\d+)(?:/(\d+)|%)\]", line)
+            done = 10 * int(step[1]) // int(step[2] or 100) if step else 0
+            if done > tenth:
+                tenth = done
+                print("winnow: %d %%" % (10 * done), file=sys.stderr, flush=True)
+    if process.returncode != 0:
+        sys.stderr.write("".join(said))
         raise SystemExit(
             "winnow: failed: %s\nOn Debian it wants: apt-get install %s"
             % (shlex.join(command), PACKAGES)
         )
 
 
-def build_module(folder):
+def build_module(folder, isas):
     """The folder of the package, the module with it."""
     if shutil.which("cmake") is None:
         raise SystemExit("winnow: there is no cmake\nOn Debian: apt-get install " + PACKAGES)
@@ -55,9 +67,12 @@ def build_module(folder):
     run(
         "cmake", "-S", str(ROOT), "-B", str(folder), *generator, "-DCMAKE_BUILD_TYPE=Release",
         "-DWINNOW_PYTHON=ON", "-DWINNOW_TESTS=OFF", "-DWINNOW_BENCH=OFF", "-DWINNOW_INSTALL=OFF",
-        "-DPython_EXECUTABLE=" + sys.executable, *options,
+        "-DPython_EXECUTABLE=" + sys.executable, *isas, *options,
     )  # fmt: skip
-    run("cmake", "--build", str(folder), "--target", "winnow_python", "--parallel")
+    run(
+        "cmake", "--build", str(folder), "--target", "winnow_python",
+        "--parallel", str(os.cpu_count() or 1),
+    )  # fmt: skip
     return folder / "pipeline" / "python" / "winnow"
 
 
@@ -96,13 +111,17 @@ def write_wheel(package, directory):
     return name
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+def make_wheel(directory, isas):
     kept = os.environ.get("WINNOW_PYTHON_BUILD")
     if kept:
-        return write_wheel(build_module(pathlib.Path(kept).resolve()), wheel_directory)
+        return write_wheel(build_module(pathlib.Path(kept).resolve(), isas), directory)
     with tempfile.TemporaryDirectory() as folder:
-        return write_wheel(build_module(pathlib.Path(folder)), wheel_directory)
+        return write_wheel(build_module(pathlib.Path(folder), isas), directory)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    return make_wheel(wheel_directory, ["-DWINNOW_ISAS=native"])
 
 
 if __name__ == "__main__":
-    print(os.path.join(sys.argv[1], build_wheel(sys.argv[1])))
+    print(os.path.join(sys.argv[1], make_wheel(sys.argv[1], [])))
