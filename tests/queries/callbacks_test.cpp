@@ -4,13 +4,16 @@
 
 #include <winnow/core/debug_draw.h>
 
-#include <csignal>
 #include <stdexcept>
 
 #include "tests/support/platform.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
 
+// WebAssembly has neither exceptions nor signals, Windows not those that end a process.
+#if WINNOW_TEST_EXCEPTIONS
+#include <csignal>
+#endif
 #if WINNOW_TEST_EXCEPTIONS && defined(SIGKILL)
 
 namespace winnow::test {
