@@ -245,10 +245,28 @@ inline constexpr std::uint32_t kLaneBits = 15;
   best.store(height);
 }
 
+/// The lane that a maximum of zero is from. A zero with a lane's number is a denormal number, which
+/// a host may have flushed to zero wherever it is computed with; what is stored has kept it.
+[[gnu::noinline]] static std::uint32_t lane_of_zero(const float* height) {
+  const auto pattern = [&](std::uint32_t i) {
+    return __builtin_bit_cast(std::uint32_t, height[i]);
+  };
+  // In the order in which denormal numbers are larger, which other hosts take them by.
+  for (std::uint32_t i = kLanes; i-- > 0;) {
+    if (pattern(i) == i) return i;
+  }
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    if (pattern(i) == (1U << 31U | i)) return i;
+  }
+  return 0;
+}
+
 /// The vertex that a maximum of `heights` names.
 [[gnu::always_inline]] static inline std::uint32_t vertex_of(const HullShape& hull, float highest,
+                                                             const float* height,
                                                              const float* block) {
   std::uint32_t vertex = __builtin_bit_cast(std::uint32_t, highest) & kLaneBits;
+  if (highest == 0.0F) vertex = lane_of_zero(height);
   if (hull.vertex_count > kLanes) vertex += static_cast<std::uint32_t>(block[vertex]);
   // Padding repeats vertex 0.
   return vertex < hull.vertex_count ? vertex : 0;
@@ -260,7 +278,7 @@ inline constexpr std::uint32_t kLaneBits = 15;
   alignas(64) float height[kLanes];
   alignas(64) float block[kLanes];
   heights(hull, direction, height, block);
-  return vertex_of(hull, reduce_max(Floats::load(height)), block);
+  return vertex_of(hull, reduce_max(Floats::load(height)), height, block);
 }
 
 [[gnu::always_inline]] static inline Doubles along(const double* const* vertex, std::uint32_t row,

@@ -37,7 +37,8 @@ class FarthestVertices {
     for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
       const int lane = static_cast<int>(first(rest));
       const HullShape& hull = *hull_[lane];
-      const std::uint32_t vertex = vertex_of(hull, highest[lane], block_ + lane * kLanes);
+      const std::uint32_t vertex =
+          vertex_of(hull, highest[lane], height_ + lane * kLanes, block_ + lane * kLanes);
       number_[lane] = vertex;
       for (int i = 0; i < 3; ++i) vertex_[i][lane] = hull.vertex_float[i][vertex];
     }
