@@ -1,11 +1,12 @@
-// Usage: winnow_digests [--check FILE]
+// Usage: winnow_digests [--check FILE | --check-once FILE]
 //
 // Prints a digest of every kind of answer, one a line, in each floating-point mode that a host may
 // have set: each is computed on every instruction set of the machine and on 1 to 32 threads, of
 // arenas of oneTBB, where winnow is built with it, and of a pool of its own, and if these do not
 // agree, says which of them differ. With --check prints the lines alone that the file has
-// otherwise, and ends with 1 if there are any. The numbers that go in are made without the
-// mathematical library, whose last digits depend on its version.
+// otherwise, and ends with 1 if there are any. --check-once takes the best instruction set and one
+// thread alone. The numbers that go in are made without the mathematical library, whose last digits
+// depend on its version.
 
 #if WINNOW_HAVE_TBB
 #include <tbb/global_control.h>
@@ -14,17 +15,17 @@
 #include <winnow/winnow.h>
 
 #include <algorithm>
-#include <bit>
 #include <cfenv>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/digests/digest.h"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -37,44 +38,6 @@
 
 namespace winnow::test {
 namespace {
-
-/// FNV-1a over 64-bit numbers.
-class Digest {
- public:
-  void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
-};
-
-/// Numbers that are exact in every mode.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits() {
-    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31U);
-  }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
-  /// A multiple of 2^-16 in [-range, range), of a power of two.
-  double coordinate(int range) {
-    const auto steps = static_cast<std::int64_t>(bits() % (std::uint64_t{1} << 20U)) - (1 << 19);
-    return static_cast<double>(steps) * range * 0x1p-19;
-  }
-  Pose pose(int range) {
-    Pose pose;
-    for (double& x : pose.position) x = coordinate(range);
-    for (double& q : pose.orientation) q = coordinate(1);
-    return pose;
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 /// Cubes of so many sizes.
 std::vector<Aabb> boxes(std::size_t count, std::uint64_t seed, std::size_t sizes = 4) {
@@ -287,11 +250,6 @@ void scene(const Execution& execution, Digest& digest) {
   ask(world, numbers, digest);
 }
 
-struct Work {
-  std::string name;
-  std::function<void(const Execution&, Digest&)> run;
-};
-
 std::vector<Work> all_work() {
   std::vector<Work> work;
   for (const StructureKind kind : all_structures()) {
@@ -306,6 +264,9 @@ std::vector<Work> all_work() {
                     [tier](const Execution& e, Digest& d) { narrow(tier, e, d); }});
   }
   work.push_back({"scene", scene});
+  for (const auto& more : {shape_works(), refresh_works()}) {
+    work.insert(work.end(), more.begin(), more.end());
+  }
   return work;
 }
 
@@ -390,9 +351,14 @@ std::uint64_t digest_of(const Mode& mode, const Work& work, const Workers& worke
   return digest.value();
 }
 
-std::string line_of(const Mode& mode, const Work& work) {
+/// `once`: computed but once.
+std::string line_of(const Mode& mode, const Work& work, bool once) {
   std::ostringstream line;
   line << mode.name << ' ' << work.name << ' ';
+  if (once) {
+    line << std::hex << digest_of(mode, work, {1});
+    return line.str();
+  }
   std::uint64_t first = 0;
   bool any = false;
   for (const Isa isa : available_isas()) {
@@ -427,7 +393,9 @@ int main(int argc, char** argv) {
 #if WINNOW_HAVE_TBB
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 33U);
 #endif
-  const bool checks = argc == 3 && std::string(argv[1]) == "--check";
+  const std::string option = argc == 3 ? argv[1] : "";
+  const bool once = option == "--check-once";
+  const bool checks = option == "--check" || once;
   const auto wanted = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
   std::size_t asked = 0;
   std::size_t other = 0;
@@ -435,7 +403,7 @@ int main(int argc, char** argv) {
     for (const Work& work : all_work()) {
       const auto known = wanted.find(std::string(mode.name) + ' ' + work.name);
       if (checks && known == wanted.end()) continue;
-      const std::string line = line_of(mode, work);
+      const std::string line = line_of(mode, work, once);
       ++asked;
       if (checks && line == known->second) continue;
       std::cout << line << std::endl;

@@ -1,0 +1,65 @@
+#pragma once
+
+// What digests are made of and what with, and the works that other files have.
+
+#include <winnow/winnow.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace winnow::test {
+
+/// FNV-1a over 64-bit numbers.
+class Digest {
+ public:
+  void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+/// Numbers that are exact in every mode.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits() {
+    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ULL;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31U);
+  }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
+  /// A multiple of 2^-16 in [-range, range), of a power of two.
+  double coordinate(int range) {
+    const auto steps = static_cast<std::int64_t>(bits() % (std::uint64_t{1} << 20U)) - (1 << 19);
+    return static_cast<double>(steps) * range * 0x1p-19;
+  }
+  Pose pose(int range) {
+    Pose pose;
+    for (double& x : pose.position) x = coordinate(range);
+    for (double& q : pose.orientation) q = coordinate(1);
+    return pose;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Something that is done and digested.
+struct Work {
+  std::string name;
+  std::function<void(const Execution&, Digest&)> run;
+};
+
+/// Bodies of every kind and what is special about them, met, moved and cast.
+[[nodiscard]] std::vector<Work> shape_works();
+/// Partitions that objects come to, leave and move in, and what that took.
+[[nodiscard]] std::vector<Work> refresh_works();
+
+}  // namespace winnow::test

@@ -1,0 +1,366 @@
+// Lives of partitions: objects come, leave, move and change what they meet, and the order of their
+// rows wears and is made anew. How often, and how many tests it takes, is counted and never timed:
+// it repeats exactly, and is digested as answers are.
+
+#include "tests/digests/digest.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory_resource>
+#include <numeric>
+#include <span>
+
+namespace winnow::test {
+namespace {
+
+/// Digests what it is told to draw.
+class Drawing final : public DebugDraw {
+ public:
+  explicit Drawing(Digest& digest) : digest_(digest) {}
+
+  void box(const Aabb& box, Colour colour) override {
+    add(box.min);
+    add(box.max);
+    add(colour);
+  }
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override {
+    add(from);
+    add(to);
+    add(colour);
+  }
+  void sphere(const Sphere& sphere, Colour colour) override {
+    add(sphere.center);
+    digest_.add(static_cast<double>(sphere.radius));
+    add(colour);
+  }
+  void text(const Vec3f& at, std::string_view text, Colour colour) override {
+    add(at);
+    for (const char letter : text) digest_.add(static_cast<std::uint64_t>(letter));
+    add(colour);
+  }
+
+ private:
+  void add(const Vec3f& point) {
+    for (int k = 0; k < 3; ++k) digest_.add(static_cast<double>(point[k]));
+  }
+  void add(Colour colour) {
+    for (const std::uint8_t part : {colour.r, colour.g, colour.b, colour.a}) {
+      digest_.add(std::uint64_t{part});
+    }
+  }
+
+  Digest& digest_;
+};
+
+class Life {
+ public:
+  Life(StructureKind structure, const PartitionOptions& options, std::size_t count, Digest& digest)
+      : partition_(structure, options), numbers_(21), digest_(digest) {
+    insert(count);
+  }
+
+  void insert(std::size_t count) {
+    std::vector<Aabb> boxes(count);
+    for (Aabb& box : boxes) place(box);
+    std::vector<Key> keys(count);
+    std::vector<ClientData> data(count);
+    std::iota(data.begin(), data.end(), keys_.size());
+    note(partition_.insert(boxes, data, keys));
+    keys_.insert(keys_.end(), keys.begin(), keys.end());
+    boxes_.insert(boxes_.end(), boxes.begin(), boxes.end());
+  }
+
+  /// Every so many-th, from one that chance tells on.
+  void remove(std::size_t stride) {
+    std::vector<Key> gone;
+    std::size_t kept = 0;
+    const std::size_t first = numbers_.below(stride);
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (i % stride == first) {
+        gone.push_back(keys_[i]);
+        continue;
+      }
+      keys_[kept] = keys_[i];
+      boxes_[kept++] = boxes_[i];
+    }
+    keys_.resize(kept);
+    boxes_.resize(kept);
+    note(partition_.remove(gone));
+    note(partition_.remove(gone));
+    note(partition_.update(gone, {std::span<const Aabb>(boxes_).first(gone.size())}));
+  }
+
+  /// Every so many-th goes up to so far, in the order of the keys or from the last to the first.
+  void move(std::size_t stride, int way, bool backwards = false) {
+    std::vector<Key> keys;
+    std::vector<Aabb> boxes;
+    for (std::size_t n = numbers_.below(stride); n < keys_.size(); n += stride) {
+      const std::size_t i = backwards ? keys_.size() - 1 - n : n;
+      step(boxes_[i], way);
+      keys.push_back(keys_[i]);
+      boxes.push_back(boxes_[i]);
+    }
+    note(partition_.update(keys, boxes));
+  }
+
+  void move_one_by_one(std::size_t stride, int way) {
+    for (std::size_t i = numbers_.below(stride); i < keys_.size(); i += stride) {
+      step(boxes_[i], way);
+      note(partition_.update(keys_[i], boxes_[i]));
+    }
+  }
+
+  /// As move, of all boxes told which to look at; these are bad where they are not to.
+  void move_listed(std::size_t stride, int way, bool masked) {
+    std::vector<Aabb> boxes = boxes_;
+    std::vector<std::uint32_t> list;
+    std::vector<std::uint64_t> mask(keys_.size() / 64 + 1);
+    const std::size_t first = numbers_.below(stride);
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (i % stride != first) {
+        boxes[i].min[0] = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      step(boxes_[i], way);
+      boxes[i] = boxes_[i];
+      list.push_back(static_cast<std::uint32_t>(i));
+      mask[i / 64] |= std::uint64_t{1} << i % 64;
+    }
+    note(partition_.update(keys_, boxes, masked ? Entries::masked(mask) : Entries::listed(list)));
+  }
+
+  void jump(std::size_t stride) {
+    for (std::size_t i = numbers_.below(stride); i < keys_.size(); i += stride) place(boxes_[i]);
+    note(partition_.update(keys_, boxes_));
+  }
+
+  /// Calls that change nothing.
+  void ask_badly() {
+    std::vector<Key> keys(keys_.begin(), keys_.begin() + 3);
+    std::vector<Aabb> boxes(boxes_.begin() + 3, boxes_.begin() + 6);
+    keys.push_back(keys.front());
+    note(partition_.update(keys, boxes));
+    note(partition_.remove(keys));
+    note(partition_.remove(std::span(keys).first(2).subspan(2)));
+    keys.back() = Key{};
+    boxes.push_back(boxes.front());
+    note(partition_.update(keys, boxes));
+    keys.pop_back();
+    boxes.pop_back();
+    boxes.back().max[1] = -std::numeric_limits<float>::infinity();
+    note(partition_.update(keys, boxes));
+    note(partition_.set_filter(keys, std::vector<ObjectFilter>(2)));
+  }
+
+  void filter(std::size_t stride, const ObjectFilter& filter) {
+    std::vector<Key> keys;
+    for (std::size_t i = 0; i < keys_.size(); i += stride) keys.push_back(keys_[i]);
+    note(partition_.set_filter(keys, std::vector<ObjectFilter>(keys.size(), filter)));
+  }
+
+  void part(std::uint32_t environments) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const auto environment = static_cast<std::uint32_t>(i) % environments;
+      note(partition_.set_filter(keys_[i],
+                                 {.layers = ~0U, .mask = ~0U, .environment = environment}));
+    }
+  }
+
+  void ask(const PairOptions& options = {}) {
+    note(partition_.self_pairs(pairs_, options));
+    for (const Pair& pair : pairs_) digest_.add(std::uint64_t{pair.first} << 32U | pair.second);
+    count();
+  }
+
+  void look() {
+    HitBuffer hits;
+    OverlapBuffer objects;
+    for (int i = 0; i < 8; ++i) {
+      Ray ray;
+      for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = static_cast<float>(numbers_.coordinate(16));
+        ray.direction[k] = static_cast<float>(numbers_.coordinate(1));
+      }
+      note(partition_.all(ray, hits));
+      for (const Hit& hit : hits.hits()) digest_.add(std::uint64_t{hit.key.id});
+      note(partition_.overlap(Sphere{ray.origin, 3.0F}, objects));
+      for (const ObjectId id : objects.ids()) digest_.add(std::uint64_t{id});
+      note(partition_.nearest({ray.origin, ray.origin}, 5, 50.0F, hits));
+      for (const Hit& hit : hits.hits()) digest_.add(std::uint64_t{hit.key.id});
+    }
+  }
+
+  void draw() {
+    Drawing drawing(digest_);
+    note(partition_.debug_draw(drawing, {.objects = true, .structure = true, .labels = true}));
+  }
+
+  /// Goes on as what it was saved as.
+  void restart() {
+    Column<std::byte> saved(std::pmr::get_default_resource());
+    note(partition_.save(saved));
+    note(partition_.load({saved.data(), saved.size() - 1}));
+    note(partition_.load({saved.data(), saved.size()}));
+  }
+
+  Partition& partition() { return partition_; }
+  void note(Status status) { digest_.add(static_cast<std::uint64_t>(status)); }
+  void note(bool answer) { digest_.add(std::uint64_t{answer ? 1U : 0U}); }
+
+  void forget() {
+    keys_.clear();
+    boxes_.clear();
+  }
+
+ private:
+  /// Cubes of a few sizes in a world that is longer than high.
+  void place(Aabb& box) {
+    const auto size = static_cast<float>(1U << numbers_.below(3)) * 0.5F;
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = static_cast<float>(numbers_.coordinate(k == 2 ? 4 : 16));
+      box.max[k] = box.min[k] + size;
+    }
+    // Some have an end or two at infinity.
+    const std::size_t chance = numbers_.below(300);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (chance < 2) box.min[chance] = -kInfinity;
+    if (chance < 1) box.max[0] = kInfinity;
+  }
+
+  /// `way` in sixteenths.
+  void step(Aabb& box, int way) {
+    for (int k = 0; k < 3; ++k) {
+      const auto by = static_cast<float>(numbers_.coordinate(1) * way * 0x1p-4);
+      box.min[k] += by;
+      box.max[k] += by;
+    }
+  }
+
+  void count() {
+    const Statistics s = partition_.statistics();
+    for (const std::size_t number :
+         {s.objects, s.regular, s.irregular, s.cells, s.depth, s.levels}) {
+      digest_.add(std::uint64_t{number});
+    }
+    for (const std::uint64_t number : {s.builds, s.planned_builds, s.refits, s.full_queries,
+                                       s.incremental_queries, s.last_tests, s.last_pairs}) {
+      digest_.add(number);
+    }
+    Aabb box;
+    for (const Key key : keys_) {
+      note(partition_.bounds(key, box));
+      digest_.add(static_cast<double>(box.min[0]));
+      digest_.add(static_cast<double>(box.max[2]));
+    }
+  }
+
+  Partition partition_;
+  Numbers numbers_;
+  Digest& digest_;
+  std::vector<Key> keys_;
+  std::vector<Aabb> boxes_;
+  PairBuffer pairs_;
+};
+
+/// All move a little, for so long that orders wear and are planned.
+void drift(Life& life, int way) {
+  for (int frame = 0; frame < 40; ++frame) {
+    life.move(1, way, frame % 3 == 2);
+    life.ask();
+    if (frame % 8 == 3) life.look();
+  }
+}
+
+/// Some move, come and leave, in every way that a program may tell.
+void churn(Life& life) {
+  for (int frame = 0; frame < 24; ++frame) {
+    life.move_one_by_one(37, 8);
+    life.move(frame % 4 == 0 ? 2 : 19, 4, frame % 2 == 1);
+    life.move_listed(frame % 3 == 0 ? 3 : 1, 2, frame % 2 == 0);
+    if (frame % 5 == 1) life.remove(frame % 2 == 0 ? 3 : 11);
+    if (frame % 5 == 3) life.insert(150);
+    if (frame % 7 == 2) life.ask_badly();
+    if (frame % 10 == 4) life.draw();
+    if (frame == 17) life.restart();
+    if (frame == 9) life.jump(2);
+    if (frame == 15) life.jump(40);
+    if (frame == 20) life.jump(1);
+    life.ask({.order = frame % 6 == 5 ? Order::canonical : Order::fast});
+    if (frame % 6 == 2) life.look();
+  }
+}
+
+/// Layers first, then environments, then none.
+void sift(Life& life) {
+  for (int frame = 0; frame < 16; ++frame) {
+    life.move(frame % 2 == 0 ? 1 : 7, 4);
+    if (frame == 2) life.filter(3, {.layers = 2U, .mask = 5U, .environment = 0});
+    if (frame == 5) life.part(3);
+    if (frame == 8) life.insert(200);
+    if (frame == 10) life.filter(2, {.layers = 1U, .mask = ~0U, .environment = kEveryEnvironment});
+    if (frame == 12) life.remove(5);
+    if (frame == 13) life.filter(1, {});
+    life.ask();
+    if (frame % 4 == 3) life.look();
+  }
+}
+
+/// Everything leaves, memory goes and comes, another structure takes over.
+void end(Life& life) {
+  Partition& partition = life.partition();
+  const StructureKind before = partition.structure();
+  for (const StructureKind kind : {linear_bvh(), bounds_n_squared(), flat_grid(), before}) {
+    life.note(partition.set_structure(kind));
+    life.move(2, 4);
+    life.ask();
+  }
+  partition.release_memory();
+  life.ask();
+  partition.clear();
+  life.forget();
+  life.ask();
+  life.note(partition.reserve(700));
+  life.insert(300);
+  life.ask();
+  partition.clear();
+  life.forget();
+  partition.release_memory();
+  life.insert(100);
+  life.ask();
+}
+
+void live(StructureKind structure, PartitionOptions options, const Execution& execution,
+          Digest& digest) {
+  options.execution = execution;
+  const std::size_t count = structure == n_squared() ? 60 : 1200;
+  Life drifting(structure, options, count, digest);
+  drift(drifting, 4);
+  Life life(structure, options, count, digest);
+  churn(life);
+  sift(life);
+  drift(life, 1);
+  end(life);
+}
+
+}  // namespace
+
+std::vector<Work> refresh_works() {
+  std::vector<Work> works;
+  const auto add = [&](StructureKind structure, const char* name, const PartitionOptions& options) {
+    works.push_back({"lives/" + std::string(structure.name()) + name,
+                     [=](const Execution& execution, Digest& digest) {
+                       live(structure, options, execution, digest);
+                     }});
+  };
+  for (const StructureKind structure : all_structures()) {
+    add(structure, "", {});
+    add(structure, "/planned", {.build_budget = 200});
+  }
+  for (const StructureKind structure : {hierarchical_grid(), linear_bvh()}) {
+    add(structure, "/margins", {.margin = {.distance = 0.125F, .share = 0.0625F}});
+    add(structure, "/spheres", {.volume = Volume::sphere});
+  }
+  return works;
+}
+
+}  // namespace winnow::test
