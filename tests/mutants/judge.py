@@ -1,17 +1,19 @@
 """Runs the tests against each mutant: judge.py PROGRAMS MUTANTS SECONDS OUT [SUITES].
 
 First every suite of tests runs once without a mutant, and tells which mutants it comes by; one that does
-not pass at the scale of WINNOW_TEST_SCALE, as too few of its cases are left, is run at larger ones. Then each
-mutant is run by the suites that come by it until one fails, hangs or crashes, which kills it, or until
-SECONDS have passed for it: those first that killed others of its file, then those that come by few mutants
-for the time that they take. Prints the survivors, with the reason that survivors.txt
-gives where it knows one, and the score by group; OUT gets all of it as JSON. Equivalent mutants, as that
-file calls them, are not counted. SUITES, a regular expression, takes those suites alone.
+not pass at the scale of WINNOW_TEST_SCALE, as too few of its cases are left, is run at larger ones. Each
+line of digests.txt for the host's usual rounding counts as a suite. Then each mutant is run by the suites
+that come by it until one fails, hangs or crashes, which kills it, or until SECONDS have been used for it:
+those first that killed others of its file, then those that come by few mutants for the time that they
+take. Prints the survivors, with the reason that survivors.txt gives where it knows one, and the score by
+group; OUT gets all of it as JSON. Equivalent mutants, as that file calls them, are not counted. SUITES, a
+regular expression, takes those suites alone. All times are of the processor: others may use it too.
 """
 
 import collections
 import concurrent.futures
 import json
+import math
 import os
 import pathlib
 import re
@@ -22,44 +24,74 @@ import time
 
 PROGRAMS = ["core", "partition", "query", "pipeline", "recording"]
 HERE = pathlib.Path(__file__).parent
+DIGESTS = HERE.parent / "digests" / "digests.txt"
+# A process that does nothing for so many seconds waits for ever.
+MOST_IDLE = 60
 # Of tests, where the one that was asked for leaves a suite too little to find.
 LARGER_SCALES = ["0.3", "1"]
 
 
-def suites_of(program):
-    listed = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True,
-                            check=True).stdout
-    return [line.strip() for line in listed.splitlines() if line and not line.startswith(" ")
-            and line.strip().endswith(".")]
-
-
-def run_suite(program, suite, extra, limit):
-    """True if the tests pass within so many seconds. What takes longer is run once more: the machine may
-    have been busy, and a mutant is to be killed by tests alone."""
-    environment = dict(os.environ, **extra)
-    words = [program, f"--gtest_filter={suite}*", "--gtest_brief=1", "--gtest_fail_fast"]
-    for _ in range(2):
-        try:
-            done = subprocess.run(words, env=environment, timeout=limit, stdout=subprocess.DEVNULL,
-                                  stderr=subprocess.DEVNULL, check=False)
-        except subprocess.TimeoutExpired:
+def suites_of(programs, files):
+    """Names, and the words that run each. `files` is a folder for what they read."""
+    suites = []
+    for name in PROGRAMS:
+        program = f"{programs}/winnow_{name}_tests"
+        listed = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True,
+                                check=True).stdout
+        suites += [(line.strip(), [program, f"--gtest_filter={line.strip()}*", "--gtest_brief=1",
+                                   "--gtest_fail_fast"])
+                   for line in listed.splitlines()
+                   if line and not line.startswith(" ") and line.strip().endswith(".")]
+    for line in DIGESTS.read_text().splitlines():
+        mode, name, _ = line.split(" ", 2)
+        if mode != "nearest":
             continue
-        return done.returncode == 0
-    return False
+        file = pathlib.Path(files) / name.replace("/", "-")
+        file.write_text(line + "\n")
+        suites.append((f"digest {name}", [f"{programs}/winnow_digests", "--check-once", str(file)]))
+    return suites
 
 
-def survey(program, suite):
+def is_idle(process, used):
+    """Whether the processor time that a process has used is still this, unless it was stopped; and that
+    time."""
+    try:
+        fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except OSError:
+        return False, used
+    now = int(fields[11]) + int(fields[12])
+    return now == used and fields[0] not in "Tt", now
+
+
+def run_suite(words, extra, limit):
+    """True if the tests pass within so many seconds, and how many they took."""
+    process = subprocess.Popen(["prlimit", f"--cpu={math.ceil(limit)}", *words],
+                               env=dict(os.environ, **extra), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    used, idle, pause = -1, 0.0, 0.002
+    while True:
+        pid, code, usage = os.wait4(process.pid, os.WNOHANG)
+        if pid != 0:
+            process.returncode = code
+            return code == 0, usage.ru_utime + usage.ru_stime
+        still, used = is_idle(process, used)
+        idle = idle + pause if still else 0.0
+        if idle > MOST_IDLE:
+            process.kill()
+        time.sleep(pause)
+        pause = min(2.0 * pause, 0.25)
+
+
+def survey(name, words):
     """What a suite comes by without a mutant, at which scale, and how long it takes."""
     for scale in [os.environ.get("WINNOW_TEST_SCALE", "0.1"), *LARGER_SCALES]:
         with tempfile.NamedTemporaryFile("r") as file:
-            start = time.monotonic()
-            passed = run_suite(program, suite, {"WINNOW_MUTANTS_REACHED": file.name,
-                                                "WINNOW_TEST_SCALE": scale}, 600)
-            took = time.monotonic() - start
+            passed, took = run_suite(words, {"WINNOW_MUTANTS_REACHED": file.name,
+                                             "WINNOW_TEST_SCALE": scale}, 600)
             reached = {int(line) for line in file}
         if passed:
             break
-    return {"program": program, "suite": suite, "scale": scale, "took": took, "passed": passed,
+    return {"suite": name, "words": words, "scale": scale, "took": took, "passed": passed,
             "reached": reached}
 
 
@@ -73,29 +105,25 @@ def judge(mutant, suites, kills, budget):
     for suite in mine:
         if spent > budget:
             return {"killed_by": None, "suites": len(mine), "ran_all": False}
-        start = time.monotonic()
-        limit = 10.0 * suite["took"] + 5.0
-        if not run_suite(suite["program"], suite["suite"],
-                         {"WINNOW_MUTANT": str(mutant["id"]), "WINNOW_TEST_SCALE": suite["scale"]},
-                         limit):
+        passed, took = run_suite(suite["words"], {"WINNOW_MUTANT": str(mutant["id"]),
+                                                  "WINNOW_TEST_SCALE": suite["scale"]},
+                                 10.0 * suite["took"] + 5.0)
+        if not passed:
             file_kills[suite["suite"]] += 1
-            return {"killed_by": suite["suite"] + "*", "suites": len(mine), "ran_all": True}
-        spent += time.monotonic() - start
+            return {"killed_by": suite["suite"], "suites": len(mine), "ran_all": True}
+        spent += took
     return {"killed_by": None, "suites": len(mine), "ran_all": True}
 
 
 def known_survivors():
-    """Reasons by file, what was written and what became of it."""
+    """Reasons by file, place and what became of it."""
     known = {}
     for line in (HERE / "survivors.txt").read_text().splitlines():
         if line and not line.startswith("#"):
-            file, was, what, reason = (part.strip() for part in line.split(" | "))
-            known[file, was, what] = reason
+            rest, what, reason = line.rsplit(" | ", 2)
+            file, place = rest.split(" | ", 1)
+            known[file, place, what] = reason
     return known
-
-
-def one_line(text):
-    return " ".join(text.split())
 
 
 def main():
@@ -103,20 +131,22 @@ def main():
     wanted = re.compile(sys.argv[5] if len(sys.argv) > 5 else "")
     mutants = [m for m in json.loads(pathlib.Path(mutants_file).read_text())
                if not m.get("dropped")]
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = []
-        for name in PROGRAMS:
-            program = f"{programs}/winnow_{name}_tests"
-            jobs += [pool.submit(survey, program, suite) for suite in suites_of(program)
-                     if wanted.search(suite)]
+    with (concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool,
+          tempfile.TemporaryDirectory() as files):
+        jobs = [pool.submit(survey, name, words) for name, words in suites_of(programs, files)
+                if wanted.search(name)]
         suites = [job.result() for job in jobs]
         for suite in suites:
             if not suite["passed"]:
-                print(f"without a mutant {suite['suite']}* does not pass: left out", flush=True)
+                print(f"without a mutant {suite['suite']} does not pass: left out", flush=True)
         suites = [s for s in suites if s["passed"]]
         print(f"{len(suites)} suites take {sum(s['took'] for s in suites):.0f} s", flush=True)
         kills = collections.defaultdict(collections.Counter)
-        verdicts = list(pool.map(lambda m: judge(m, suites, kills, float(budget)), mutants))
+        verdicts = []
+        for verdict in pool.map(lambda m: judge(m, suites, kills, float(budget)), mutants):
+            verdicts.append(verdict)
+            killed = sum(v["killed_by"] is not None for v in verdicts)
+            print(f"{killed} of {len(verdicts)} are killed", end="\r", file=sys.stderr, flush=True)
 
     known = known_survivors()
     counts = collections.defaultdict(collections.Counter)
@@ -126,13 +156,13 @@ def main():
         if verdict["killed_by"]:
             count["killed"] += 1
             continue
-        reason = known.get((mutant["file"], one_line(mutant["was"]), mutant["what"]), "")
+        reason = known.get((mutant["file"], mutant["place"], mutant["what"]), "")
         mutant["reason"] = reason
         count["equivalent" if reason.startswith("equivalent") else "survived"] += 1
-        where = "" if verdict["suites"] else " (no suite comes by it)"
-        where += "" if verdict["ran_all"] else " (not all suites were run)"
-        print(f"{mutant['file']}:{mutant['line']} | {one_line(mutant['was'])} | {mutant['what']}"
-              f"{where} | {reason or 'no reason is known'}")
+        where = "" if verdict["suites"] else ", no suite comes by it"
+        where += "" if verdict["ran_all"] else ", not all suites were run"
+        print(f"{mutant['file']} | {mutant['place']} | {mutant['what']} | "
+              f"{reason or 'no reason is known'} (line {mutant['line']}{where})")
     total = collections.Counter()
     for group, count in counts.items():
         total.update(count)

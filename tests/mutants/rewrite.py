@@ -1,15 +1,18 @@
-"""Puts mutants into the sources of a copy of the tree: rewrite.py TREE COMPILE_COMMANDS COUNT SEED OUT.
+"""Puts mutants into the sources of a copy of the tree: rewrite.py TREE COMPILE_COMMANDS COUNT SEED OUT [GROUPS].
 
 A mutant is a small change of one expression or statement. All of them are compiled into one program, and
 the environment variable WINNOW_MUTANT says which one runs: `a < b` becomes
 `(winnow_mutants::is(17) ? (a) <= (b) : (a) < (b))`. COUNT of each group of targets.txt are drawn by SEED,
-no two of which overlap; 0 takes all that do not. OUT gets what they are, as JSON.
+no two of which overlap; 0 takes all that do not. Those of a group do not depend on other groups, and fewer
+are the first of more. GROUPS, a regular expression, takes those groups alone. OUT gets what they are, as
+JSON.
 """
 
 import itertools
 import json
 import pathlib
 import random
+import re
 import sys
 
 import clang.cindex
@@ -32,6 +35,9 @@ REMOVABLE = {
 # clang wraps what makes temporaries in a cursor that it has no name for.
 WRAPPED = {CursorKind.UNEXPOSED_EXPR}
 LITERALS = {CursorKind.INTEGER_LITERAL, CursorKind.FLOATING_LITERAL}
+DECLARATIONS = {CursorKind.VAR_DECL, CursorKind.PARM_DECL, CursorKind.FIELD_DECL}
+# Called, it changes how long something takes and nothing else.
+HINTS = {"__builtin_prefetch"}
 
 
 class Source:
@@ -58,13 +64,24 @@ class Source:
             return None
         return (start.offset, end.offset) if start.offset < end.offset else None
 
-    def add(self, cursor, start, end, text, what):
+    def add(self, start, end, text, what):
         line = self.bytes[:start].count(b"\n") + 1
         self.points.append({"file": str(self.path), "line": line, "start": start, "end": end,
-                            "text": text, "was": self.text(start, end), "what": what})
+                            "text": text, "was": self.text(start, end), "what": what,
+                            "place": self.place(start, end)})
+
+    def place(self, start, end):
+        """The line that something is written in, the part itself between « and »: a number or a name
+        alone is in many places of a file."""
+        first = self.bytes.rfind(b"\n", 0, start) + 1
+        last = self.bytes.find(b"\n", end)
+        around = (self.text(first, start), "«", self.text(start, end), "»", self.text(end, last))
+        return " ".join("".join(around).split())
 
     def visit(self, cursor):
         if cursor.kind in (CursorKind.STATIC_ASSERT, CursorKind.ENUM_DECL) or self.is_constant(cursor):
+            return
+        if cursor.kind is CursorKind.CALL_EXPR and cursor.spelling in HINTS:
             return
         if cursor.kind in (CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR):
             self.visit_operator(cursor)
@@ -76,7 +93,14 @@ class Source:
         elif cursor.kind is CursorKind.IF_STMT:
             self.visit_condition(cursor)
         for child in cursor.get_children():
-            self.visit(child)
+            if not (cursor.kind in DECLARATIONS and self.is_in_type(child)):
+                self.visit(child)
+
+    def is_in_type(self, cursor):
+        """How many there are of an array: computed while compiling, too."""
+        place = self.span(cursor)
+        return (place is not None and self.bytes[: place[0]].rstrip().endswith((b"[", b","))
+                and self.bytes[place[1] :].lstrip().startswith((b"]", b">")))
 
     def is_constant(self, cursor):
         """Computed while compiling, where no mutant is ever switched on: see mutants.h."""
@@ -103,7 +127,7 @@ class Source:
             text = f"(winnow_mutants::is(@) ? ({a}) {other} ({b}) : ({a}) {operator} ({b}))"
         else:
             text = f"(winnow_mutants::is(@) ? (void)({a} {other} {b}) : (void)({a} {operator} {b}))"
-        self.add(cursor, *place, text, f"{operator} -> {other}")
+        self.add(*place, text, f"'{operator}' -> '{other}'")
 
     def visit_literal(self, cursor):
         place = self.span(cursor)
@@ -112,7 +136,7 @@ class Source:
         literal = self.text(*place)
         if not literal[0].isdigit() or "'" in literal[:1]:
             return
-        self.add(cursor, *place, f"(winnow_mutants::is(@) ? {literal} + 1 : {literal})",
+        self.add(*place, f"(winnow_mutants::is(@) ? {literal} + 1 : {literal})",
                  f"{literal} -> {literal} + 1")
 
     def visit_statement(self, statement):
@@ -121,14 +145,14 @@ class Source:
         while inner.kind in WRAPPED and len(list(inner.get_children())) == 1:
             inner = next(inner.get_children())
         place = self.span(statement)
-        if inner.kind not in REMOVABLE or place is None:
+        if inner.kind not in REMOVABLE or inner.spelling in HINTS or place is None:
             return
         end = place[1]
         while self.bytes[end : end + 1].isspace():
             end += 1
         if self.bytes[end : end + 1] != b";":
             return
-        self.add(statement, place[0], end + 1,
+        self.add(place[0], end + 1,
                  f"if (!winnow_mutants::is(@)) {{ {self.text(place[0], end + 1)} }}", "left out")
 
     def visit_condition(self, cursor):
@@ -141,7 +165,7 @@ class Source:
         if ";" in self.text(cursor.extent.start.offset, place[1]):
             return
         condition = self.text(*place)
-        self.add(cursor, *place, f"(static_cast<bool>({condition}) != winnow_mutants::is(@))",
+        self.add(*place, f"(static_cast<bool>({condition}) != winnow_mutants::is(@))",
                  "negated")
 
 
@@ -202,7 +226,7 @@ def main():
     tree, commands_file, count, seed, out = sys.argv[1:6]
     tree = pathlib.Path(tree).resolve()
     commands = json.loads(pathlib.Path(commands_file).read_text())
-    rng = random.Random(int(seed))
+    wanted = re.compile(sys.argv[6] if len(sys.argv) > 6 else "")
     mutants = []
     targets = pathlib.Path(__file__).parent / "targets.txt"
     seen = set()
@@ -210,11 +234,13 @@ def main():
         if not line or line.startswith("#"):
             continue
         group, *globs = line.split()
-        points = []
-        for path in sorted({p.relative_to(tree) for g in globs for p in tree.glob(g)} - seen):
-            seen.add(path)
-            points += Source(tree, path, compile_arguments(commands, path)).points
-        chosen = drawn(points, int(count), rng)
+        paths = sorted({p.relative_to(tree) for g in globs for p in tree.glob(g)} - seen)
+        seen.update(paths)
+        if not wanted.search(group):
+            continue
+        points = [point for path in paths
+                  for point in Source(tree, path, compile_arguments(commands, path)).points]
+        chosen = drawn(points, int(count), random.Random(f"{seed} {group}"))
         print(f"{group}: {len(chosen)} mutants of {len(points)} places", flush=True)
         for point in chosen:
             mutants.append({"id": len(mutants), "group": group, **point})
