@@ -201,6 +201,41 @@ TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
   }
 }
 
+// Runs of entries need not follow each other, whatever each of them says about its keys.
+TEST_P(Input, of_runs_in_any_order_is_that_of_one_entry_after_the_other) {
+  constexpr std::uint32_t kRuns[][2] = {{100, 250}, {300, 700}, {251, 299}, {0, 90}, {290, 310}};
+  const std::vector<Aabb> boxes = uniform_boxes(700);
+  const std::vector<Aabb> next = uniform_boxes(700, 8);
+  for (const float margin : {0.0F, 0.01F}) {
+    for (std::size_t runs = 1; runs <= std::size(kRuns); ++runs) {
+      Partition listed(structure_named(config().partition),
+                       {.execution = config().execution(), .margin = {margin, 0.0F}});
+      Partition plain(structure_named(config().partition),
+                      {.execution = config().execution(), .margin = {margin, 0.0F}});
+      std::vector<Key> keys[2]{std::vector<Key>(700), std::vector<Key>(700)};
+      ASSERT_EQ(listed.insert(boxes, {}, keys[0]), Status::ok);
+      ASSERT_EQ(plain.insert(boxes, {}, keys[1]), Status::ok);
+      // One object twice, at the ends of a run: its last box counts.
+      for (auto& of_one : keys) of_one[699] = of_one[300];
+      std::vector<std::uint32_t> numbers;
+      for (std::size_t run = 0; run < runs; ++run) {
+        for (std::uint32_t i = kRuns[run][0]; i < kRuns[run][1]; ++i) {
+          numbers.push_back(i);
+          ASSERT_EQ(plain.update(keys[1][i], next[i]), Status::ok);
+        }
+      }
+      ASSERT_EQ(listed.update(keys[0], next, Entries::listed(numbers)), Status::ok);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        Aabb box;
+        Aabb same;
+        ASSERT_EQ(listed.bounds(keys[0][i], box), Status::ok);
+        ASSERT_EQ(plain.bounds(keys[1][i], same), Status::ok);
+        ASSERT_EQ(box, same) << i << " after " << runs << " runs";
+      }
+    }
+  }
+}
+
 TEST_P(Input, of_entries_that_are_none_changes_nothing) {
   World world(config());
   const std::vector<Key> keys = world.insert(boxes_);

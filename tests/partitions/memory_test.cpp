@@ -87,6 +87,12 @@ TEST_P(Memory, of_an_empty_partition_is_given_back) {
   // their row and client data may stay beside them.
   EXPECT_LE(memory_.outstanding(), 20 * 2048U);
   EXPECT_LT(memory_.outstanding(), full / 2);
+  const World fresh(config());
+  const Footprint left = world.partition().footprint();
+  const Footprint first = fresh.partition().footprint();
+  EXPECT_EQ(left.bounds.reserved, first.bounds.reserved);
+  EXPECT_EQ(left.structure.reserved, first.structure.reserved);
+  EXPECT_EQ(left.scratch.reserved, first.scratch.reserved);
   EXPECT_FALSE(world.partition().contains(keys[0]));
   world.insert(uniform_boxes(100));
   EXPECT_TRUE(world.agrees());

@@ -3,6 +3,7 @@
 
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <vector>
@@ -136,6 +137,91 @@ TEST(Dyadic, polynomials_agree_with_big_integers) {
       ASSERT_EQ(rest.sign(), other.sign());
     }
     ASSERT_EQ(rest.sign(), 0);
+  }
+}
+
+/// A few powers of two at the ends of digits and of short numbers: what is carried or borrowed
+/// between them runs through all digits.
+struct Runs {
+  Dyadic number;
+  Integer integer;  // times 2^kRunScale
+
+  static constexpr int kRunScale = 400;
+
+  Runs(Random& random, std::size_t terms) : number(0.0), integer(0) {
+    for (std::size_t i = 0; i < terms; ++i) {
+      static const int kEnds[] = {-256, -193, -192, -130, -128, -127, -65, -64, -63, -62, -53,
+                                  -52,  -2,   -1,   0,    1,    10,   52,  61,  62,  63,  64,
+                                  65,   124,  125,  126,  127,  128,  191, 192, 255, 256, 320};
+      const int exponent = kEnds[random.below(std::size(kEnds))];
+      const Dyadic power = Dyadic::power_of_two(exponent);
+      const Integer same = Integer(1) << (kRunScale + exponent);
+      const bool negative = random.chance(0.5);
+      number = negative ? number - power : number + power;
+      integer += negative ? Integer(-same) : same;
+    }
+  }
+};
+
+/// That a number is an integer times 2^-scale, by its sign, its ends and all between them.
+void expect_is(const Dyadic& number, const Integer& integer, int scale) {
+  ASSERT_EQ(number.sign(), integer.sign());
+  if (integer == 0) return;
+  const Integer size = abs(integer);
+  const int low = static_cast<int>(lsb(size));
+  const int high = static_cast<int>(msb(size));
+  ASSERT_EQ(number.lowest_bit(), low - scale);
+  ASSERT_EQ(number.highest_bit(), high - scale);
+  // Of its 60 upper bits no more than the last few are missing.
+  const Integer top = high >= 60 ? Integer(size >> (high - 60)) : Integer(size << (60 - high));
+  const double mantissa = static_cast<double>(static_cast<std::uint64_t>(top)) * 0x1p-60;
+  const double scaled = number.scaled(scale - high);
+  ASSERT_LE(std::abs(std::abs(scaled) - mantissa), 0x1p-50);
+  ASSERT_EQ(scaled < 0.0, integer.sign() < 0);
+  // Bits that are set, one after the other from below, leave nothing.
+  Dyadic rest = integer.sign() < 0 ? -number : number;
+  for (int bit = low; bit <= high; ++bit) {
+    if (!bit_test(size, static_cast<unsigned>(bit))) continue;
+    ASSERT_EQ(rest.lowest_bit(), bit - scale);
+    rest = rest - Dyadic::power_of_two(bit - scale);
+  }
+  ASSERT_EQ(rest.sign(), 0);
+}
+
+TEST(Dyadic, carries_and_borrows_run_through_all_digits) {
+  Random random(12);
+  constexpr int kUnit = Runs::kRunScale;
+  for (int i = 0; i < 1500; ++i) {
+    const Runs a(random, 1 + random.below(4));
+    const Runs b(random, 1 + random.below(4));
+    expect_is(a.number, a.integer, kUnit);
+    expect_is(a.number + b.number, a.integer + b.integer, kUnit);
+    expect_is(a.number - b.number, a.integer - b.integer, kUnit);
+    expect_is(a.number - a.number, 0, kUnit);
+    expect_is(a.number * b.number, a.integer * b.integer, 2 * kUnit);
+    const int order = a.integer < b.integer ? -1 : a.integer > b.integer ? 1 : 0;
+    ASSERT_EQ(compare(a.number, b.number), order) << i;
+    ASSERT_EQ(compare(b.number, a.number), -order) << i;
+    ASSERT_EQ(compare(a.number, a.number), 0) << i;
+    const Dyadic copy = a.number;
+    ASSERT_EQ(compare(copy, a.number), 0) << i;
+    if (HasFatalFailure()) FAIL() << i;
+  }
+}
+
+TEST(Dyadic, roots_are_no_larger_than_they_have_to_be) {
+  Random random(13);
+  for (int i = 0; i < 1000; ++i) {
+    // Squares of numbers with few bits, and what lies beside them.
+    const double root = std::ldexp(static_cast<double>(1 + random.below(1U << 25U)),
+                                   static_cast<int>(random.below(400)) - 200);
+    const Dyadic square = Dyadic(root) * root;
+    ASSERT_EQ(compare(root_above(square), root), 0) << root;
+    const Dyadic more = square + Dyadic::power_of_two(square.highest_bit() - 52);
+    ASSERT_GT(compare(root_above(more), root), 0) << root;
+    ASSERT_LE(compare(root_above(more), Dyadic(root) * (1.0 + 0x1p-51)), 0) << root;
+    const Dyadic less = square - Dyadic::power_of_two(square.highest_bit() - 70);
+    ASSERT_EQ(compare(root_above(less), root), 0) << root;
   }
 }
 #endif

@@ -2,9 +2,11 @@
 #include "pipeline/exact/exact_overlap.h"
 #include "pipeline/solver/solver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "tests/pipeline/lattice_truth.h"
 #include "tests/support/random.h"
@@ -432,6 +434,115 @@ TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
     ASSERT_EQ(pair.mirrored(ShapeKind::box, ShapeKind::box), flat) << i;
   }
   EXPECT_GT(asked, 50);
+}
+
+TEST(ExactOverlap, shapes_over_level_planes_are_decided_whatever_their_numbers_span) {
+  Pair pair;
+  pair.boxes[1] = {{1.0, 0x1p-900, 0x1p900}, 0.0};
+  pair.poses[1].position[2] = 0x1p900;
+  constexpr double kLittle = 0x1p-1000;
+  for (const double side : {1.0, -1.0}) {
+    pair.poses[1].position[2] = side * 0x1p900;
+    pair.half_spaces[0] = {{0.0, 0.0, side}, 0.0};
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::touching);
+    EXPECT_EQ(pair.mirrored(ShapeKind::half_space, ShapeKind::box), ExactVerdict::touching);
+    pair.half_spaces[0].offset = kLittle;
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::overlapping);
+    EXPECT_EQ(pair.mirrored(ShapeKind::half_space, ShapeKind::box), ExactVerdict::overlapping);
+    pair.half_spaces[0].offset = -kLittle;
+    EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::separated);
+    EXPECT_EQ(pair.mirrored(ShapeKind::half_space, ShapeKind::box), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, upright_cylinders_are_decided_if_their_numbers_span_1300_bits) {
+  Pair pair;
+  pair.cylinders[0] = {0x1p-600, 1.0, 0.0};
+  pair.cylinders[1] = {0x1p690, 1.0, 0.0};
+  pair.poses[1].position[0] = 0x1p690;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cylinder), ExactVerdict::overlapping);
+  pair.poses[0].position[0] = -0x1p-600;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cylinder), ExactVerdict::touching);
+  pair.poses[0].position[0] = -0x1.8p-600;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cylinder), ExactVerdict::separated);
+}
+
+TEST(ExactOverlap, polytopes_are_decided_if_their_numbers_span_900_bits) {
+  constexpr double kLarge = 0x1p449;
+  constexpr double kSmall = 0x1p-450;
+  Pair pair;
+  pair.triangles[0] = {{{-kLarge, -kLarge, 0.0}, {kLarge, -kLarge, 0.0}, {0.0, kLarge, 0.0}}, 0.0};
+  pair.triangles[1] = {{{0.0, 0.0, 0.0}, {kSmall, 0.0, kSmall}, {0.0, kSmall, kSmall}}, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::triangle), ExactVerdict::touching);
+  pair.triangles[1].vertex[0][2] = -kSmall;
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::triangle), ExactVerdict::overlapping);
+  pair.triangles[1].vertex[0][2] = kSmall;
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::triangle), ExactVerdict::separated);
+}
+
+TEST(ExactOverlap, is_undecided_where_two_turns_together_span_too_far) {
+  Pair pair;
+  pair.triangles[0] = {{{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {0.0, 1.0, 0.0}}, 0.0};
+  pair.capsules[1] = {0.0, 1.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::capsule), ExactVerdict::overlapping);
+  for (Pose& pose : pair.poses) pose.orientation[1] = 0x1p-200;
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::capsule), ExactVerdict::overlapping);
+  for (Pose& pose : pair.poses) pose.orientation[1] = 0x1p-250;
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::capsule), ExactVerdict::undecided);
+}
+
+TEST(ExactOverlap, half_spaces_and_lengths_too_far_apart_are_undecided) {
+  Pair pair;
+  const double turn[4] = {2.0, 1.0, 0.0, 0.0};
+  std::copy_n(turn, 4, pair.poses[0].orientation);
+  pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
+  pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.0};
+  pair.poses[1].position[2] = 0x1p600;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::separated);
+  pair.boxes[1].half[0] = 0x1p-1000;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::undecided);
+  pair.boxes[1].half[0] = 1.0;
+  pair.half_spaces[0].offset = 0x1p-1000;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::undecided);
+}
+
+TEST(ExactOverlap, discs_are_taken_for_polygons_of_sixteen_corners) {
+  Pair pair;
+  pair.cylinders[0] = {1.0, 1.0, 0.0};
+  // By the angle whose sine is 4/5.
+  pair.poses[0].orientation[0] = 2.0;
+  pair.poses[0].orientation[3] = 1.0;
+  constexpr double kSixteenth[2] = {0.92387953251128674, 0.38268343236508977};
+  const auto verdict_at = [&](double reach, int quarter) {
+    double x = reach * kSixteenth[0];
+    double y = reach * kSixteenth[1];
+    for (int i = 0; i < quarter; ++i) y = -std::exchange(x, -y);
+    pair.poses[1].position[0] = 0.6 * x - 0.8 * y;
+    pair.poses[1].position[1] = 0.8 * x + 0.6 * y;
+    const double axis[3] = {pair.poses[1].position[0], pair.poses[1].position[1], 0.0};
+    return pair.verdict(ShapeKind::cylinder, ShapeKind::sphere, axis);
+  };
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    EXPECT_EQ(verdict_at(0.96, quarter), ExactVerdict::overlapping) << quarter;
+    EXPECT_EQ(verdict_at(1.001, quarter), ExactVerdict::separated) << quarter;
+  }
+}
+
+TEST(ExactOverlap, discs_touch_sides_and_corners_of_level_triangles) {
+  Pair pair;
+  pair.cylinders[0] = {2.0, 1.0, 0.0};
+  const auto verdict_of = [&](double low) {
+    // A side across y, of which only the middle is near, on the top of the cylinder.
+    pair.triangles[1] = {{{-3.0, low, 1.0}, {3.0, low, 1.0}, {0.0, 6.0, 1.0}}, 0.0};
+    return pair.verdict(ShapeKind::cylinder, ShapeKind::triangle);
+  };
+  EXPECT_EQ(verdict_of(2.0), ExactVerdict::touching);
+  EXPECT_EQ(verdict_of(std::nextafter(2.0, 3.0)), ExactVerdict::separated);
+  EXPECT_EQ(verdict_of(-10.0), ExactVerdict::touching);
+  pair.triangles[1] = {{{0.0, -2.0, 1.0}, {1.0, -5.0, 1.0}, {-1.0, -5.0, 1.0}}, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::touching);
+  pair.triangles[1].vertex[0][1] = std::nextafter(-2.0, -3.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
 }
 
 TEST(ExactOverlap, half_spaces_of_numbers_too_far_apart_are_undecided) {
