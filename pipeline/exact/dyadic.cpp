@@ -177,10 +177,7 @@ Dyadic Dyadic::long_product(const Dyadic& given_a, const Dyadic& given_b) noexce
 }
 
 int Dyadic::lowest_bit() const noexcept {
-  if (!is_short()) return kBits * exponent_ + std::countr_zero(digit_[0]);
-  const auto low = static_cast<std::uint64_t>(mantissa_);
-  const auto high = static_cast<std::uint64_t>(mantissa_ >> kBits);
-  return exponent_ + (low != 0 ? std::countr_zero(low) : kBits + std::countr_zero(high));
+  return is_short() ? exponent_ : kBits * exponent_ + std::countr_zero(digit_[0]);
 }
 
 int Dyadic::highest_bit() const noexcept {

@@ -144,7 +144,7 @@ class Dyadic {
   }
   void trim() noexcept;
 
-  Wide mantissa_ = 0;          // of short numbers: mantissa_ * 2^exponent_
+  Wide mantissa_ = 0;          // of short numbers, odd or zero: mantissa_ * 2^exponent_
   std::int32_t exponent_ = 0;  // of others: digit_[i] counts 2^(64 * (exponent_ + i))
   std::int32_t size_ = 0;      // digits; 0 of short numbers, zero among them
   bool negative_ = false;      // of numbers with digits

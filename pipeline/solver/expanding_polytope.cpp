@@ -308,7 +308,6 @@ bool Expansion::flat_along(const Vec& n) noexcept {
   const double forward = n.dot(support_along(n));
   const double backward = -n.dot(support_along(-n));
   bounds_.axis = std::abs(forward) <= std::abs(backward) ? Vec(-n) : n;
-  bounds_.upper = std::max(0.0, std::min(std::abs(forward), std::abs(backward)));
   return false;
 }
 
@@ -340,22 +339,23 @@ bool Expansion::begin(const Simplex& simplex) noexcept {
 }
 
 void Expansion::grow(double tolerance) noexcept {
-  bounds_.upper = std::numeric_limits<double>::infinity();
+  // The depth along the best axis so far.
+  double upper = std::numeric_limits<double>::infinity();
   // Of faces that were looked at and can grow no more.
   double settled = std::numeric_limits<double>::infinity();
   std::uint16_t nearest = 0;
   while (inner_.take_nearest(nearest)) {
     const InnerPolytope::Face& face = inner_.face(nearest);
     bounds_.lower = std::min(settled, face.low);
-    if (bounds_.upper - bounds_.lower <= tolerance) break;
+    if (upper - bounds_.lower <= tolerance) break;
     const Vec w = support_along(face.normal);
     const double high = face.normal.dot(w);
-    if (high < bounds_.upper) {
-      bounds_.upper = high;
+    if (high < upper) {
+      upper = high;
       // The difference is b - a: its outward normals run from b to a.
       bounds_.axis = -face.normal;
     }
-    if (bounds_.upper - bounds_.lower <= tolerance) break;
+    if (upper - bounds_.lower <= tolerance) break;
     if (inner_.height(face, w) <= kEnough * noise_) {
       settled = std::min(settled, face.low);
       inner_.settle(nearest);
@@ -366,7 +366,7 @@ void Expansion::grow(double tolerance) noexcept {
       break;
     }
   }
-  bounds_.lower = std::clamp(std::min(bounds_.lower, settled), 0.0, std::max(bounds_.upper, 0.0));
+  bounds_.lower = std::clamp(std::min(bounds_.lower, settled), 0.0, std::max(upper, 0.0));
 }
 
 }  // namespace

@@ -7,9 +7,8 @@ namespace winnow::solver {
 
 /// What is known of the depth of two cores that overlap.
 struct DepthBounds {
-  /// The depth lies between the two; `upper` is that along `axis` (unit, from a to b).
+  /// No less; that along `axis` (unit, from a to b) is no less than the depth.
   double lower = 0.0;
-  double upper = 0.0;
   Vec axis = Vec::Zero();
 };
 
