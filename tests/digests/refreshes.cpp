@@ -267,6 +267,7 @@ void drift(Life& life, int way) {
   for (int frame = 0; frame < 40; ++frame) {
     life.move(1, way, frame % 3 == 2);
     life.ask();
+    if (frame == 30) life.jump(6);
     if (frame % 8 == 3) life.look();
   }
 }
@@ -282,6 +283,8 @@ void churn(Life& life) {
     if (frame % 7 == 2) life.ask_badly();
     if (frame % 10 == 4) life.draw();
     if (frame == 17) life.restart();
+    if (frame == 17) life.look();
+    if (frame == 19) life.jump(6);
     if (frame == 9) life.jump(2);
     if (frame == 15) life.jump(40);
     if (frame == 20) life.jump(1);
