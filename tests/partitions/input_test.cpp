@@ -201,6 +201,26 @@ TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
   }
 }
 
+// As many entries as objects, of which one has two and another none; all jump, so that no order of
+// rows is worth keeping.
+TEST_P(Input, of_one_object_twice_beside_the_others_takes_its_last_box) {
+  const std::vector<Aabb> boxes = uniform_boxes(700);
+  const std::vector<Aabb> next = uniform_boxes(700, 8);
+  Partition partition(structure_named(config().partition), {.execution = config().execution()});
+  std::vector<Key> keys(boxes.size());
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  PairBuffer pairs;
+  ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
+  std::vector<Key> told = keys;
+  told[500] = keys[20];
+  ASSERT_EQ(partition.update(told, next), Status::ok);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    Aabb box;
+    ASSERT_EQ(partition.bounds(keys[i], box), Status::ok);
+    EXPECT_EQ(box, i == 20 ? next[500] : i == 500 ? boxes[500] : next[i]) << i;
+  }
+}
+
 // Runs of entries need not follow each other, whatever each of them says about its keys.
 TEST_P(Input, of_runs_in_any_order_is_that_of_one_entry_after_the_other) {
   constexpr std::uint32_t kRuns[][2] = {{100, 250}, {300, 700}, {251, 299}, {0, 90}, {290, 310}};

@@ -98,6 +98,20 @@ TEST_P(Memory, of_an_empty_partition_is_given_back) {
   EXPECT_TRUE(world.agrees());
 }
 
+TEST_P(Memory, of_another_structure_is_given_back) {
+  World world(config(), &memory_);
+  world.insert(uniform_boxes(2000));
+  PairBuffer pairs;
+  ASSERT_EQ(world.self_pairs(pairs), Status::ok);
+  for (const StructureKind next : {linear_bvh(), bounds_n_squared()}) {
+    ASSERT_EQ(world.partition().set_structure(next), Status::ok);
+    EXPECT_TRUE(footprint_is_exact(world));
+    // What a sample of 64 objects takes may stay.
+    EXPECT_LE(world.partition().footprint().scratch.reserved, 64 * 16U);
+    ASSERT_EQ(world.self_pairs(pairs), Status::ok);
+  }
+}
+
 TEST_P(Memory, that_the_bounds_need_is_used_and_reserved) {
   World world(config(), &memory_);
   world.insert(uniform_boxes(1000));

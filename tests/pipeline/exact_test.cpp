@@ -531,18 +531,43 @@ TEST(ExactOverlap, discs_are_taken_for_polygons_of_sixteen_corners) {
 TEST(ExactOverlap, discs_touch_sides_and_corners_of_level_triangles) {
   Pair pair;
   pair.cylinders[0] = {2.0, 1.0, 0.0};
+  const auto verdict = [&] { return pair.verdict(ShapeKind::cylinder, ShapeKind::triangle); };
+  // A side across y, of which only the middle is near, on the top of the cylinder.
   const auto verdict_of = [&](double low) {
-    // A side across y, of which only the middle is near, on the top of the cylinder.
     pair.triangles[1] = {{{-3.0, low, 1.0}, {3.0, low, 1.0}, {0.0, 6.0, 1.0}}, 0.0};
-    return pair.verdict(ShapeKind::cylinder, ShapeKind::triangle);
+    return verdict();
   };
-  EXPECT_EQ(verdict_of(2.0), ExactVerdict::touching);
-  EXPECT_EQ(verdict_of(std::nextafter(2.0, 3.0)), ExactVerdict::separated);
-  EXPECT_EQ(verdict_of(-10.0), ExactVerdict::touching);
-  pair.triangles[1] = {{{0.0, -2.0, 1.0}, {1.0, -5.0, 1.0}, {-1.0, -5.0, 1.0}}, 0.0};
-  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::touching);
-  pair.triangles[1].vertex[0][1] = std::nextafter(-2.0, -3.0);
-  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::triangle), ExactVerdict::separated);
+  // Level across each axis of the world.
+  const double turns[][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0}};
+  for (const auto& turn : turns) {
+    for (Pose& pose : pair.poses) std::copy_n(turn, 4, pose.orientation);
+    EXPECT_EQ(verdict_of(2.0), ExactVerdict::touching);
+    EXPECT_EQ(verdict_of(std::nextafter(2.0, 3.0)), ExactVerdict::separated);
+    EXPECT_EQ(verdict_of(-10.0), ExactVerdict::touching);
+    pair.triangles[1] = {{{0.0, -2.0, 1.0}, {1.0, -5.0, 1.0}, {-1.0, -5.0, 1.0}}, 0.0};
+    EXPECT_EQ(verdict(), ExactVerdict::touching);
+    pair.triangles[1].vertex[0][1] = std::nextafter(-2.0, -3.0);
+    EXPECT_EQ(verdict(), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, points_beyond_a_side_of_a_triangle_in_its_plane_are_apart_from_it) {
+  Pair pair{};
+  pair.triangles[0] = {{{0.0, 0.0, 0.0}, {4.0, 0.0, 4.0}, {0.0, 4.0, 1.0}}, 0.0};
+  const auto& vertex = pair.triangles[0].vertex;
+  for (int side = 0; side < 3; ++side) {
+    const auto verdict_at = [&](double beyond) {
+      for (int k = 0; k < 3; ++k) {
+        const double middle = 0.5 * (vertex[side][k] + vertex[(side + 1) % 3][k]);
+        pair.poses[1].position[k] = middle + beyond * (middle - vertex[(side + 2) % 3][k]);
+      }
+      return pair.verdict(ShapeKind::triangle, ShapeKind::sphere);
+    };
+    EXPECT_EQ(verdict_at(-0.5), ExactVerdict::touching) << side;
+    EXPECT_EQ(verdict_at(0.0), ExactVerdict::touching) << side;
+    EXPECT_EQ(verdict_at(0x1p-40), ExactVerdict::separated) << side;
+    EXPECT_EQ(verdict_at(1.0), ExactVerdict::separated) << side;
+  }
 }
 
 TEST(ExactOverlap, half_spaces_of_numbers_too_far_apart_are_undecided) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
@@ -143,6 +145,94 @@ TEST_F(SolverCases, touching_is_overlap_with_distance_zero) {
   EXPECT_EQ(solve(cube, Pose{}, drum, Pose::at(0, 0, 1.25)).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, cone, Pose::at(0, 0, 1.25)).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, cone, on_tip).distance, 0.0);
+}
+
+TEST_F(SolverCases, what_touches_along_a_normal_is_known_to_rounding) {
+  const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
+  const ShapeId drum = add(CylinderShape{0.5, 0.25, 0.0});
+  const ShapeId cone = add(ConeShape{0.5, 0.25, 0.0});
+  for (const ShapeId shape : {cube, drum, cone}) {
+    const double half = shape == cube ? 1.0 : 0.25;
+    for (const double x : {0.0, 0.25}) {
+      const PairAnswer answer = solve(cube, Pose{}, shape, Pose::at(x, 0, 1.0 + half));
+      EXPECT_EQ(answer.distance, 0.0);
+      EXPECT_LE(answer.error_bound, 1e-13);
+      EXPECT_NEAR(answer.normal[2], 1.0, 1e-14);
+    }
+  }
+}
+
+/// The core of a shape, placed and scaled.
+solver::Core core_of(const ShapePool& pool, ShapeId id, const Pose& pose) {
+  solver::Problem problem;
+  solver::prepare(pool.tables(), id, pose, id, Pose{}, false, problem);
+  return problem.a;
+}
+
+/// What a core says of its corners, edges and faces, each by the others.
+void expect_features_agree(const solver::Core& core) {
+  const std::uint32_t corners = vertex_count(core);
+  for (std::uint32_t i = 0; i < edge_count(core); ++i) {
+    const auto [p, q] = edge(core, i);
+    ASSERT_LT(std::max(p, q), corners);
+    ASSERT_NE(p, q);
+  }
+  for (std::uint32_t f = 0; f < face_count(core); ++f) {
+    const Vec n = face_normal(core, f);
+    EXPECT_NEAR(n.norm(), 1.0, 1e-14);
+    const std::uint32_t size = face_size(core, f);
+    const Vec first = vertex(core, face_vertex(core, f, 0));
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      EXPECT_LE(n.dot(vertex(core, i) - first), 1e-14) << "face " << f << " corner " << i;
+    }
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const std::uint32_t p = face_vertex(core, f, i);
+      const std::uint32_t q = face_vertex(core, f, (i + 1) % size);
+      EXPECT_NEAR(n.dot(vertex(core, p) - first), 0.0, 1e-14);
+      const auto ends = edge(core, face_edge(core, f, i));
+      EXPECT_TRUE((ends[0] == p && ends[1] == q) || (ends[0] == q && ends[1] == p));
+      const Vec side = vertex(core, q) - vertex(core, p);
+      const std::uint32_t r = face_vertex(core, f, (i + 2) % size);
+      EXPECT_GT(n.dot(side.cross(vertex(core, r) - vertex(core, q))), 0.0) << "face " << f;
+    }
+  }
+}
+
+/// That supports, ranges and heights are those of the corners.
+void expect_corners_are_farthest(const solver::Core& core) {
+  Random random(4);
+  for (int i = 0; i < 100; ++i) {
+    const Vec d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::uint32_t k = 0; k < vertex_count(core); ++k) {
+      low = std::min(low, d.dot(vertex(core, k) - core.center));
+      high = std::max(high, d.dot(vertex(core, k) - core.center));
+    }
+    EXPECT_NEAR(d.dot(support(core, d) - core.center), high, 1e-14);
+    EXPECT_NEAR(project(core, d).low, low, 1e-14);
+    EXPECT_NEAR(project(core, d).high, high, 1e-14);
+    EXPECT_NEAR(highest(core, d), high, 1e-14);
+  }
+}
+
+TEST_F(SolverCases, cores_say_the_same_of_corners_edges_and_faces) {
+  const Pose turned{{1, 2, 3}, {2, -1, 0.5, 1}};
+  ShapeId hull;
+  const std::vector<Vec3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, 0.75, 0},
+                                   {0, -1, 0}, {0, 0, 1},  {0, 0, -0.5}};
+  const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                         2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  const std::vector<std::uint32_t> sizes(8, 3);
+  ASSERT_EQ(pool_.add_hull(corners, {loops, sizes}, 0.0, hull), Status::ok);
+  const ShapeId triangle = add(TriangleShape{{{1, 0, 0}, {0, 2, 0.5}, {-1, -1, 0}}, 0.0});
+  for (const ShapeId shape : {add(BoxShape{{1, 0.5, 0.75}, 0.0}), hull, triangle}) {
+    SCOPED_TRACE(to_string(shape.kind()));
+    const solver::Core core = core_of(pool_, shape, turned);
+    expect_features_agree(core);
+    expect_corners_are_farthest(core);
+  }
+  expect_corners_are_farthest(core_of(pool_, add(CapsuleShape{0.5, 2.0}), turned));
 }
 
 TEST_F(SolverCases, round_shapes_on_one_axis_have_exact_depths) {

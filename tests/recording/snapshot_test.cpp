@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -124,6 +125,42 @@ TEST(Snapshots, of_partitions_go_on_bit_for_bit) {
         }
       }
     }
+  }
+}
+
+TEST(Snapshots, of_partitions_answer_queries_before_anybody_asks_for_pairs) {
+  const Sphere everywhere{{0, 0, 0}, 1e6F};
+  for (const StructureKind& structure : all_structures()) {
+    SCOPED_TRACE(structure.name());
+    std::vector<Key> keys;
+    const Partition saved = with_past(structure, Volume::aabb, keys);
+    Column<std::byte> bytes(std::pmr::get_default_resource());
+    ASSERT_EQ(saved.save(bytes), Status::ok);
+    Partition loaded(linear_bvh());
+    OverlapBuffer objects;
+    ASSERT_EQ(loaded.overlap(everywhere, objects), Status::ok);
+    ASSERT_EQ(loaded.load(bytes_of(bytes)), Status::ok);
+    ASSERT_EQ(loaded.overlap(everywhere, objects, {}, Order::canonical), Status::ok);
+    EXPECT_TRUE(std::ranges::equal(objects.ids(), live_ids(saved)));
+  }
+}
+
+TEST(Snapshots, of_boxes_whose_ends_are_the_wrong_way_round_are_refused) {
+  const Aabb box{{1.25F, 2.5F, 3.75F}, {5.25F, 6.5F, 7.75F}};
+  Partition partition(linear_bvh());
+  Key key;
+  ASSERT_EQ(partition.insert(box, 0, key), Status::ok);
+  Column<std::byte> bytes(std::pmr::get_default_resource());
+  ASSERT_EQ(partition.save(bytes), Status::ok);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<std::byte> wrong(bytes.begin(), bytes.end());
+    const auto low = std::bit_cast<std::array<std::byte, 4>>(box.min[axis]);
+    const auto beyond = std::bit_cast<std::array<std::byte, 4>>(8.0F);
+    const auto found = std::ranges::search(wrong, low);
+    ASSERT_FALSE(found.empty());
+    std::ranges::copy(beyond, found.begin());
+    EXPECT_NE(partition.load(wrong), Status::ok) << axis;
+    EXPECT_TRUE(partition.contains(key));
   }
 }
 
