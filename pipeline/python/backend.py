@@ -1,6 +1,6 @@
 """Builds the wheel, for pip (PEP 517) and for `wheel`: CMake makes the module, a zip file holds it
-and the package. Needs what winnow needs, pybind11 and numpy, and no network. What pip builds is fast on
-this machine, as WINNOW_ISAS=native is; what `wheel` writes is on every one.
+and the package. Needs what winnow needs, pybind11 and numpy, and no network. It is
+fast on this machine, as WINNOW_ISAS=native is, or on all of them if `wheel` is told --portable.
 
 WINNOW_PYTHON_BUILD names a folder to build in and keep; otherwise that is a temporary one.
 WINNOW_PYTHON_OPTIONS are further options for CMake.
@@ -119,9 +119,13 @@ def make_wheel(directory, isas):
         return write_wheel(build_module(pathlib.Path(folder), isas), directory)
 
 
+NATIVE = ["-DWINNOW_ISAS=native"]
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    return make_wheel(wheel_directory, ["-DWINNOW_ISAS=native"])
+    return make_wheel(wheel_directory, NATIVE)
 
 
 if __name__ == "__main__":
-    print(os.path.join(sys.argv[1], make_wheel(sys.argv[1], [])))
+    *portable, directory = sys.argv[1:]
+    print(os.path.join(directory, make_wheel(directory, [] if portable else NATIVE)))
