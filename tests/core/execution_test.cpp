@@ -79,6 +79,23 @@ TEST(Execution, on_a_host_runs_in_tasks_of_that_host) {
   }
 }
 
+// Neighbours stay with one thread, and those of a thread that comes late are done by others.
+TEST(Execution, on_a_host_gives_each_thread_a_stretch_and_then_what_others_have_left) {
+  struct Host {
+    std::size_t given = 0;
+    std::vector<std::size_t> order;
+  } host;
+  const auto last_first = [](void* context, std::size_t count, JobSystem::Task task, void* tasks) {
+    static_cast<Host*>(context)->given = count;
+    while (count > 0) task(tasks, --count);
+  };
+  Execution::on({last_first, &host, 3}).for_each(9, [&](std::size_t i) {
+    host.order.push_back(i);
+  });
+  EXPECT_EQ(host.given, 3U);
+  EXPECT_EQ(host.order, (std::vector<std::size_t>{6, 7, 8, 0, 1, 2, 3, 4, 5}));
+}
+
 #if !WINNOW_HAVE_TBB
 TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
   EXPECT_EQ(Execution::parallel().concurrency(), 1U);
