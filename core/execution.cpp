@@ -129,11 +129,12 @@ std::size_t Execution::concurrency() const noexcept {
 }
 
 void Execution::run(std::size_t count, void* context, void (*task)(void*, std::size_t)) const {
-  if (count <= 1 || concurrency() == 1) {
+  const std::size_t threads = count <= 1 ? 1 : concurrency();
+  if (threads == 1) {
     for (std::size_t i = 0; i < count; ++i) task(context, i);
     return;
   }
-  SharedTasks tasks(count, concurrency(), context, task);
+  SharedTasks tasks(count, threads, context, task);
   if (jobs_.parallel_for != nullptr) {
     HostedTasks hosted{tasks};
     return jobs_.parallel_for(jobs_.context, tasks.shares(), HostedTasks::run, &hosted);

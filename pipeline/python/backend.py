@@ -1,6 +1,6 @@
 """Builds the wheel, for pip (PEP 517) and for `wheel`: CMake makes the module, a zip file holds it
-and the package. Needs what winnow needs, pybind11 and numpy, and no network. It is
-fast on this machine, as WINNOW_ISAS=native is, or on all of them if `wheel` is told --portable.
+and the package. Needs what winnow needs, pybind11 and numpy, and no network. The module is fast on this
+machine, as WINNOW_ISAS=native is, or, if `wheel` is told --portable, on all of them.
 
 WINNOW_PYTHON_BUILD names a folder to build in and keep; otherwise that is a temporary one.
 WINNOW_PYTHON_OPTIONS are further options for CMake.
