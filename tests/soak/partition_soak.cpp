@@ -11,10 +11,6 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::size_t kMostObjects = 256;
-/// Of structures that test or report every pair.
-constexpr std::size_t kMostOfMany = 64;
-
 class PartitionSoak {
  public:
   PartitionSoak(const StructureKind& structure, const SoakPlan& plan);
@@ -42,16 +38,18 @@ class PartitionSoak {
   SoakPlan plan_;
   SoakTally tally_;
   CountingMemory memory_;
+  CountingMemory saved_memory_;  // of what is saved and loaded
   std::size_t most_;
+  std::size_t most_at_once_;  // that come or go
   double side_;
   Random random_;
   Threads threads_;
   Partition partition_;
   Partition loaded_;
   PairBuffer pairs_{&memory_};
-  PairBuffer loaded_pairs_{&memory_};
+  PairBuffer loaded_pairs_{&saved_memory_};
   PairEvents events_{&memory_};
-  Column<std::byte> saved_{&memory_};
+  Column<std::byte> saved_{&saved_memory_};
   std::uint64_t followed_ = 0;  // frames that what was loaded still goes on for
 
   std::vector<Object> model_;  // dense, in no order
@@ -75,13 +73,14 @@ Config config_of(const StructureKind& structure, int threads) {
 
 PartitionSoak::PartitionSoak(const StructureKind& structure, const SoakPlan& plan)
     : plan_(plan),
-      most_(structure == n_squared() || structure == bounds_n_squared() ? kMostOfMany
-                                                                        : kMostObjects),
+      most_(structure == n_squared() || structure == bounds_n_squared() ? plan.objects / 4
+                                                                        : plan.objects),
+      most_at_once_(std::max<std::size_t>(4, most_ / 64)),
       side_(std::cbrt(2.0 * static_cast<double>(most_))),
       random_(plan.seed),
       threads_(plan.threads),
       partition_(config_of(structure, plan.threads).make(&memory_)),
-      loaded_(config_of(structure, plan.threads).make(&memory_)) {
+      loaded_(config_of(structure, plan.threads).make(&saved_memory_)) {
   tally_.name = structure.name();
   require(partition_.reserve(most_) == Status::ok, "reserve was refused");
   require(partition_.reserve_pairs(pairs_, most_ * 16) == Status::ok, "pairs were refused");
@@ -110,14 +109,14 @@ bool PartitionSoak::has_left(const Aabb& box) const {
 
 void PartitionSoak::come() {
   const auto wanted = static_cast<std::size_t>(wanted_);
-  const std::size_t count = std::min(most_ - model_.size(), 1 + random_.below(4));
+  const std::size_t count = std::min(most_ - model_.size(), 1 + random_.below(most_at_once_));
   if (model_.size() > wanted) return;
   for (std::size_t i = 0; i < count; ++i) come_.push_back(some_box());
 }
 
 void PartitionSoak::go() {
   // Now and then all of them at once.
-  const std::size_t count = random_.chance(2e-4) ? model_.size() : 1 + random_.below(4);
+  const std::size_t count = random_.chance(2e-4) ? model_.size() : 1 + random_.below(most_at_once_);
   for (std::size_t i = 0; i < count && !model_.empty(); ++i) {
     const std::size_t place = random_.below(model_.size());
     gone_.push_back(model_[place].id);
@@ -271,7 +270,7 @@ std::size_t PartitionSoak::held() const {
 }
 
 SoakTally PartitionSoak::run() {
-  MemoryWatch watch(tally_, memory_, plan_.frames);
+  MemoryWatch watch(tally_, memory_, saved_memory_, plan_.frames);
   for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
     plan_frame(frame);
     tell();

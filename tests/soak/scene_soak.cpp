@@ -43,15 +43,16 @@ class SceneSoak {
   SoakPlan plan_;
   SoakTally tally_;
   CountingMemory memory_;
+  CountingMemory saved_memory_;  // of what is saved and loaded
   SceneWorld world_;
   Random random_;
   Threads threads_;
   Scene scene_;
   Scene loaded_;
   Contacts contacts_{&memory_};
-  Contacts loaded_contacts_{&memory_};
-  Column<std::byte> saved_{&memory_};
-  Column<std::byte> saved_contacts_{&memory_};
+  Contacts loaded_contacts_{&saved_memory_};
+  Column<std::byte> saved_{&saved_memory_};
+  Column<std::byte> saved_contacts_{&saved_memory_};
   std::uint64_t followed_ = 0;  // frames that what was loaded still goes on for
 
   std::vector<Event> events_;
@@ -77,7 +78,7 @@ SceneSoak::SceneSoak(const SoakPlan& plan)
       random_(plan.seed + 1),
       threads_(plan.threads),
       scene_(world_.pool, options_of(plan, memory_)),
-      loaded_(world_.pool, options_of(plan, memory_)) {
+      loaded_(world_.pool, options_of(plan, saved_memory_)) {
   tally_.name = "scene";
   require(add_all(scene_, world_) == Status::ok, "add was refused");
   keys_[0] = keys_[1] = world_.keys;
@@ -240,7 +241,7 @@ std::size_t SceneSoak::held() const {
 }
 
 SoakTally SceneSoak::run() {
-  MemoryWatch watch(tally_, memory_, plan_.frames);
+  MemoryWatch watch(tally_, memory_, saved_memory_, plan_.frames);
   for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
     plan_frame(frame);
     times_.begin();

@@ -1,5 +1,5 @@
-// Usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] [--check-every N]
-// [NAME...]
+// Usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] [--objects N]
+// [--check-every N] [NAME...]
 //
 // Plays so many frames of objects that come, go and move on each structure, and of bodies in a
 // scene, beside slow twins; NAME is a structure's or `scene`, all if there is none. With --seconds
@@ -39,6 +39,8 @@ bool read_option(Asked& asked, std::string_view name, std::string_view value) {
     asked.plan.seed = number;
   else if (name == "--threads")
     asked.plan.threads = static_cast<int>(number);
+  else if (name == "--objects")
+    asked.plan.objects = number;
   else if (name == "--check-every")
     asked.plan.check_every = number;
   else

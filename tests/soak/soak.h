@@ -19,6 +19,7 @@ struct SoakPlan {
   std::uint64_t frames = 0;
   std::uint64_t seed = 1;
   int threads = 1;
+  std::uint64_t objects = 256;  ///< at most; a quarter of them where each is tested with all others
   std::uint64_t check_every = 16;    ///< frames between two comparisons with the twin
   std::uint64_t save_every = 2000;   ///< frames between two snapshots
   std::uint64_t follow_frames = 16;  ///< that what was loaded goes on for beside what was saved
@@ -34,8 +35,8 @@ struct SoakTally {
   std::uint64_t comparisons = 0;
   std::uint64_t checks = 0;     ///< frames whose answer was the twin's
   std::uint64_t snapshots = 0;  ///< that were loaded and went on alike
-  std::uint64_t requests = 0;   ///< for memory
-  /// After the last frame that asked for memory.
+  std::uint64_t requests = 0;   ///< for memory, likewise
+  /// After the last frame that asked for memory for itself, not for what is saved and loaded.
   std::uint64_t frames_without_requests = 0;
   std::size_t first_peak = 0;  ///< bytes in use at most, first half
   std::size_t last_peak = 0;   ///< and second half
@@ -74,8 +75,10 @@ class FrameTimes {
 /// Watches that memory stays flat and that what is counted is what is held.
 class MemoryWatch {
  public:
-  MemoryWatch(SoakTally& tally, const CountingMemory& memory, std::uint64_t frames)
-      : tally_(tally), memory_(memory), frames_(frames) {}
+  /// `saved` is the memory of what is saved and loaded, which asks for some each time.
+  MemoryWatch(SoakTally& tally, const CountingMemory& memory, const CountingMemory& saved,
+              std::uint64_t frames)
+      : tally_(tally), memory_(memory), saved_(saved), frames_(frames) {}
 
   /// After each frame; `held` is what footprints say.
   void look(std::uint64_t frame, std::size_t held);
@@ -83,6 +86,7 @@ class MemoryWatch {
  private:
   SoakTally& tally_;
   const CountingMemory& memory_;
+  const CountingMemory& saved_;
   std::uint64_t frames_;
   std::uint64_t last_request_ = 0;
 };
