@@ -61,5 +61,7 @@ struct Work {
 [[nodiscard]] std::vector<Work> shape_works();
 /// Partitions that objects come to, leave and move in, and what that took.
 [[nodiscard]] std::vector<Work> refresh_works();
+/// These, and pairs, queries, shapes and scenes besides.
+[[nodiscard]] std::vector<Work> all_work();
 
 }  // namespace winnow::test

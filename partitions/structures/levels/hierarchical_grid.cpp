@@ -617,8 +617,9 @@ void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) n
     const bool back = (used_.number[l] & 1U) != 0;
     for (std::uint32_t cell = 0; cell <= line.last_cell; ++cell) {
       const StepRange own = steps_of_cell(*level, line, back, cell);
-      const std::uint32_t last_row = start_[line.cell + cell + 1];
-      for (std::uint32_t row = start_[line.cell + cell]; row < last_row; ++row) {
+      // Between two levels are rows without objects.
+      const std::uint32_t end_row = std::min(start_[line.cell + cell + 1], level->end_row);
+      for (std::uint32_t row = start_[line.cell + cell]; row < end_row; ++row) {
         key_[row] = nearest_within(level->fast, own, key_[row]);
       }
     }
