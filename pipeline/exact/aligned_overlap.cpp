@@ -213,14 +213,13 @@ class AlignedPair {
   // A normal that is but nearly along an axis has length 1, too.
   const bool is_across = std::count(half_space.normal, half_space.normal + 3, 0.0) == 2;
   if (!is_across || !quarter_turns(pose, turns)) return ExactVerdict::undecided;
-  for (int k = 0; k < 3; ++k) {
-    const double normal = half_space.normal[turns.axis[k]];
-    if (std::fabs(normal) != 1.0) continue;
-    const Dyadic apart = Dyadic(shape_pose.position[k]) - pose.position[k];
-    const Dyadic height = normal * turns.sign[k] > 0.0 ? apart : -apart;
-    return verdict_of((height - half_space.offset - shape.half[k] - shape.rounding).sign());
-  }
-  return ExactVerdict::undecided;
+  int k = 0;
+  while (half_space.normal[turns.axis[k]] == 0.0) ++k;
+  const double normal = half_space.normal[turns.axis[k]];
+  if (std::fabs(normal) != 1.0) return ExactVerdict::undecided;
+  const Dyadic apart = Dyadic(shape_pose.position[k]) - pose.position[k];
+  const Dyadic height = normal * turns.sign[k] > 0.0 ? apart : -apart;
+  return verdict_of((height - half_space.offset - shape.half[k] - shape.rounding).sign());
 }
 
 /// Where a plane across an axis of the world is cut, relative to a point of it.

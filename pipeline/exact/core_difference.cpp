@@ -32,12 +32,13 @@ void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
   }
 }
 
-/// The hull of discs at both ends of the z axis: a segment if they have no radius.
+/// The hull of discs at both ends of the z axis, the upper one not larger: a segment if they have
+/// no radius.
 void set_axis(CoreVertices& core, double half_length, double low_radius, double high_radius,
               double rounding) noexcept {
   core.count = 0;
   core.rounding = rounding;
-  core.has_discs = low_radius > 0.0 || high_radius > 0.0;
+  core.has_discs = low_radius > 0.0;
   core.disc[0] = {-half_length, low_radius};
   core.disc[1] = {half_length, high_radius};
   for (const CoreDisc& disc : core.disc) add_disc(core, disc);

@@ -120,10 +120,6 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   return compare(height * height, square * dot(normal, normal));
 }
 
-constexpr int kMaxSteps = 4096;
-
-enum class Place : unsigned char { outside, in_face, unknown };
-
 void append(ExactSimplex& simplex, const DifferenceVertex& vertex) noexcept {
   simplex.point[simplex.size] = vertex.point;
   simplex.a[simplex.size] = vertex.a;
@@ -132,35 +128,29 @@ void append(ExactSimplex& simplex, const DifferenceVertex& vertex) noexcept {
 }
 
 /// The algorithm of Gilbert, Johnson and Keerthi (1988), exactly: descends towards the origin until
-/// the simplex contains it (in_face) or `is_outside(direction, height)` says that it never will.
+/// the simplex contains it (true) or `is_outside(direction, height)` says that it never will.
 /// `support` answers false if there are no points. Without rounding each step comes strictly
 /// nearer, so no simplex returns and it ends.
 template <typename Support, typename Outside>
-[[nodiscard]] Place descend(const Support& support, const Outside& is_outside,
-                            ExactVector direction, ExactSimplex& simplex) noexcept {
+[[nodiscard]] bool descend(const Support& support, const Outside& is_outside, ExactVector direction,
+                           ExactSimplex& simplex) noexcept {
   DifferenceVertex vertex;
   Dyadic height;
   simplex.size = 0;
-  for (int step = 0; step < kMaxSteps; ++step) {
-    if (!support(direction, vertex, height)) return Place::outside;
-    if (is_outside(direction, height)) return Place::outside;
+  while (support(direction, vertex, height) && !is_outside(direction, height)) {
     append(simplex, vertex);
     keep_nearest_face(simplex, direction);
-    if (is_zero(direction)) return Place::in_face;
+    if (is_zero(direction)) return true;
   }
-  return Place::unknown;
+  return false;
 }
 
 /// Any direction at right angles to `line`, near `hint` if that is not along it.
 [[nodiscard]] ExactVector across(const ExactVector& line, const ExactVector& hint) noexcept {
   ExactVector side = cross(cross(line, hint), line);
   if (!is_zero(side)) return side;
-  for (int k = 0; k < 3; ++k) {
-    const double unit[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
-    ExactVector other = cross(line, exact_vector(unit));
-    if (!is_zero(other)) return other;
-  }
-  return line;
+  const bool is_upright = line.x[0].sign() == 0 && line.x[1].sign() == 0;
+  return cross(line, is_upright ? ExactVector{{1.0, 0.0, 0.0}} : ExactVector{{0.0, 0.0, 1.0}});
 }
 
 /// True if no point of the difference lies strictly beyond the plane through the origin.
@@ -173,24 +163,23 @@ template <typename Support, typename Outside>
 
 /// The origin lies inside a segment of the difference along `line`. A supporting plane contains the
 /// line, so this is a question in the plane across it: turn from the farthest point found to the
-/// farthest one beyond it until a half plane is free of points, or they surround the line.
+/// farthest one beyond it until a half plane is free of points, or they surround the line. No point
+/// is met twice.
 [[nodiscard]] ExactVerdict turn_about(const CoreDifference& difference, const ExactVector& line,
                                       const ExactVector& hint) noexcept {
   DifferenceVertex first;
   DifferenceVertex next;
   if (supports(difference, across(line, hint), first)) return ExactVerdict::touching;
   ExactVector last = first.point;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  int turned = 1;
+  while (turned > 0) {
     if (supports(difference, cross(line, last), next)) return ExactVerdict::touching;
     last = next.point;
-    const int turned = dot(line, cross(first.point, last)).sign();
-    if (turned < 0) return ExactVerdict::overlapping;
-    if (turned == 0) {
-      return supports(difference, -cross(line, first.point), next) ? ExactVerdict::touching
-                                                                   : ExactVerdict::overlapping;
-    }
+    turned = dot(line, cross(first.point, last)).sign();
   }
-  return ExactVerdict::undecided;
+  if (turned < 0) return ExactVerdict::overlapping;
+  return supports(difference, -cross(line, first.point), next) ? ExactVerdict::touching
+                                                               : ExactVerdict::overlapping;
 }
 
 /// The origin lies in the relative interior of `face`, a simplex of the difference: is it on the
@@ -209,9 +198,7 @@ template <typename Support, typename Outside>
     const auto is_outside = [](const ExactVector&, const Dyadic& height) {
       return height.sign() < 0;
     };
-    const Place place = descend(support, is_outside, hint, face);
-    if (place == Place::outside) return ExactVerdict::touching;
-    if (place == Place::unknown) return ExactVerdict::undecided;
+    if (!descend(support, is_outside, hint, face)) return ExactVerdict::touching;
   }
   if (face.size == 4) return ExactVerdict::overlapping;
   if (face.size == 2) return turn_about(difference, face.point[1] - face.point[0], hint);
@@ -241,10 +228,8 @@ template <typename Support, typename Outside>
     }
     return compare(height, dot(d, simplex.point[0])) <= 0;
   };
-  const Place place = descend(support, is_outside, direction, simplex);
+  if (descend(support, is_outside, direction, simplex)) return ExactVerdict::overlapping;
   if (apart) return ExactVerdict::separated;
-  if (place == Place::in_face) return ExactVerdict::overlapping;
-  if (place == Place::unknown) return ExactVerdict::undecided;
   const int sign = compare_square_distance(simplex, square);
   return sign > 0   ? ExactVerdict::separated
          : sign < 0 ? ExactVerdict::overlapping
@@ -264,9 +249,7 @@ ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& round
   const auto is_outside = [](const ExactVector&, const Dyadic& height) {
     return height.sign() < 0;
   };
-  const Place place = descend(support, is_outside, direction, simplex);
-  if (place == Place::outside) return ExactVerdict::separated;
-  if (place == Place::unknown) return ExactVerdict::undecided;
+  if (!descend(support, is_outside, direction, simplex)) return ExactVerdict::separated;
   return boundary_or_inside(difference, simplex, direction);
 }
 

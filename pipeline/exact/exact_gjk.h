@@ -5,9 +5,8 @@
 
 namespace winnow {
 
-/// Where the origin is to the difference of two cores rounded by `rounding`, decided exactly.
-/// `direction` is tried first. `undecided` only beyond a bound of iterations that nothing known
-/// comes near.
+/// Where the origin is to the difference of two cores, which is in range, rounded by `rounding`:
+/// exactly, never undecided. `direction` is tried first.
 [[nodiscard]] ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& rounding,
                                          const ExactVector& direction) noexcept;
 

@@ -124,26 +124,33 @@ namespace {
 /// both ways: below zero it proves them apart.
 class LeastHeight {
  public:
-  LeastHeight(const CoreDifference& difference, const Dyadic& rounding) noexcept
-      : difference_(difference), rounding_(rounding) {}
+  /// `direction` is not zero, and shown first.
+  LeastHeight(const CoreDifference& difference, const Dyadic& rounding,
+              const ExactVector& direction) noexcept
+      : difference_(difference), rounding_(rounding), least_(height_along(direction)) {
+    look_along(-direction);
+  }
 
   void look(const ExactVector& direction) noexcept {
     if (is_zero(direction)) return;
-    const Dyadic round = rounding_ * difference_.scale() * root_above(dot(direction, direction));
-    for (const ExactVector& way : {direction, -direction}) {
-      const Dyadic height = difference_.height_bound(way) + round;
-      if (any_ && compare(height, least_) >= 0) continue;
-      any_ = true;
-      least_ = height;
-    }
+    look_along(direction);
+    look_along(-direction);
   }
-  [[nodiscard]] int sign() const noexcept { return any_ ? least_.sign() : 1; }
+  [[nodiscard]] int sign() const noexcept { return least_.sign(); }
 
  private:
+  [[nodiscard]] Dyadic height_along(const ExactVector& direction) const noexcept {
+    return difference_.height_bound(direction) +
+           rounding_ * difference_.scale() * root_above(dot(direction, direction));
+  }
+  void look_along(const ExactVector& direction) noexcept {
+    const Dyadic height = height_along(direction);
+    if (compare(height, least_) < 0) least_ = height;
+  }
+
   const CoreDifference& difference_;
   const Dyadic& rounding_;
   Dyadic least_;
-  bool any_ = false;
 };
 
 /// Pairs whose numbers span too far for the search, by planes alone: those that `direction` and the
@@ -154,8 +161,7 @@ class LeastHeight {
                                              const Dyadic& rounding, const ExactVector& direction,
                                              bool are_boxes) noexcept {
   if (!difference.heights_in_range()) return ExactVerdict::undecided;
-  LeastHeight least(difference, rounding);
-  least.look(direction);
+  LeastHeight least(difference, rounding, direction);
   for (int i = 0; i < 3; ++i) {
     least.look(difference.axis_a(i));
     least.look(difference.axis_b(i));

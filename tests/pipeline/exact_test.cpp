@@ -238,6 +238,93 @@ TEST(ExactOverlap, cylinders_lie_and_stand_on_boxes) {
   EXPECT_EQ(verdict(std::nextafter(1.5, 1.0)), ExactVerdict::overlapping);
 }
 
+/// A hull of so many of the vertices in the columns.
+void set_hull(HullShape& hull, const HullColumns& columns, std::uint32_t count) {
+  hull.vertex_count = count;
+  hull.rounding = 0.0;
+  for (int k = 0; k < 3; ++k) hull.vertex[k] = columns[k];
+}
+
+TEST(ExactOverlap, segments_on_one_line_touch_whichever_way_is_tried_first) {
+  for (int along = 0; along < 3; ++along) {
+    HullColumns columns{};
+    columns[along][0] = -1.0;
+    columns[along][1] = 1.0;
+    Pair pair;
+    for (HullShape& hull : pair.hulls) set_hull(hull, columns, 2);
+    double axis[3] = {};
+    axis[along] = 1.0;
+    const auto verdict = [&](double x) {
+      pair.poses[1].position[along] = x;
+      return pair.verdict(ShapeKind::hull, ShapeKind::hull, axis);
+    };
+    EXPECT_EQ(verdict(0.5), ExactVerdict::touching) << along;
+    EXPECT_EQ(verdict(2.0), ExactVerdict::touching) << along;
+    EXPECT_EQ(verdict(std::nextafter(2.0, 3.0)), ExactVerdict::separated) << along;
+  }
+}
+
+TEST(ExactOverlap, planes_of_normals_of_any_length_are_decided) {
+  Pair pair;
+  pair.half_spaces[0] = {{0.0, 0.0, 4.0}, 4.0};
+  pair.boxes[1] = {{1.0, 1.0, 2.0}, 0.0};
+  pair.poses[1].position[2] = 3.0;
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::touching);
+  pair.poses[1].position[2] = std::nextafter(3.0, 4.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::separated);
+}
+
+TEST(ExactOverlap, is_the_same_if_the_way_to_try_is_no_number_or_none) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const double axes[][3] = {{0.0, 0.0, 0.0}, {kInfinity, 0.0, 0.0}, {1.0, kNan, 0.0}};
+  Pair pair;
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  pair.poses[0].orientation[1] = 0.5;
+  for (const auto& axis : axes) {
+    pair.poses[1].position[0] = 2.0;
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::touching);
+    pair.poses[1].position[0] = std::nextafter(2.0, 3.0);
+    EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, axis), ExactVerdict::separated);
+  }
+}
+
+TEST(ExactOverlap, of_numbers_that_span_too_far_is_right_or_undecided) {
+  const double up[3] = {0.0, 0.0, 1.0};
+  Pair pair;
+  pair.cylinders[0] = {1e300, 1e300, 0.0};
+  pair.boxes[1] = {{1e-300, 1e-300, 1e-300}, 0.0};
+  pair.poses[1].position[2] = 2e300;
+  EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::box, up), ExactVerdict::separated);
+  // A point over a triangle.
+  pair.triangles[0] = {{{-1e300, 1e-300, 0.0}, {1e300, -1e-300, 0.0}, {0.0, 1e300, 0.0}}, 0.0};
+  pair.spheres[1].radius = 0.0;
+  pair.poses[1].position[2] = 1e-300;
+  EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere, up), ExactVerdict::separated);
+  // So far that their sum is infinite.
+  HullColumns far;
+  for (auto& column : far) std::fill(std::begin(column), std::end(column), 1.5e308);
+  far[0][1] = far[1][2] = -1.5e308;
+  set_hull(pair.hulls[0], far, 3);
+  pair.poses[1] = {};
+  EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::box, up), ExactVerdict::separated);
+  // Turns of which nothing is known any more.
+  for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
+  for (Pose& pose : pair.poses) pose.orientation[1] = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
+}
+
+TEST(ExactOverlap, of_rims_so_small_that_products_lose_digits_is_exact) {
+  const double up[3] = {0.0, 0.0, 1.0};
+  Pair pair;
+  pair.boxes[0] = {{1e-275, 1e-275, 1e-275}, 0.0};
+  pair.cones[1] = {1e-280, 1e-275, 0.0};
+  pair.poses[1].position[2] = 2e-275;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cone, up), ExactVerdict::touching);
+  pair.poses[1].position[2] = std::nextafter(2e-275, 1.0);
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cone, up), ExactVerdict::separated);
+}
+
 /// One of the 24 turns that keep axes on axes.
 void set_quarter_turns(Random& random, Pose& pose) {
   static const double kTurns[][4] = {{1, 0, 0, 0}, {0, 0, 3, 0},  {1, 1, 0, 0},  {0, -2, 0, 2},
