@@ -208,6 +208,11 @@ class WINNOW_API Partition final {
   /// objects than was reserved for: on several threads twice that, since they write side by side
   /// first. `out_of_memory` changes nothing.
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
+  /// Makes room for what events tell of up to so many pairs, as long as there are no more objects
+  /// than was reserved for, and with `alone`, for `self_pairs(events)`, for those pairs themselves.
+  /// `out_of_memory` changes nothing that is told.
+  Status reserve_events(PairEvents& out, std::size_t pairs, bool alone = false,
+                        Pages pages = Pages::untouched) const;
 
   /// Live objects.
   [[nodiscard]] std::size_t size() const noexcept;

@@ -185,13 +185,14 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   template <typename Shape>
   bool meets_triangle(const Body& body, const Body& triangle, Contacts* contacts) {
-    const auto& [p, q, r] = triangle.corners;
+    const auto& at = triangle.corners;
     fcl::ContactPoint<double> contact;
     const bool wanted = contacts != nullptr;
     const bool overlap = ask([&] {
-      return solver_.shapeTriangleIntersect(
-          shape_of<Shape>(body), body.at, p, q, r, triangle.at, wanted ? &contact.pos : nullptr,
-          wanted ? &contact.penetration_depth : nullptr, wanted ? &contact.normal : nullptr);
+      return solver_.shapeTriangleIntersect(shape_of<Shape>(body), body.at, at[0], at[1], at[2],
+                                            triangle.at, wanted ? &contact.pos : nullptr,
+                                            wanted ? &contact.penetration_depth : nullptr,
+                                            wanted ? &contact.normal : nullptr);
     });
     if (!wanted || !overlap) return overlap;
     // Of triangles EPA's normals go from b to a.

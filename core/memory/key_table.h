@@ -79,6 +79,8 @@ class KeyTable {
   [[nodiscard]] std::size_t size() const noexcept { return live_; }
   /// Slots ever used; every ObjectId is below it.
   [[nodiscard]] std::size_t slot_count() const noexcept { return stamps_.size(); }
+  /// Slots that there is room for.
+  [[nodiscard]] std::size_t capacity() const noexcept { return stamps_.capacity(); }
 
   // What is saved and restored.
 

@@ -44,6 +44,20 @@ void sort_runs(std::span<std::uint64_t> list) {
 
 }  // namespace
 
+bool EventWriter::reserve(PairEvents& events, std::size_t pairs, std::size_t objects,
+                          Pages pages) noexcept {
+  PairEvents& e = events;
+  const auto each = [&](std::size_t count, auto&... columns) {
+    return (columns.reserve(count, pages) && ...);
+  };
+  if (!each(pairs, e.begun_, e.ended_, e.dropped_, e.before_, e.after_, e.spare_) ||
+      !e.stamps_.reserve(objects, pages)) {
+    return false;
+  }
+  return !e.with_client_data_ ||
+         (each(pairs, e.begun_data_, e.ended_data_) && e.data_.reserve(objects, pages));
+}
+
 bool EventWriter::hold_all(const PairBuffer& out) noexcept {
   kept_ = 0;
   if (!follows_) return true;

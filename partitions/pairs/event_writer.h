@@ -51,6 +51,10 @@ class EventWriter {
   /// True if the id, which was a live object's in the last frame, is one of those.
   [[nodiscard]] bool is_renewed(ObjectId id) const noexcept { return other_keys_ && is_other(id); }
 
+  /// Room for frames of up to so many pairs and objects. False if memory is refused.
+  [[nodiscard]] static bool reserve(PairEvents& events, std::size_t pairs, std::size_t objects,
+                                    Pages pages) noexcept;
+
   /// True if the events tell of the frame that the buffer holds.
   [[nodiscard]] bool follows() const noexcept { return follows_; }
   /// Where events keep their pairs for a caller who has no buffer.

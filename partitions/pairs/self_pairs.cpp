@@ -92,6 +92,13 @@ Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages)
   return state_ == nullptr ? status_ : state_->reserve_pairs(out, pairs, pages);
 }
 
+Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool alone,
+                                 Pages pages) const {
+  if (state_ == nullptr) return status_;
+  if (!state_->reserve_events(out, pairs, pages)) return Status::out_of_memory;
+  return alone ? reserve_pairs(EventWriter::own_buffer(out), pairs, pages) : Status::ok;
+}
+
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
   // In no order: the events are sorted, and nobody sees the pairs.
   return self_pairs(EventWriter::own_buffer(events), events,
@@ -103,6 +110,12 @@ Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
   const std::size_t tasks = SelfTasks::most(steadily([this] { return rows.pool().capacity(); }));
   return PairWriter::reserve(out, pairs, tasks, rows.execution(), pages) ? Status::ok
                                                                          : Status::out_of_memory;
+}
+
+bool PartitionState::reserve_events(PairEvents& out, std::size_t pairs,
+                                    Pages pages) const noexcept {
+  const std::size_t objects = steadily([this] { return rows.keys().capacity(); });
+  return EventWriter::reserve(out, pairs, objects, pages);
 }
 
 Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,

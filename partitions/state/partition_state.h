@@ -55,6 +55,7 @@ class PartitionState {
   Status restore(const SavedRows& saved, PartitionState& other);
   Status reserve(std::size_t objects, Pages pages);
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
+  [[nodiscard]] bool reserve_events(PairEvents& out, std::size_t pairs, Pages pages) const noexcept;
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   Status update(const EntryList& entries, const BoxView& boxes);
   Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);

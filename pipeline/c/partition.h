@@ -240,6 +240,10 @@ WINNOW_C_API winnow_status winnow_partition_reserve(winnow_partition* partition,
 WINNOW_C_API winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
                                                           winnow_pair_buffer* out, size_t pairs,
                                                           winnow_pages pages);
+/// `alone`: for questions for events without a buffer.
+WINNOW_C_API winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
+                                                           winnow_pair_events* out, size_t pairs,
+                                                           bool alone, winnow_pages pages);
 
 WINNOW_C_API winnow_status winnow_partition_size(const winnow_partition* partition, size_t* size);
 WINNOW_C_API winnow_status winnow_partition_contains(const winnow_partition* partition,

@@ -135,6 +135,8 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   OK(winnow_pair_events_create_with_client_data(memory, &events));
   OK(winnow_pair_events_create(memory, &plain));
   OK(winnow_partition_reserve_pairs(partition, pairs, 1000, WINNOW_PAGES_TOUCHED));
+  OK(winnow_partition_reserve_events(partition, events, 1000, false, WINNOW_PAGES_TOUCHED));
+  OK(winnow_partition_reserve_events(partition, plain, 1000, true, WINNOW_PAGES_UNTOUCHED));
   OK(winnow_pair_buffer_reserve(copy, 1000, WINNOW_PAGES_UNTOUCHED));
   options.order = WINNOW_ORDER_CANONICAL;
   OK(winnow_partition_self_pairs(partition, pairs, NULL, &options));

@@ -162,6 +162,50 @@ TEST_P(Memory, that_was_reserved_lasts_for_a_first_frame) {
   EXPECT_TRUE(footprint_is_exact(world));
 }
 
+TEST_P(Memory, that_was_reserved_for_events_lasts_for_frames_of_so_many_pairs) {
+  constexpr std::size_t kObjects = 60;
+  constexpr std::size_t kPairs = kObjects * (kObjects - 1) / 2;
+  World world(config(), &memory_);
+  CountingMemory results;
+  PairBuffer buffer(&results);
+  PairEvents events(PairEventsOptions{&results, true});
+  PairEvents alone(&results);
+  ASSERT_EQ(world.partition().reserve(kObjects), Status::ok);
+  ASSERT_EQ(world.partition().reserve_pairs(buffer, kPairs), Status::ok);
+  ASSERT_EQ(world.partition().reserve_events(events, kPairs), Status::ok);
+  ASSERT_EQ(world.partition().reserve_events(alone, kPairs, true), Status::ok);
+  const std::size_t requests = results.requests();
+  std::vector<Aabb> boxes = uniform_boxes(kObjects);
+  const std::vector<Key> keys = world.insert(boxes);
+  std::size_t told = 0;
+  for (int frame = 0; frame < 6; ++frame) {
+    // Spread, and all in one place.
+    const std::vector<Aabb> next = frame % 2 == 0 ? boxes : std::vector<Aabb>(kObjects, boxes[0]);
+    ASSERT_EQ(world.partition().update(keys, next), Status::ok);
+    ASSERT_EQ(world.partition().self_pairs(buffer, events), Status::ok);
+    ASSERT_EQ(world.partition().self_pairs(alone), Status::ok);
+    told += events.begun().size() + events.ended().size();
+    EXPECT_EQ(alone.begun().size(), events.begun().size()) << frame;
+  }
+  EXPECT_GE(told, kPairs);
+  EXPECT_EQ(results.requests(), requests);
+}
+
+TEST(EventsMemory, that_is_refused_can_be_reserved_later) {
+  CountingMemory memory;
+  Partition partition(linear_bvh(), {.execution = Execution::serial()});
+  ASSERT_EQ(partition.reserve(10), Status::ok);
+  std::size_t refused = 0;
+  for (Status status = Status::out_of_memory; status != Status::ok; ++refused) {
+    PairEvents events(PairEventsOptions{&memory, true});
+    memory.refuse_after(refused);
+    status = partition.reserve_events(events, 100, true);
+    memory.grant_all();
+    EXPECT_EQ(partition.reserve_events(events, 100, true), Status::ok) << refused;
+  }
+  EXPECT_GT(refused, 10U);
+}
+
 // A tree has room for more blocks, but for those of another level.
 TEST(TreeMemory, that_was_reserved_is_enough_for_fewer_beside_another_level) {
   constexpr std::size_t kObjects = 3900 * 16;

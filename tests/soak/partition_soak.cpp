@@ -84,6 +84,7 @@ PartitionSoak::PartitionSoak(const StructureKind& structure, const SoakPlan& pla
   tally_.name = structure.name();
   require(partition_.reserve(most_) == Status::ok, "reserve was refused");
   require(partition_.reserve_pairs(pairs_, most_ * 16) == Status::ok, "pairs were refused");
+  require(partition_.reserve_events(events_, most_ * 16) == Status::ok, "events were refused");
 }
 
 Aabb PartitionSoak::some_box() {

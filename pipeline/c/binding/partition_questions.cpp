@@ -113,6 +113,16 @@ winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
   return answer(partition->asked->reserve_pairs(out->value, pairs, touch));
 }
 
+winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
+                                              winnow_pair_events* out, size_t pairs, bool alone,
+                                              winnow_pages pages) {
+  winnow::Pages touch{};
+  if (!are_given(partition, out) || !read_choice(pages, winnow::Pages::touched, touch)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return answer(partition->asked->reserve_events(out->value, pairs, alone, touch));
+}
+
 winnow_status winnow_partition_refresh(const winnow_partition* partition) {
   if (partition == nullptr) return WINNOW_INVALID_ARGUMENT;
   return answer(partition->asked->refresh());
