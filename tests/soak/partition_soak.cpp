@@ -19,6 +19,7 @@ class PartitionSoak {
 
  private:
   /// What is told to a partition and to its model, one after the other, in each frame.
+  void begin_lap();
   void plan_frame(std::uint64_t frame);
   void come();
   void go();
@@ -147,6 +148,15 @@ void PartitionSoak::refilter() {
   refiltered_.push_back(place);
 }
 
+void PartitionSoak::begin_lap() {
+  partition_.clear();
+  model_.clear();
+  told_.clear();
+  events_.clear();
+  followed_ = 0;
+  random_ = Random(plan_.seed);
+}
+
 void PartitionSoak::plan_frame(std::uint64_t frame) {
   gone_.clear();
   come_.clear();
@@ -273,6 +283,7 @@ std::size_t PartitionSoak::held() const {
 SoakTally PartitionSoak::run() {
   MemoryWatch watch(tally_, memory_, saved_memory_, plan_.frames);
   for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
+    if (plan_.lap != 0 && frame % plan_.lap == 0) begin_lap();
     plan_frame(frame);
     tell();
     if (followed_ != 0) {

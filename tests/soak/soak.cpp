@@ -1,9 +1,10 @@
 // Usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] [--objects N]
-// [--check-every N] [NAME...]
+// [--check-every N] [--lap N] [NAME...]
 //
 // Plays so many frames of objects that come, go and move on each structure, and of bodies in a
 // scene, beside slow twins; NAME is a structure's or `scene`, all if there is none. With --seconds
-// rounds of so many frames, with other seeds, go on until that time has passed. Prints a line for
+// rounds of so many frames, with other seeds, go on until that time has passed. With --lap objects
+// do the same again after so many frames. Prints a line for
 // each, then one of JSON. Ends with 1 where an answer is not the twin's, a snapshot goes on
 // otherwise, a footprint is not what was asked for, or memory grows.
 
@@ -41,6 +42,8 @@ bool read_option(Asked& asked, std::string_view name, std::string_view value) {
     asked.plan.threads = static_cast<int>(number);
   else if (name == "--objects")
     asked.plan.objects = number;
+  else if (name == "--lap")
+    asked.plan.lap = number;
   else if (name == "--check-every")
     asked.plan.check_every = number;
   else

@@ -23,6 +23,9 @@ struct SoakPlan {
   std::uint64_t check_every = 16;    ///< frames between two comparisons with the twin
   std::uint64_t save_every = 2000;   ///< frames between two snapshots
   std::uint64_t follow_frames = 16;  ///< that what was loaded goes on for beside what was saved
+  /// Frames after which all is cleared and the same begins anew, which may ask for no more memory;
+  /// 0: never. Of partitions alone.
+  std::uint64_t lap = 0;
 };
 
 /// What was done, and what it took.
