@@ -108,11 +108,14 @@ void write_boxes(const float* floats, const BoxOfId& box_of, const std::uint32_t
   // Boxes are met in any order: those of the next two blocks are on their way meanwhile.
   constexpr std::size_t kBlocks = 3;
   BoxesOfRows blocks[kBlocks];
-  find_boxes<Listed>(floats, box_of, id + begin, blocks[0]);
-  find_boxes<Listed>(floats, box_of, id + begin + kLanes, blocks[1]);
+  const auto find = [&](std::size_t row, std::size_t block) {
+    if (row < end) find_boxes<Listed>(floats, box_of, id + row, blocks[block % kBlocks]);
+  };
+  find(begin, 0);
+  find(begin + kLanes, 1);
   std::size_t now = 0;
   for (std::size_t row = begin; row < end; row += kLanes, now = (now + 1) % kBlocks) {
-    find_boxes<Listed>(floats, box_of, id + row + 2 * kLanes, blocks[(now + 2) % kBlocks]);
+    find(row + 2 * kLanes, now + 2);
     BoxesOfRows& rows = blocks[now];
     if (rows.missing == kAllRows) continue;
     alignas(64) float old[kLanes][kFloats];
