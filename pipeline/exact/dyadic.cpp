@@ -63,9 +63,9 @@ const Dyadic& Dyadic::with_digits(Dyadic& room) const noexcept {
 }
 
 void Dyadic::trim() noexcept {
-  while (size_ > 0 && digit_[size_ - 1] == 0) --size_;
+  while (digit_[size_ - 1] == 0) --size_;
   int zeros = 0;
-  while (zeros < size_ && digit_[zeros] == 0) ++zeros;
+  while (digit_[zeros] == 0) ++zeros;
   if (zeros == 0) return;
   size_ -= zeros;
   exponent_ += zeros;

@@ -142,6 +142,7 @@ class Dyadic {
     const int i = place - exponent_;
     return i >= 0 && i < size_ ? digit_[i] : 0;
   }
+  /// Of digits that are not all zero.
   void trim() noexcept;
 
   Wide mantissa_ = 0;          // of short numbers, odd or zero: mantissa_ * 2^exponent_

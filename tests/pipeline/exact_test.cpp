@@ -308,6 +308,17 @@ TEST(ExactOverlap, of_numbers_that_span_too_far_is_right_or_undecided) {
   set_hull(pair.hulls[0], far, 3);
   pair.poses[1] = {};
   EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::box, up), ExactVerdict::separated);
+  // And so far that but their products with a direction are.
+  for (int i = 0; i < 3; ++i) {
+    far[0][i] = 1e308 + i * 1e307;
+    far[1][i] = far[2][i] = i;
+  }
+  const double steep[3] = {1.9, 0.0, 0.0};
+  EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::box, steep), ExactVerdict::separated);
+  // Rounded boxes.
+  pair.boxes[0] = {{1e300, 1e300, 1e300}, 1e-300};
+  pair.poses[0].orientation[1] = 0.5;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
   // Turns of which nothing is known any more.
   for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
   for (Pose& pose : pair.poses) pose.orientation[1] = std::numeric_limits<double>::denorm_min();
