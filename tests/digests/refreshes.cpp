@@ -55,7 +55,10 @@ class Drawing final : public DebugDraw {
 class Life {
  public:
   Life(StructureKind structure, const PartitionOptions& options, std::size_t count, Digest& digest)
-      : partition_(structure, options), numbers_(21), digest_(digest) {
+      : partition_(structure, options),
+        bounded_(options.volume != Volume::aabb),
+        numbers_(21),
+        digest_(digest) {
     insert(count);
   }
 
@@ -127,6 +130,41 @@ class Life {
       mask[i / 64] |= std::uint64_t{1} << i % 64;
     }
     note(partition_.update(keys_, boxes, masked ? Entries::masked(mask) : Entries::listed(list)));
+  }
+
+  /// How boxes that tremble are told.
+  enum class Told { in_order, backwards, in_columns, twice };
+
+  /// Each is up to 2^-12 from where it rests, but for every so many-th, which is there.
+  void tremble(Told told, std::size_t stride = 5) {
+    const std::size_t count = keys_.size();
+    std::vector<Key> keys = keys_;
+    std::vector<Aabb> boxes = boxes_;
+    const std::size_t first = numbers_.below(stride);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int k = 0; k < 3 && i % stride != first; ++k) {
+        const auto by = static_cast<float>(numbers_.coordinate(1) * 0x1p-12);
+        boxes[i].min[k] += by;
+        boxes[i].max[k] += by;
+      }
+    }
+    if (told == Told::backwards) {
+      std::reverse(keys.begin(), keys.end());
+      std::reverse(boxes.begin(), boxes.end());
+    }
+    // Some go far away and are back at once: the last box of a key counts.
+    for (std::size_t i = first; told == Told::twice && i < count; i += 97) {
+      keys.push_back(keys[i]);
+      boxes.push_back(boxes[i]);
+      step(boxes[i], 64);
+    }
+    if (told != Told::in_columns) return note(partition_.update(keys, boxes));
+    std::vector<float> columns;
+    for (int c = 0; c < 6; ++c) {
+      for (const Aabb& box : boxes) columns.push_back(c < 3 ? box.min[c] : box.max[c - 3]);
+    }
+    const auto at = [&](std::size_t c) { return columns.data() + c * count; };
+    note(partition_.update(keys, BoxView({at(0), at(1), at(2)}, {at(3), at(4), at(5)}, count)));
   }
 
   void jump(std::size_t stride) {
@@ -223,8 +261,8 @@ class Life {
     // Some have an end or two at infinity.
     const std::size_t chance = numbers_.below(300);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    if (chance < 2) box.min[chance] = -kInfinity;
-    if (chance < 1) box.max[0] = kInfinity;
+    if (chance < 2 && !bounded_) box.min[chance] = -kInfinity;
+    if (chance < 1 && !bounded_) box.max[0] = kInfinity;
   }
 
   /// `way` in sixteenths.
@@ -255,6 +293,7 @@ class Life {
   }
 
   Partition partition_;
+  bool bounded_;  // no volumes but boxes have ends at infinity
   Numbers numbers_;
   Digest& digest_;
   std::vector<Key> keys_;
@@ -308,6 +347,49 @@ void sift(Life& life) {
   }
 }
 
+/// All tremble where they are and hardly a pair changes, while some move, come and leave.
+void rest(Life& life) {
+  using Told = Life::Told;
+  for (int frame = 0; frame < 90; ++frame) {
+    const Told told[] = {Told::in_order, Told::in_order, Told::backwards, Told::in_columns,
+                         Told::twice};
+    life.tremble(told[frame % 5]);
+    if (frame % 11 == 6) life.move_one_by_one(211, 8);
+    if (frame % 13 == 7) life.move(97, 8, frame % 2 == 1);
+    if (frame % 17 == 8) life.insert(9);
+    if (frame % 17 == 12) life.remove(150);
+    if (frame == 20) life.filter(180, {.layers = 1U, .mask = 6U, .environment = 0});
+    if (frame == 28) life.ask_badly();
+    if (frame == 32) life.move_listed(80, 8, true);
+    if (frame == 45) life.look();
+    if (frame == 70) life.move(2, 16);
+    if (frame % 9 != 4) life.ask();
+  }
+}
+
+/// Few, then many that all move, then many of which few do, then few again: the automatic choice
+/// goes from one structure to another.
+void turn(Life& life) {
+  for (int frame = 0; frame < 120; ++frame) {
+    if (frame == 10) life.insert(3000);
+    if (frame == 50) life.remove(2);
+    if (frame == 95) life.remove(1);
+    if (frame == 95) life.insert(40);
+    life.move(frame < 60 ? 1 : 40, 3);
+    if (frame > 70) life.look();
+    life.ask();
+  }
+}
+
+/// In every frame a few jump away from those around them.
+void stray(Life& life) {
+  for (int frame = 0; frame < 24; ++frame) {
+    life.move(1, 1);
+    life.jump(frame % 8 == 7 ? 9 : 60);
+    life.ask();
+  }
+}
+
 /// Everything leaves, memory goes and comes, another structure takes over.
 void end(Life& life) {
   Partition& partition = life.partition();
@@ -343,6 +425,9 @@ void live(StructureKind structure, PartitionOptions options, const Execution& ex
   sift(life);
   drift(life, 1);
   end(life);
+  Life resting(structure, options, count, digest);
+  rest(resting);
+  stray(resting);
 }
 
 }  // namespace
@@ -359,9 +444,21 @@ std::vector<Work> refresh_works() {
     add(structure, "", {});
     add(structure, "/planned", {.build_budget = 200});
   }
+  for (const bool reserved : {false, true}) {
+    works.push_back({std::string("lives/turning") + (reserved ? "/reserved" : ""),
+                     [=](const Execution& execution, Digest& digest) {
+                       PartitionOptions options;
+                       options.execution = execution;
+                       options.build_budget = 500;
+                       Life life(automatic(), options, 20, digest);
+                       if (reserved) life.note(life.partition().reserve(4000));
+                       turn(life);
+                     }});
+  }
   for (const StructureKind structure : {hierarchical_grid(), linear_bvh()}) {
     add(structure, "/margins", {.margin = {.distance = 0.125F, .share = 0.0625F}});
     add(structure, "/spheres", {.volume = Volume::sphere});
+    add(structure, "/kdops", {.volume = Volume::kdop18, .margin = {.distance = 0.0625F}});
   }
   return works;
 }
