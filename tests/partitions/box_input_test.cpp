@@ -85,6 +85,68 @@ TEST_P(BoxInput, copies_boxes_and_finds_those_that_are_not_near) {
   }
 }
 
+// What rows hold of infinite ends.
+float stored_end(float end) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return std::clamp(end, -kMost, kMost);
+}
+
+// By the rule of one box: all of these are decided without rounding, so that lanes agree with it.
+TEST_P(BoxInput, finds_the_boxes_that_the_stored_ones_still_serve) {
+  const IsaScope scope(GetParam());
+  Random random(4);
+  constexpr float kDistance = 0.25F;
+  constexpr float kShare = 0.125F;
+  for (std::size_t count = 1; count <= 256; count += 15) {
+    const std::size_t rows = (count + 15) / 16 * 16;
+    std::vector<std::vector<float>> given(kFloats, std::vector<float>(rows));
+    std::vector<std::vector<float>> stored = given;
+    std::vector<bool> expected(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      float longest = 0.0F;
+      for (std::size_t a = 0; a < 3; ++a) {
+        given[a][i] = static_cast<float>(random.below(64));
+        const float edge = static_cast<float>(random.below(5));
+        given[3 + a][i] = given[a][i] + edge;
+        longest = std::max(longest, edge);
+      }
+      const std::size_t endless = random.below(12);
+      if (endless < kFloats) {
+        given[endless][i] = stored_end(endless < 3 ? -kInfinity : kInfinity);
+        longest = 0.0F;
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (a != endless % 3) longest = std::max(longest, given[3 + a][i] - given[a][i]);
+        }
+      }
+      const float margin = kDistance + kShare * longest;
+      bool serves = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        // In eighths of the margin: mostly it serves.
+        const auto low_by = static_cast<float>(random.below(40)) - 1.0F;
+        const auto high_by = static_cast<float>(random.below(18)) - (random.chance(0.1) ? 1.0F : 0);
+        const bool endless_axis = endless < kFloats && endless % 3 == a;
+        stored[a][i] = given[a][i] - (endless_axis ? 0.0F : margin * low_by / 8.0F);
+        stored[3 + a][i] = given[3 + a][i] + (endless_axis ? 0.0F : margin * high_by / 8.0F);
+        serves = serves && (endless_axis ||
+                            (low_by >= 0.0F && high_by >= 0.0F && low_by + high_by <= 8.0F * 4.0F));
+      }
+      expected[i] = serves;
+    }
+    const float* given_columns[kFloats];
+    const float* stored_columns[kFloats];
+    for (std::size_t c = 0; c < kFloats; ++c) {
+      given_columns[c] = given[c].data();
+      stored_columns[c] = stored[c].data();
+    }
+    std::vector<std::uint64_t> words((rows + 63) / 64, ~std::uint64_t{0});
+    box_input_kernels().within(given_columns, stored_columns, count, kDistance, kShare,
+                               words.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ((words[i / 64] >> i % 64 & 1U) != 0, expected[i]) << i << " of " << count;
+    }
+  }
+}
+
 TEST_P(BoxInput, gives_rows_the_boxes_of_their_objects_and_leaves_others_alone) {
   const IsaScope scope(GetParam());
   Random random(3);
