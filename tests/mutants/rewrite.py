@@ -92,9 +92,16 @@ class Source:
                 self.visit_statement(statement)
         elif cursor.kind is CursorKind.IF_STMT:
             self.visit_condition(cursor)
-        for child in cursor.get_children():
+        for child in list(cursor.get_children())[self.is_decided_early(cursor):]:
             if not (cursor.kind in DECLARATIONS and self.is_in_type(child)):
                 self.visit(child)
+
+    def is_decided_early(self, cursor):
+        """How many of its parts, from the first on, are computed while compiling."""
+        if cursor.kind is not CursorKind.IF_STMT:
+            return 0
+        words = [token.spelling for token, _ in zip(cursor.get_tokens(), range(2))]
+        return 1 if words == ["if", "constexpr"] else 0
 
     def is_in_type(self, cursor):
         """How many there are of an array: computed while compiling, too."""

@@ -47,6 +47,40 @@ TEST(Strays, cost_the_others_of_their_block_nothing) {
   EXPECT_LT(partition.statistics().builds, 6U);
 }
 
+// Blocks of large objects are wide without any that have jumped, and no longer once these are
+// small.
+TEST(Strays, are_found_after_other_blocks_were_wide) {
+  constexpr std::size_t kObjects = 8000;
+  constexpr std::size_t kLarge = 200;
+  const std::vector<Aabb> small = uniform_boxes(kObjects);
+  const auto largest = std::ranges::max(small, {}, [](const Aabb& box) { return box.max[0]; });
+  std::vector<Aabb> boxes = small;
+  for (std::size_t i = 0; i < kLarge; ++i) {
+    boxes[i].max += Vec3f::constant(0.5F * largest.max[0]);
+  }
+  Partition partition(linear_bvh());
+  std::vector<Key> keys(kObjects);
+  PairBuffer buffer;
+  const PairOptions anew{.incremental = false};
+  const auto tests = [&](const std::vector<Aabb>& now) {
+    EXPECT_EQ(partition.update(keys, now), Status::ok);
+    EXPECT_EQ(partition.self_pairs(buffer, anew), Status::ok);
+    return partition.statistics().last_tests;
+  };
+  ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
+  ASSERT_EQ(partition.self_pairs(buffer, anew), Status::ok);
+  const std::uint64_t builds = partition.statistics().builds;
+  boxes = small;
+  const std::uint64_t fresh = tests(boxes);
+  Random random(7);
+  for (int frame = 0; frame < 3; ++frame) {
+    (void)jump(boxes, 0.002, random);
+    const std::uint64_t now = tests(boxes);
+    EXPECT_LT(now, fresh + fresh / 3) << frame;
+  }
+  EXPECT_EQ(partition.statistics().builds, builds);
+}
+
 class StrayObjects : public Conformance {};
 
 TEST_P(StrayObjects, are_in_no_missing_pair) {

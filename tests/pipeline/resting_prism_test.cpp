@@ -1,0 +1,70 @@
+// A face of many vertices on a plane: few of them are kept, which have to span it.
+
+#include <gtest/gtest.h>
+#include <winnow/winnow.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace winnow::test {
+namespace {
+
+/// A prism of so many sides and radius 1 whose base, at z = 0, is turned about z.
+std::vector<Vec3d> prism(int sides, double turn) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = turn + 2.0 * std::numbers::pi * i / sides;
+    points.push_back({std::cos(angle), std::sin(angle), 0.0});
+    points.push_back({std::cos(angle), std::sin(angle), 1.0});
+  }
+  return points;
+}
+
+/// Of points in the plane z = 0 that go round their middle in any order: of their convex hull.
+double area_of(std::vector<ContactPoint> points) {
+  std::ranges::sort(points, {},
+                    [](const ContactPoint& p) { return std::atan2(p.position[1], p.position[0]); });
+  double twice = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& p = points[i].position;
+    const auto& q = points[(i + 1) % points.size()].position;
+    twice += static_cast<double>(p[0]) * static_cast<double>(q[1]) -
+             static_cast<double>(p[1]) * static_cast<double>(q[0]);
+  }
+  return 0.5 * twice;
+}
+
+TEST(RestingPrism, touches_a_plane_by_points_that_span_its_base) {
+  for (const int sides : {5, 6, 8, 12, 16, 20}) {
+    for (const double turn : {0.0, 0.1, 1.7, 4.0}) {
+      SCOPED_TRACE(testing::Message() << sides << " sides, turned by " << turn);
+      ShapePool pool;
+      ShapeId hull;
+      ASSERT_EQ(pool.add_hull(prism(sides, turn), 0.0, hull), Status::ok);
+      const ShapeId floor = pool.add(HalfSpaceShape{{0, 0, 1}, 0.0});
+      const std::vector<ShapeId> shapes{hull, floor};
+      // A little tilted, so that it is known which vertex is lowest.
+      std::vector<Pose> poses(2);
+      poses[0].orientation[1] = 1e-5;
+      poses[0].position[2] = -1e-4;
+      const std::vector<BodyPair> pairs{{0, 1}};
+      NarrowPhase phase;
+      NarrowResult result;
+      ASSERT_EQ(phase.collide(pool, {shapes, poses}, pairs,
+                              {.level = ContactLevel::manifold, .margin = 0.01}, result),
+                Status::ok);
+      std::vector<ContactPoint> points;
+      for (std::size_t i = 0; i < result.contacts(); ++i) points.push_back(result.contact(i));
+      ASSERT_EQ(points.size(), 4U);
+      // A square with its corners on the circle around has an area of 2, any other four points
+      // less.
+      const double base = 0.5 * sides * std::sin(2.0 * std::numbers::pi / sides);
+      EXPECT_GT(area_of(points), 0.63 * base);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test
