@@ -74,28 +74,31 @@ TEST_P(Memory, footprint_is_exact_after_every_kind_of_call) {
 }
 
 TEST_P(Memory, of_an_empty_partition_is_given_back) {
-  World world(config(), &memory_);
-  const std::vector<Key> keys = world.insert(uniform_boxes(2000));
-  if (world.partition().is_exact()) {
-    ASSERT_TRUE(world.agrees());
+  for (const bool filtered : {false, true}) {
+    World world(config(), &memory_);
+    const std::vector<Key> keys = world.insert(uniform_boxes(2000));
+    if (filtered) world.set_filter(keys[7], {.layers = 2});
+    if (world.partition().is_exact()) {
+      ASSERT_TRUE(world.agrees());
+    }
+    const std::size_t full = memory_.outstanding();
+    world.clear();
+    world.partition().release_memory();
+    EXPECT_TRUE(footprint_is_exact(world));
+    // Slots remember which keys they have handed out: at most 4 bytes each need stay for that, and
+    // their row and client data may stay beside them.
+    EXPECT_LE(memory_.outstanding(), 20 * 2048U);
+    EXPECT_LT(memory_.outstanding(), full / 2);
+    const World fresh(config());
+    const Footprint left = world.partition().footprint();
+    const Footprint first = fresh.partition().footprint();
+    EXPECT_EQ(left.bounds.reserved, first.bounds.reserved);
+    EXPECT_EQ(left.structure.reserved, first.structure.reserved);
+    EXPECT_EQ(left.scratch.reserved, first.scratch.reserved);
+    EXPECT_FALSE(world.partition().contains(keys[0]));
+    world.insert(uniform_boxes(100));
+    EXPECT_TRUE(world.agrees());
   }
-  const std::size_t full = memory_.outstanding();
-  world.clear();
-  world.partition().release_memory();
-  EXPECT_TRUE(footprint_is_exact(world));
-  // Slots remember which keys they have handed out: at most 4 bytes each need stay for that, and
-  // their row and client data may stay beside them.
-  EXPECT_LE(memory_.outstanding(), 20 * 2048U);
-  EXPECT_LT(memory_.outstanding(), full / 2);
-  const World fresh(config());
-  const Footprint left = world.partition().footprint();
-  const Footprint first = fresh.partition().footprint();
-  EXPECT_EQ(left.bounds.reserved, first.bounds.reserved);
-  EXPECT_EQ(left.structure.reserved, first.structure.reserved);
-  EXPECT_EQ(left.scratch.reserved, first.scratch.reserved);
-  EXPECT_FALSE(world.partition().contains(keys[0]));
-  world.insert(uniform_boxes(100));
-  EXPECT_TRUE(world.agrees());
 }
 
 TEST_P(Memory, of_another_structure_is_given_back) {
