@@ -215,8 +215,10 @@ def write(tree, mutants):
     """The sources with all mutants that are to be compiled."""
     by_file = {}
     for mutant in mutants:
+        # A file of which all are dropped is to be without them, too.
+        some = by_file.setdefault(mutant["file"], [])
         if not mutant.get("dropped"):
-            by_file.setdefault(mutant["file"], []).append(mutant)
+            some.append(mutant)
     for path, some in by_file.items():
         pristine = (tree / path).with_suffix((tree / path).suffix + ".pristine")
         if not pristine.exists():
