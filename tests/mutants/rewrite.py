@@ -227,6 +227,7 @@ def write(tree, mutants):
         for mutant in sorted(some, key=lambda m: -m["start"]):
             change = mutant["text"].replace("@", str(mutant["id"])).encode()
             # Lines keep their numbers, by which errors are told.
+            change += b"\n" * (mutant["was"].count("\n") - change.count(b"\n"))
             text = text[: mutant["start"]] + change + text[mutant["end"] :]
         (tree / path).write_bytes(f'#include "tests/mutants/mutants.h"\n{QUIET}#line 1\n'.encode() + text)
 
