@@ -153,10 +153,6 @@ void CoreVertices::include_lengths(BitSpan& span) const noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
     for (const double* values : column) span.include(values[i]);
   }
-  for (const CoreDisc& d : disc) {
-    span.include(d.z);
-    span.include(d.radius);
-  }
   span.include(rounding);
 }
 

@@ -32,6 +32,7 @@ struct CoreVertices {
   [[nodiscard]] ExactVector at(std::uint32_t i) const noexcept {
     return {{column[0][i], column[1][i], column[2][i]}};
   }
+  /// Coordinates of the vertices, among which are the places and radii of discs, and the rounding.
   void include_lengths(BitSpan& span) const noexcept;
   [[nodiscard]] bool same(std::uint32_t i, std::uint32_t k) const noexcept {
     return column[0][i] == column[0][k] && column[1][i] == column[1][k] &&

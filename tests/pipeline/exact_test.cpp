@@ -264,6 +264,51 @@ TEST(ExactOverlap, segments_on_one_line_touch_whichever_way_is_tried_first) {
   }
 }
 
+TEST(ExactOverlap, a_point_on_a_prism_is_told_from_one_in_it) {
+  // Around the z axis, which lies in the side x = 0 or, with the last two vertices, inside.
+  constexpr double kRing[][2] = {{0.0, 0.0}, {0.0, 1.0}, {-2.0, -1.0}, {0.0, -3.0}, {0.5, 0.2}};
+  double columns[3][10];
+  std::size_t count = 0;
+  for (const auto& [x, y] : kRing) {
+    for (const double z : {1.0, -1.0}) {
+      columns[0][count] = x;
+      columns[1][count] = y;
+      columns[2][count++] = z;
+    }
+  }
+  Pair pair;
+  HullShape& prism = pair.hulls[0];
+  prism.rounding = 0.0;
+  for (int k = 0; k < 3; ++k) prism.vertex[k] = columns[k];
+  HullColumns point{};
+  set_hull(pair.hulls[1], point, 1);
+  const double up[3] = {0.0, 0.0, 1.0};
+  prism.vertex_count = 8;
+  EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::hull, up), ExactVerdict::touching);
+  prism.vertex_count = 10;
+  EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::hull, up), ExactVerdict::overlapping);
+}
+
+TEST(ExactOverlap, segments_along_each_axis_meet_the_triangles_they_pierce) {
+  for (int along = 0; along < 3; ++along) {
+    Pair pair;
+    pair.capsules[1] = {0.0, 1.0};
+    // From z to the axis.
+    pair.poses[1].orientation[0] = along == 2 ? 1.0 : 0.5;
+    if (along == 0) pair.poses[1].orientation[2] = 0.5;
+    if (along == 1) pair.poses[1].orientation[1] = -0.5;
+    pair.poses[1].position[along] = 0.5;
+    TriangleShape& triangle = pair.triangles[0];
+    triangle = {};
+    const int u = (along + 1) % 3;
+    const int v = (along + 2) % 3;
+    triangle.vertex[0][u] = triangle.vertex[1][v] = 2.0;
+    triangle.vertex[2][u] = triangle.vertex[2][v] = -2.0;
+    EXPECT_NE(pair.verdict(ShapeKind::triangle, ShapeKind::capsule), ExactVerdict::separated)
+        << along;
+  }
+}
+
 TEST(ExactOverlap, planes_of_normals_of_any_length_are_decided) {
   Pair pair;
   pair.half_spaces[0] = {{0.0, 0.0, 4.0}, 4.0};
@@ -318,6 +363,9 @@ TEST(ExactOverlap, of_numbers_that_span_too_far_is_right_or_undecided) {
   // Rounded boxes.
   pair.boxes[0] = {{1e300, 1e300, 1e300}, 1e-300};
   pair.poses[0].orientation[1] = 0.5;
+  EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
+  pair.boxes[0] = {{1.0, 1.0, 1.0}, 1e-300};
+  pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.0};
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
   // Turns of which nothing is known any more.
   for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};

@@ -11,13 +11,15 @@
 namespace winnow::test {
 namespace {
 
-/// A prism of so many sides and radius 1 whose base, at z = 0, is turned about z.
-std::vector<Vec3d> prism(int sides, double turn) {
+/// A prism of so many sides, as high as its radius, whose base, at z = 0, is turned about z.
+std::vector<Vec3d> prism(int sides, double turn, double radius) {
   std::vector<Vec3d> points;
   for (int i = 0; i < sides; ++i) {
     const double angle = turn + 2.0 * std::numbers::pi * i / sides;
-    points.push_back({std::cos(angle), std::sin(angle), 0.0});
-    points.push_back({std::cos(angle), std::sin(angle), 1.0});
+    const double x = radius * std::cos(angle);
+    const double y = radius * std::sin(angle);
+    points.push_back({x, y, 0.0});
+    points.push_back({x, y, radius});
   }
   return points;
 }
@@ -36,32 +38,41 @@ double area_of(std::vector<ContactPoint> points) {
   return 0.5 * twice;
 }
 
+std::vector<ContactPoint> contacts_on_floor(const std::vector<Vec3d>& points, double size) {
+  ShapePool pool;
+  ShapeId hull;
+  EXPECT_EQ(pool.add_hull(points, 0.0, hull), Status::ok);
+  const ShapeId floor = pool.add(HalfSpaceShape{{0, 0, 1}, 0.0});
+  const std::vector<ShapeId> shapes{hull, floor};
+  // A little tilted, so that it is known which vertex is lowest.
+  std::vector<Pose> poses(2);
+  poses[0].orientation[1] = 1e-5;
+  poses[0].position[2] = -1e-4 * size;
+  const std::vector<BodyPair> pairs{{0, 1}};
+  NarrowPhase phase;
+  NarrowResult result;
+  EXPECT_EQ(phase.collide(pool, {shapes, poses}, pairs,
+                          {.level = ContactLevel::manifold, .margin = 0.01 * size}, result),
+            Status::ok);
+  std::vector<ContactPoint> contacts;
+  for (std::size_t i = 0; i < result.contacts(); ++i) contacts.push_back(result.contact(i));
+  return contacts;
+}
+
 TEST(RestingPrism, touches_a_plane_by_points_that_span_its_base) {
-  for (const int sides : {5, 6, 8, 12, 16, 20}) {
-    for (const double turn : {0.0, 0.1, 1.7, 4.0}) {
-      SCOPED_TRACE(testing::Message() << sides << " sides, turned by " << turn);
-      ShapePool pool;
-      ShapeId hull;
-      ASSERT_EQ(pool.add_hull(prism(sides, turn), 0.0, hull), Status::ok);
-      const ShapeId floor = pool.add(HalfSpaceShape{{0, 0, 1}, 0.0});
-      const std::vector<ShapeId> shapes{hull, floor};
-      // A little tilted, so that it is known which vertex is lowest.
-      std::vector<Pose> poses(2);
-      poses[0].orientation[1] = 1e-5;
-      poses[0].position[2] = -1e-4;
-      const std::vector<BodyPair> pairs{{0, 1}};
-      NarrowPhase phase;
-      NarrowResult result;
-      ASSERT_EQ(phase.collide(pool, {shapes, poses}, pairs,
-                              {.level = ContactLevel::manifold, .margin = 0.01}, result),
-                Status::ok);
-      std::vector<ContactPoint> points;
-      for (std::size_t i = 0; i < result.contacts(); ++i) points.push_back(result.contact(i));
-      ASSERT_EQ(points.size(), 4U);
-      // A square with its corners on the circle around has an area of 2, any other four points
-      // less.
-      const double base = 0.5 * sides * std::sin(2.0 * std::numbers::pi / sides);
-      EXPECT_GT(area_of(points), 0.63 * base);
+  for (const double radius : {1.0, 0x1p-6, 0x1p6}) {
+    for (const int sides : {5, 6, 8, 12, 16, 20}) {
+      for (const double turn : {0.0, 0.1, 1.7, 4.0}) {
+        SCOPED_TRACE(testing::Message()
+                     << sides << " sides, radius " << radius << ", turned by " << turn);
+        const auto points = contacts_on_floor(prism(sides, turn, radius), radius);
+        ASSERT_EQ(points.size(), 4U);
+        // A square with its corners on the circle around has an area of 2, any other four points
+        // less.
+        const double base =
+            0.5 * sides * std::sin(2.0 * std::numbers::pi / sides) * radius * radius;
+        EXPECT_GT(area_of(points), 0.63 * base);
+      }
     }
   }
 }
