@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/pipeline/floor_contacts.h"
+
 namespace winnow::test {
 namespace {
 
@@ -38,34 +40,19 @@ double area_of(std::vector<ContactPoint> points) {
   return 0.5 * twice;
 }
 
-std::vector<ContactPoint> contacts_on_floor(const std::vector<Vec3d>& points, double size) {
-  ShapePool pool;
-  ShapeId hull;
-  EXPECT_EQ(pool.add_hull(points, 0.0, hull), Status::ok);
-  const ShapeId floor = pool.add(HalfSpaceShape{{0, 0, 1}, 0.0});
-  const std::vector<ShapeId> shapes{hull, floor};
-  // A little tilted, so that it is known which vertex is lowest.
-  std::vector<Pose> poses(2);
-  poses[0].orientation[1] = 1e-5;
-  poses[0].position[2] = -1e-4 * size;
-  const std::vector<BodyPair> pairs{{0, 1}};
-  NarrowPhase phase;
-  NarrowResult result;
-  EXPECT_EQ(phase.collide(pool, {shapes, poses}, pairs,
-                          {.level = ContactLevel::manifold, .margin = 0.01 * size}, result),
-            Status::ok);
-  std::vector<ContactPoint> contacts;
-  for (std::size_t i = 0; i < result.contacts(); ++i) contacts.push_back(result.contact(i));
-  return contacts;
-}
-
 TEST(RestingPrism, touches_a_plane_by_points_that_span_its_base) {
   for (const double radius : {1.0, 0x1p-6, 0x1p6}) {
     for (const int sides : {5, 6, 8, 12, 16, 20}) {
       for (const double turn : {0.0, 0.1, 1.7, 4.0}) {
         SCOPED_TRACE(testing::Message()
                      << sides << " sides, radius " << radius << ", turned by " << turn);
-        const auto points = contacts_on_floor(prism(sides, turn, radius), radius);
+        ShapePool pool;
+        ShapeId hull;
+        ASSERT_EQ(pool.add_hull(prism(sides, turn, radius), 0.0, hull), Status::ok);
+        // A little tilted, so that it is known which vertex is lowest.
+        Pose pose = Pose::at(0, 0, -1e-4 * radius);
+        pose.orientation[1] = 1e-5;
+        const auto points = contacts_on_floor(pool, hull, pose, 0.01 * radius);
         ASSERT_EQ(points.size(), 4U);
         // A square with its corners on the circle around has an area of 2, any other four points
         // less.

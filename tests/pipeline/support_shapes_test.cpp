@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/pipeline/floor_contacts.h"
 #include "tests/pipeline/pair_answers.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/random.h"
@@ -497,27 +498,15 @@ TEST(SupportShapes, are_met_by_rays_where_their_surfaces_are) {
   }
 }
 
-std::vector<ContactPoint> contacts_on_floor(ShapePool& pool, ShapeId id, double height,
-                                            double tilt) {
-  ShapeId floor;
-  EXPECT_EQ(pool.add(HalfSpaceShape{}, floor), Status::ok);
-  const std::vector<ShapeId> shapes{id, floor};
+Pose tilted(double height, double tilt) {
   Pose pose = Pose::at(0, 0, height);
   pose.orientation[0] = std::cos(0.5 * tilt);
   pose.orientation[1] = std::sin(0.5 * tilt);
-  const std::vector<Pose> poses{pose, Pose{}};
-  const std::vector<BodyPair> pairs{{0, 1}};
-  NarrowPhase narrow;
-  NarrowResult result;
-  EXPECT_EQ(narrow.collide(pool, {shapes, poses}, pairs,
-                           {.level = ContactLevel::manifold, .margin = 0.02}, result),
-            Status::ok);
-  std::vector<ContactPoint> points;
-  for (std::size_t i = 0; i < result.contacts(); ++i) points.push_back(result.contact(i));
-  return points;
+  return pose;
 }
 
 TEST(SupportShapes, rest_on_as_many_points_as_they_have_corners_there) {
+  constexpr double kMargin = 0.02;
   ShapePool pool;
   const BoxShape box{{0.5, 0.4, 0.3}};
   ShapeId block;
@@ -527,19 +516,20 @@ TEST(SupportShapes, rest_on_as_many_points_as_they_have_corners_there) {
   ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 1.0, 0.3}}, ball), Status::ok);
   ASSERT_EQ(pool.add(TaperedCapsuleShape{{0.3, 0.2}, 1.0}, taper), Status::ok);
   for (const double tilt : {0.0, 1e-6, 1e-4, 1e-2}) {
-    EXPECT_EQ(contacts_on_floor(pool, block, 0.3, tilt).size(), 4U) << tilt;
-    EXPECT_EQ(contacts_on_floor(pool, ball, 0.3, tilt).size(), 1U) << tilt;
+    EXPECT_EQ(contacts_on_floor(pool, block, tilted(0.3, tilt), kMargin).size(), 4U) << tilt;
+    EXPECT_EQ(contacts_on_floor(pool, ball, tilted(0.3, tilt), kMargin).size(), 1U) << tilt;
   }
   // On its side, which slopes by asin(0.05).
   const double slope = std::asin(0.05);
-  EXPECT_EQ(contacts_on_floor(pool, taper, 0.25, 0.5 * 3.14159265358979 + slope).size(), 2U);
+  const Pose lying = tilted(0.25, 0.5 * 3.14159265358979 + slope);
+  EXPECT_EQ(contacts_on_floor(pool, taper, lying, kMargin).size(), 2U);
 }
 
 TEST(SupportShapes, that_are_round_rest_on_the_point_below) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 0.8, 0.3}}, ball), Status::ok);
-  const std::vector<ContactPoint> points = contacts_on_floor(pool, ball, 0.3, 0.0);
+  const std::vector<ContactPoint> points = contacts_on_floor(pool, ball, Pose::at(0, 0, 0.3), 0.02);
   ASSERT_EQ(points.size(), 1U);
   for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(points[0].position[axis], 0.0F, 1e-6F);
 }

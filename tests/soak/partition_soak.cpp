@@ -18,8 +18,8 @@ class PartitionSoak {
   SoakTally run();
 
  private:
-  /// What is told to a partition and to its model, one after the other, in each frame.
   void begin_lap();
+  /// What is told to a partition and to its model, one after the other, in each frame.
   void plan_frame(std::uint64_t frame);
   void come();
   void go();

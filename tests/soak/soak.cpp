@@ -4,9 +4,9 @@
 // Plays so many frames of objects that come, go and move on each structure, and of bodies in a
 // scene, beside slow twins; NAME is a structure's or `scene`, all if there is none. With --seconds
 // rounds of so many frames, with other seeds, go on until that time has passed. With --lap objects
-// do the same again after so many frames. Prints a line for
-// each, then one of JSON. Ends with 1 where an answer is not the twin's, a snapshot goes on
-// otherwise, a footprint is not what was asked for, or memory grows.
+// do the same again after so many frames. Prints a line for each, then one of JSON. Ends with 1
+// where an answer is not the twin's, a snapshot goes on otherwise, a footprint is not what was
+// asked for, or memory grows.
 
 #include <algorithm>
 #include <charconv>
