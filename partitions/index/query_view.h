@@ -13,8 +13,8 @@ namespace winnow {
 /// How queries see a partition: boxes in rows, and what leads to them. Every row lies either in a
 /// block of one of the trees or in the flat blocks, which are all looked at.
 struct QueryView {
-  /// Of the boxes: lower ends, then upper ends.
-  const float* column[6] = {};
+  /// Of the boxes: lower ends, then upper ends. Each query fills in all of them.
+  const float* column[6];
   const std::uint32_t* id = nullptr;
   FilterColumns filter;  ///< by row
   FilterSpan span;       ///< of all objects' filters

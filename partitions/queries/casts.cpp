@@ -22,8 +22,12 @@ namespace {
 class PreparedCast {
  public:
   explicit PreparedCast(const Cast& cast) noexcept {
-    valid_ = std::visit([](const auto& c) { return c.is_valid(); }, cast);
-    if (valid_) std::visit([this](const auto& c) { prepare(c); }, cast);
+    std::visit(
+        [this](const auto& c) {
+          valid_ = c.is_valid();
+          if (valid_) prepare(c);
+        },
+        cast);
   }
   PreparedCast(const PreparedCast&) = delete;
   PreparedCast& operator=(const PreparedCast&) = delete;

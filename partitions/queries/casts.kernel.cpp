@@ -11,9 +11,7 @@ template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
   const ExactSweepTest exact(sweep, view.column);
-  Floats enter;
-  Mask16 mask = probe.test(view.column, first_row, limit, enter);
-  mask = wanted.rows(first_row, mask);
+  Mask16 mask = wanted.rows(first_row, probe.test(view.column, first_row, limit));
   for (; mask != 0; mask &= mask - 1) {
     const unsigned lane = first(mask);
     const double t = exact.touch(sweep, first_row + lane);

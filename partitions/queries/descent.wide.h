@@ -10,21 +10,11 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The rows of a view as the filters want them.
-inline RowView row_view_of(const QueryView& view) {
-  RowView rows;
-  rows.id = view.id;
-  rows.filter = view.filter;
-  rows.environments = view.span.apart;
-  rows.span = view.span;
-  return rows;
-}
-
 /// Which candidates a query wants of nodes and rows.
 class Wanted {
  public:
   Wanted(const QueryView& view, const QueryFilter& filter)
-      : rows_(row_view_of(view)), filter_(filter) {}
+      : view_(view), filter_(filter) {}
 
   [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
@@ -33,7 +23,8 @@ class Wanted {
   }
   [[nodiscard]] Mask16 rows(std::uint32_t first_row, Mask16 candidates) const {
     if (!filter_.by_object) return candidates;
-    return passing_rows(rows_, first_row, candidates, range_of(filter_.object));
+    return passing_rows(view_.filter, view_.span.apart, first_row, candidates,
+                        range_of(filter_.object));
   }
   /// True if the caller has the last word.
   [[nodiscard]] bool asks_caller() const { return filter_.accept != nullptr; }
@@ -43,7 +34,7 @@ class Wanted {
   }
 
  private:
-  RowView rows_;
+  const QueryView& view_;
   const QueryFilter& filter_;
 };
 

@@ -22,21 +22,21 @@ void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, dou
   s.min_t = min_t;
   s.max_t = max_t;
   const Eigen::Vector3d speed = direction.cwiseAbs();
-  const int faster = speed.x() >= speed.y() ? 0 : 1;
-  const int fastest = speed[faster] >= speed.z() ? faster : 2;
+  const double most = speed.maxCoeff();
   // The power of two above the fastest: its exponent bits plus one.
-  const auto exponent = std::bit_cast<std::uint64_t>(speed[fastest]) >> 52U;
+  const auto exponent = std::bit_cast<std::uint64_t>(most) >> 52U;
   s.scale = std::bit_cast<double>((exponent + 1) << 52U);
   s.from = round_down(min_t * s.scale);
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis];
     const auto a = static_cast<std::uint8_t>(axis);
-    const auto low = static_cast<std::uint8_t>(axis);
-    const auto high = static_cast<std::uint8_t>(axis + 3);
-    s.near_column[a] = d < 0.0 ? high : low;
-    s.far_column[a] = d < 0.0 ? low : high;
-    s.near_origin[a] = d < 0.0 ? box.min[axis] : box.max[axis];
-    s.far_origin[a] = d < 0.0 ? box.max[axis] : box.min[axis];
+    // Which way it goes cannot be foreseen: no branch.
+    const auto back = static_cast<unsigned>(d < 0.0);
+    const float end[2] = {box.max[axis], box.min[axis]};
+    s.near_column[a] = static_cast<std::uint8_t>(a + 3 * back);
+    s.far_column[a] = static_cast<std::uint8_t>(a + 3 - 3 * back);
+    s.near_origin[a] = end[back];
+    s.far_origin[a] = end[1 - back];
     s.exact_near_column[a] = s.near_column[a];
     s.exact_near_origin[a] = static_cast<double>(s.near_origin[a]);
     s.exact_far_origin[a] = static_cast<double>(s.far_origin[a]);
@@ -50,9 +50,11 @@ void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, dou
       s.inverse[a] = kInfinity;
     }
   }
+  const double slow = kSlowest * s.scale;
+  if (speed.minCoeff() >= slow) return;
+  const int fastest = speed.x() == most ? 0 : speed.y() == most ? 1 : 2;
   for (int axis = 0; axis < 3; ++axis) {
-    const double part = speed[axis] / s.scale;
-    if (part == 0.0 || part >= kSlowest) continue;
+    if (speed[axis] == 0.0 || speed[axis] >= slow) continue;
     s.near_column[axis] = s.near_column[fastest];
     s.far_column[axis] = s.far_column[fastest];
     s.near_origin[axis] = s.near_origin[fastest];

@@ -35,16 +35,22 @@ class SweepTest {
 
   /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
   /// earliest; infinity for the others.
-  Mask16 test(const float* const* column, std::size_t at, float limit, Floats& enter) const {
+  [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at, float limit,
+                                     Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
                                   column[sweep_.near_column[2]]};
     const float* const far[3] = {column[sweep_.far_column[0]], column[sweep_.far_column[1]],
                                  column[sweep_.far_column[2]]};
     return test(near, far, at, limit, enter);
   }
+  /// Which of them alone.
+  Mask16 test(const float* const* column, std::size_t at, float limit) const {
+    Floats enter;
+    return test(column, at, limit, enter);
+  }
   /// The same where the columns that are met first and last are known.
-  Mask16 test(const float* const* near, const float* const* far, std::size_t at, float limit,
-              Floats& enter) const {
+  [[gnu::always_inline]] Mask16 test(const float* const* near, const float* const* far,
+                                     std::size_t at, float limit, Floats& enter) const {
     Floats e[3];
     Floats x[3];
     for (int i = 0; i < 3; ++i) {

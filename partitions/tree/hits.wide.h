@@ -69,18 +69,23 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
          sharing(Uints::load_unaligned(mask + at), q.layers);
 }
 
-/// Those of the candidate rows from `first_row` on, none of them empty, that `q` may meet.
-[[gnu::always_inline]] inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row,
-                                                  Mask16 candidates, const FilterRange& q) {
-  const FilterColumns& own = rows.filter;
+/// Those of the candidate rows from `first_row` on, none of them empty, that `q` may meet, by
+/// their filters; `environments` is false if all share one.
+[[gnu::always_inline]] inline Mask16 passing_rows(const FilterColumns& own, bool environments,
+                                                  std::uint32_t first_row, Mask16 candidates,
+                                                  const FilterRange& q) {
   if (own.layers == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
   // Without environments of their own objects are of the first one, or of all.
-  if (!rows.environments && q.first_environment == 0) return met;
+  if (!environments && q.first_environment == 0) return met;
   const Uints last = Uints::load_unaligned(own.environment + first_row);
   const Mask16 of_one = sharing(Uints(kEveryEnvironment) - last, ~0U);
   const Mask16 behind = above(last, q.last_environment) & of_one;
   return met & ~behind & ~below(last, q.first_environment);
+}
+[[gnu::always_inline]] inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row,
+                                                  Mask16 candidates, const FilterRange& q) {
+  return passing_rows(rows.filter, rows.environments, first_row, candidates, q);
 }
 
 /// Those of the candidates among 16 nodes from `first_node` of a level on that may hold something
