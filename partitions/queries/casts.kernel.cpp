@@ -140,7 +140,7 @@ void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const 
     const SweepTest probe(sweeps[s]);
     const float limit = scaled_limit(sweeps[s], sweeps[s].max_t);
     found[s] = kNoHit;
-    visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+    visit_in_row_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
       return test_rows(view, sweeps[s], probe, wanted, first_row, limit,
                        [&](double t, std::uint32_t id) {
                          if (!wanted.accepts(id)) return true;

@@ -13,8 +13,7 @@ namespace winnow::WINNOW_ISA_NAME {
 /// Which candidates a query wants of nodes and rows.
 class Wanted {
  public:
-  Wanted(const QueryView& view, const QueryFilter& filter)
-      : view_(view), filter_(filter) {}
+  Wanted(const QueryView& view, const QueryFilter& filter) : view_(view), filter_(filter) {}
 
   [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
@@ -111,6 +110,31 @@ class OpenNodes {
   float order_[kRoom];
   std::uint32_t node_[kRoom];
 };
+
+/// Visits all blocks that the probe reaches within a limit, in the order of rows.
+/// `visit(first_row)` returns false to end it.
+template <typename Probe, typename Visit>
+bool visit_in_row_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
+                        float limit, Visit&& visit) {
+  for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
+    if (!visit(block * kLanes)) return false;
+  }
+  for (std::uint32_t t = 0; t < view.trees; ++t) {
+    const TreeShape& tree = *view.tree[t];
+    const bool whole = traverse<kMaxTreeLevels>(
+        tree.levels,
+        [&](std::uint32_t level, std::uint32_t first_node) {
+          const Mask16 reached = probe.test(tree.node[level], first_node, limit);
+          return wanted.nodes(tree, level, first_node, reached);
+        },
+        [&](std::uint32_t level, std::uint32_t node) {
+          if (level != 0) return Next::below;
+          return visit((tree.first_block + node) * kLanes) ? Next::past : Next::stop;
+        });
+    if (!whole) return false;
+  }
+  return true;
+}
 
 /// Visits blocks about in the order in which the probe reaches their nodes, as far as `limit` says,
 /// which visiting may lower. `visit(first_row)` returns false to end the descent.
