@@ -68,11 +68,12 @@ class Closest {
   }
 
   void run() {
+    const int most = left_ == 1 ? kLoneRounds : kRounds;
     SweepRounds<NearestHits> rounds(view_, sweeps_, from_, limit_, wanted_, hits_);
     const float edge = view_.leaf_edge;
     // Without blocks to lead to them all rows are tested anyway.
     float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
-    for (int round = 0; round < kRounds && left_ != 0; ++round, stretch *= 4.0F) {
+    for (int round = 0; round < most && left_ != 0; ++round, stretch *= 4.0F) {
       for (std::uint32_t k = 0; k < left_; ++k) {
         const std::uint32_t s = open_[k];
         // A unit of scaled t is about a unit of length.
@@ -88,6 +89,8 @@ class Closest {
  private:
   static constexpr float kStretch = 0.4F;
   static constexpr int kRounds = 2;
+  // Of one alone, which has no others to do meanwhile.
+  static constexpr int kLoneRounds = 1;
 
   /// A sweep is finished where nothing is left of it, or what it hit lies before the end of the
   /// stretch by more than the rounding of the tests.

@@ -7,6 +7,7 @@
 #include "partitions/index/query_view.h"
 #include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
+#include "simd/lanes/positive.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -57,58 +58,100 @@ inline std::uint32_t order_of_rounded_down(double value) {
   return order_of(nearest) - (static_cast<double>(nearest) > value ? 1U : 0U);
 }
 
-/// The open nodes of a descent, each with the least order that lies below it. What it holds is
-/// bounded by the depth of the tree, 16 per level. Probe: `Mask16 test(columns, at, limit, Floats&
-/// order)` with order >= 0, and infinite in the lanes that fail.
+/// No order of a descent is larger; one that is means that there is none.
+inline constexpr float kMostOrder = 1e38F;
+
+/// The open nodes of a descent: of each level the last sixteen, of which those that were gone to
+/// come first by their keys. A key is a node's order but for its last four bits, which tell which
+/// of the sixteen it is; no two are equal, and none is denormal, which may count as zero. Probe:
+/// `Mask16 test(columns, at, limit, Floats& order)` with order in [0, kMostOrder], and infinite in
+/// the lanes that fail.
 template <typename Probe>
 class OpenNodes {
  public:
   /// `limit` may be lowered from visit to visit.
-  OpenNodes(const TreeShape& tree, const Probe& probe, const Wanted& wanted, const float& limit)
-      : tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
+  OpenNodes(const QueryView& view, const TreeShape& tree, const Probe& probe, const Wanted& wanted,
+            const float& limit)
+      : view_(view), tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
 
-  /// Only the nearest child is looked for; its siblings wait in no order, so that neither sorting
-  /// nor its branches are paid for nodes that the limit will rule out.
-  bool open(std::uint32_t level, std::uint32_t first_node, std::uint32_t& node) {
+  [[gnu::always_inline]] bool open(std::uint32_t level, std::uint32_t first_node,
+                                   std::uint32_t& node) {
     Floats order;
-    Mask16 mask = probe_.test(tree_.node[level], first_node, limit_, order);
-    mask = wanted_.nodes(tree_, level, first_node, mask);
+    const Mask16 met = probe_.test(tree_.node[level], first_node, limit_, order);
+    const Mask16 mask = wanted_.nodes(tree_, level, first_node, met);
     if (mask == 0) return false;
-    // The filter may have ruled the nearest out: then any will do.
-    const Mask16 least = bits(order <= reduce_min(order)) & mask;
-    const unsigned next = first(least != 0 ? least : mask);
-    add(mask & ~(1U << next), order, level, first_node);
-    node = first_node + next;
+    if (level == 0) fetch_rows(first_node, mask);
+    key_of(order).store(key_[level]);
+    if (mask != met) [[unlikely]]
+      leave_out(met & ~mask, key_[level]);
+    const std::uint32_t nearest = reduce_min_positive(Floats::load(key_[level]));
+    go_to(nearest, level);
+    first_node_[level] = first_node;
+    open_ |= ((mask & (mask - 1)) != 0 ? 1U : 0U) << level;
+    node = first_node + nearest % kLanes;
     return true;
   }
 
-  /// The last one added that lies within the limit.
-  bool take(std::uint32_t& level, std::uint32_t& node) {
-    while (size_ != 0) {
-      --size_;
-      if (order_[size_] > limit_) continue;
-      level = node_[size_] >> 28U;
-      node = node_[size_] & 0x0FFFFFFFU;
-      return true;
+  /// The nearest of the last ones that lies within the limit.
+  [[gnu::always_inline]] bool take(std::uint32_t& level, std::uint32_t& node) {
+    const std::uint32_t last = order_of(last_key());
+    while (open_ != 0) {
+      level = static_cast<std::uint32_t>(__builtin_ctz(open_));
+      const Floats key = Floats::load(key_[level]);
+      const Floats left = select(key > Floats(gone_to_[level]), key, Floats(kLargest<float>));
+      const std::uint32_t nearest = reduce_min_positive(left);
+      if (nearest <= last) {
+        go_to(nearest, level);
+        const Mask16 others = bits((key > Floats(gone_to_[level])) & (key <= Floats(kMostKey)));
+        open_ ^= (others == 0 ? 1U : 0U) << level;
+        node = first_node_[level] + nearest % kLanes;
+        return true;
+      }
+      open_ &= open_ - 1;
     }
     return false;
   }
 
  private:
-  static constexpr unsigned kRoom = kLanes * (kMaxTreeLevels + 1);
+  static constexpr float kLeastOrder = 0x1p-100F;
+  static constexpr float kMostKey = kMostOrder * (1.0F + 0x1p-18F);
 
-  void add(Mask16 mask, const Floats& order, std::uint32_t level, std::uint32_t first_node) {
-    compress_store(mask, order, order_ + size_);
-    size_ += compress_store(mask, count_from(level << 28U | first_node), node_ + size_);
+  static Floats key_of(const Floats& order) {
+    alignas(64) static constexpr std::uint32_t kEach[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                                8, 9, 10, 11, 12, 13, 14, 15};
+    const Floats positive =
+        smaller_positive(max(order, Floats(kLeastOrder)), Floats(kLargest<float>));
+    const Floats without_number(value_of(~(kLanes - 1U)));
+    return (positive & without_number) | Floats::load(reinterpret_cast<const float*>(kEach));
   }
+  /// No key of a node within the limit is larger.
+  [[nodiscard]] float last_key() const {
+    const float most = limit_ < kMostOrder ? limit_ : kMostOrder;
+    return value_of(order_of(most > kLeastOrder ? most : kLeastOrder) | (kLanes - 1U));
+  }
+  // By force: compilers leave out calls of functions that only ask for memory.
+  /// Asks for the rows of blocks that wait.
+  [[gnu::always_inline]] void fetch_rows(std::uint32_t first_block, Mask16 blocks) const {
+    for (; blocks != 0; blocks &= blocks - 1) {
+      const std::size_t block = tree_.first_block + first_block + first(blocks);
+      for (const float* const column : view_.column) __builtin_prefetch(column + block * kLanes);
+    }
+  }
+  static void leave_out(Mask16 lanes, float* key) {
+    for (; lanes != 0; lanes &= lanes - 1) key[first(lanes)] = kLargest<float>;
+  }
+  void go_to(std::uint32_t key, std::uint32_t level) { gone_to_[level] = value_of(key); }
 
+  const QueryView& view_;
   const TreeShape& tree_;
   const Probe& probe_;
   const Wanted& wanted_;
   const float& limit_;
-  unsigned size_ = 0;
-  float order_[kRoom];
-  std::uint32_t node_[kRoom];
+  /// A bit for each level of which some wait.
+  std::uint32_t open_ = 0;
+  std::uint32_t first_node_[kMaxTreeLevels];
+  float gone_to_[kMaxTreeLevels];
+  alignas(64) float key_[kMaxTreeLevels][kLanes];
 };
 
 /// Visits all blocks that the probe reaches within a limit, in the order of rows.
@@ -146,7 +189,7 @@ bool visit_in_order(const QueryView& view, const Probe& probe, const Wanted& wan
   }
   for (std::uint32_t t = 0; t < view.trees; ++t) {
     const TreeShape& tree = *view.tree[t];
-    OpenNodes<Probe> open(tree, probe, wanted, limit);
+    OpenNodes<Probe> open(view, tree, probe, wanted, limit);
     const bool whole = descend(tree.levels, open, [&](std::uint32_t node) {
       return visit((tree.first_block + node) * kLanes);
     });

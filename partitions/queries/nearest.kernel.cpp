@@ -22,9 +22,9 @@ class DistanceProbe {
       square = square + gap * gap;
     }
     const Floats below = square * 0.999999F;
-    order = or_infinity(below <= limit, below);
-    const Mask16 live = bits(box.low[0] <= kLargest<float>);
-    return bits(below <= limit) & live;
+    const LaneMask<float> near = (below <= limit) & (box.low[0] <= kLargest<float>);
+    order = or_infinity(near, min(below, kMostOrder));
+    return bits(near);
   }
 
  private:

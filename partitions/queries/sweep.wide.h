@@ -34,7 +34,7 @@ class SweepTest {
   }
 
   /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
-  /// earliest; infinity for the others.
+  /// earliest, or kMostOrder; infinity for the others.
   [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at, float limit,
                                      Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
@@ -63,7 +63,7 @@ class SweepTest {
     // The limit first: what is not a number, as padding can make, must not become the limit.
     const Floats last = min(Floats(limit), late);
     const Mask16 touched = bits(enter <= last);
-    enter = or_infinity(enter <= last, enter);
+    enter = or_infinity(enter <= last, min(enter, kMostOrder));
     return touched;
   }
 
