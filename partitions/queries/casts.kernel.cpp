@@ -51,63 +51,48 @@ class NearestHits {
   float* limit_;
 };
 
-/// Looks for hits along the first stretches of every sweep in rounds, and descends in order with
-/// what finds none there. A stretch reaches about as far as the first hits in a scene of even
-/// density.
+/// Looks for hits along the first stretch of all sweeps together, which reaches about as far as the
+/// first hits in a scene of even density, and descends in order with what finds none there.
 class Closest {
  public:
   Closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
           const QueryFilter& filter, std::uint64_t* best)
-      : view_(view), sweeps_(sweeps), wanted_(view, filter), hits_(sweeps, wanted_, best, limit_) {
-    for (left_ = 0; left_ < count; ++left_) {
-      best[left_] = kNoHit;
-      open_[left_] = left_;
-      from_[left_] = sweeps[left_].from;
-      last_[left_] = scaled_limit(sweeps[left_], sweeps[left_].max_t);
+      : view_(view),
+        sweeps_(sweeps),
+        wanted_(view, filter),
+        hits_(sweeps, wanted_, best, limit_),
+        count_(count) {
+    // Without blocks to lead to them all rows are tested anyway.
+    const float edge = view.leaf_edge;
+    const float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
+    for (std::uint32_t s = 0; s < count; ++s) {
+      best[s] = kNoHit;
+      from_[s] = sweeps[s].from;
+      last_[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
+      // A unit of scaled t is about a unit of length.
+      const float end = from_[s] + stretch;
+      end_[s] = limit_[s] = end < last_[s] ? end : last_[s];
     }
   }
 
   void run() {
-    const int most = left_ == 1 ? kLoneRounds : kRounds;
-    SweepRounds<NearestHits> rounds(view_, sweeps_, from_, limit_, wanted_, hits_);
-    const float edge = view_.leaf_edge;
-    // Without blocks to lead to them all rows are tested anyway.
-    float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
-    for (int round = 0; round < most && left_ != 0; ++round, stretch *= 4.0F) {
-      for (std::uint32_t k = 0; k < left_; ++k) {
-        const std::uint32_t s = open_[k];
-        // A unit of scaled t is about a unit of length.
-        const float end = from_[s] + stretch;
-        end_[s] = limit_[s] = end < last_[s] ? end : last_[s];
-      }
-      rounds.run(open_, left_);
-      drop_finished();
+    JointSweeps<NearestHits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
+    for (std::uint32_t s = 0; s < count_; ++s) {
+      if (!is_finished(s)) descend_on(s);
     }
-    for (std::uint32_t k = 0; k < left_; ++k) descend_on(open_[k]);
   }
 
  private:
   static constexpr float kStretch = 0.4F;
-  static constexpr int kRounds = 2;
-  // Of one alone, which has no others to do meanwhile.
-  static constexpr int kLoneRounds = 1;
 
-  /// A sweep is finished where nothing is left of it, or what it hit lies before the end of the
-  /// stretch by more than the rounding of the tests.
-  void drop_finished() {
-    std::uint32_t next = 0;
-    for (std::uint32_t k = 0; k < left_; ++k) {
-      const std::uint32_t s = open_[k];
-      const bool finished = limit_[s] < end_[s] || !(end_[s] < last_[s]);
-      from_[s] = end_[s];
-      open_[next] = s;
-      next += finished ? 0U : 1U;
-    }
-    left_ = next;
+  /// True where nothing is left of a sweep, or what it hit lies before the end of the stretch by
+  /// more than the rounding of the tests.
+  [[nodiscard]] bool is_finished(std::uint32_t s) const {
+    return limit_[s] < end_[s] || !(end_[s] < last_[s]);
   }
 
   void descend_on(std::uint32_t s) {
-    const SweepTest probe(sweeps_[s], from_[s]);
+    const SweepTest probe(sweeps_[s], end_[s]);
     float& limit = limit_[s];
     limit = last_[s];
     visit_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
@@ -123,8 +108,7 @@ class Closest {
   const Sweep* sweeps_;
   const Wanted wanted_;
   NearestHits hits_;
-  std::uint32_t left_ = 0;
-  std::uint32_t open_[kMostSweeps];
+  std::uint32_t count_;
   float from_[kMostSweeps];
   float limit_[kMostSweeps];
   float end_[kMostSweeps];
@@ -187,7 +171,7 @@ bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
     limit[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
   }
   AllHits hits(wanted, question, sink);
-  return SweepRounds<AllHits>(view, sweeps, from, limit, wanted, hits).run(nullptr, count);
+  return JointSweeps<AllHits>(view, sweeps, from, limit, wanted, hits).run(count);
 }
 
 /// Every element's place is counted, 16 comparisons at once, with no branch that depends on the

@@ -126,30 +126,29 @@ class ExactSweepTest {
 /// `Hits` takes what is touched: `void touched(sweep, t, id)`, and `bool make_room()` before 128 of
 /// them at most, which returns false to end the traversal.
 template <typename Hits>
-class SweepRounds {
+class JointSweeps {
  public:
   /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower a limit.
-  SweepRounds(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
+  JointSweeps(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
               const Wanted& wanted, Hits& hits)
       : view_(view), sweeps_(sweeps), from_(from), limit_(limit), wanted_(wanted), hits_(hits) {}
 
-  /// Sweeps [0, count), or those of a list.
-  bool run(const std::uint32_t* list, std::uint32_t count) {
-    const auto sweep_of = [&](std::uint32_t k) { return list != nullptr ? list[k] : k; };
+  /// Sweeps [0, count).
+  bool run(std::uint32_t count) {
     for (std::uint32_t t = 0; t < view_.trees; ++t) {
       tree_ = view_.tree[t];
-      if (!traversal_.run(*tree_, count, sweep_of)) return false;
+      if (!traversal_.run(*tree_, count, [](std::uint32_t s) { return s; })) return false;
     }
     for (std::uint32_t block = 0; block < view_.flat_blocks; ++block) {
-      for (std::uint32_t k = 0; k < count; ++k) {
-        if (!test_flat(sweep_of(k), block * kLanes)) return false;
+      for (std::uint32_t s = 0; s < count; ++s) {
+        if (!test_flat(s, block * kLanes)) return false;
       }
     }
     return touch_rows();
   }
 
  private:
-  friend JointTraversal<SweepRounds>;
+  friend JointTraversal<JointSweeps>;
   static constexpr unsigned kHitsAtOnce = 128;
   // Blocks of rows lie in six columns, anywhere: they are fetched so many tests before their turn.
   static constexpr unsigned kAhead = 6;
@@ -227,7 +226,7 @@ class SweepRounds {
   const float* limit_;
   const Wanted& wanted_;
   Hits& hits_;
-  JointTraversal<SweepRounds> traversal_{*this};
+  JointTraversal<JointSweeps> traversal_{*this};
   OpenList rows_;
 };
 
