@@ -135,6 +135,9 @@ class PairBuckets {
     }
   };
 
+  Status take_one(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                  std::span<const BodyPair> pair, Column<std::uint32_t>& order,
+                  Column<NarrowRun>& runs, std::uint32_t& bad_body);
   template <typename Body>
   void for_looks(std::span<const BodyPair> pairs, const Execution& execution, Body&& body);
   template <typename Note>
@@ -165,9 +168,10 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   runs.clear();
   any_mirrored_ = false;
   pairs_ = pairs.data();
+  if (shapes.size() >= kTopBit) return Status::invalid_argument;
+  if (pairs.size() == 1) return take_one(tables, shapes, pairs, order, runs, bad_body);
   std::ranges::fill(counts_, 0U);
   there_ = {};
-  if (shapes.size() >= kTopBit) return Status::invalid_argument;
   // A scene of one kind needs no look at every pair, unless these are few among many bodies.
   constexpr std::size_t kLook = 8;  // at a pair takes as long as at so many bodies
   const std::uint32_t only =
@@ -200,6 +204,31 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   });
   pairs_ = sorted_.data();
   return add_runs(runs);
+}
+
+// Counting takes several times as long as answering one pair of simple shapes.
+Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                             std::span<const BodyPair> pair, Column<std::uint32_t>& order,
+                             Column<NarrowRun>& runs, std::uint32_t& bad_body) {
+  BodyPair own = pair.front();
+  if (own.a >= shapes.size() || own.b >= shapes.size()) return Status::invalid_argument;
+  for (const std::uint32_t body : {own.a, own.b}) {
+    const std::uint32_t kind = shapes[body].kind_index();
+    if (kind < kShapeKinds && shapes[body].index() < tables.count[kind]) continue;
+    bad_body = body;
+    return Status::invalid_key;
+  }
+  any_mirrored_ = shapes[own.a].kind_index() > shapes[own.b].kind_index();
+  if (any_mirrored_) {
+    std::swap(own.a, own.b);
+    if (!sorted_.resize(1)) return Status::out_of_memory;
+    sorted_[0] = own;
+    pairs_ = sorted_.data();
+  }
+  if (!order.resize(1)) return Status::out_of_memory;
+  order[0] = 0;
+  const NarrowRun run{shapes[own.a].kind(), shapes[own.b].kind(), 0, 1};
+  return runs.push_back(run) ? Status::ok : Status::out_of_memory;
 }
 
 // Calls body(pairs, the number of the first, look) for each stretch of the pairs.
@@ -361,7 +390,8 @@ struct Chunk {
 /// Chunks that are answered together. A call of few pairs makes no more than it needs.
 class Wave {
  public:
-  [[nodiscard]] Chunk& add() noexcept { return *std::construct_at(first() + size_++); }
+  /// The job is the caller's to fill in: to make it zero takes as long as some answers do.
+  [[nodiscard]] Chunk& add() noexcept { return *new (first() + size_++) Chunk; }
   void clear() noexcept { size_ = 0; }
   [[nodiscard]] bool full() const noexcept { return size_ == kWave; }
   [[nodiscard]] std::span<Chunk> chunks() noexcept { return {first(), size_}; }
@@ -595,13 +625,16 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   }
   job.contact_first = offset(result.contact_first_.data(), first);
   job.contact_count = offset(result.contact_count_.data(), first);
+  job.contacts = {};
 }
 
 bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
                                      NarrowResult& result) {
   const bool manifold = call.options.level == ContactLevel::manifold;
   const bool any_mirrored = buckets.any_mirrored();
-  if (!manifold) {
+  if (!manifold && wave.size() == 1) {
+    call.answer(wave.front(), result, any_mirrored);
+  } else if (!manifold) {
     call.options.execution.for_each(
         wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {

@@ -40,6 +40,9 @@ NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
       contacts_(memory) {}
 
 bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
+  contacts_.set_size(0);
+  // After a call that was refused it is empty.
+  if (count != 0 && count == size() && level == level_) return true;
   const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };
   bool ok = resize_steadily(overlap_, size_of(!distances)) &&
@@ -52,7 +55,6 @@ bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
   const bool manifolds = level == ContactLevel::manifold;
   ok = ok && resize_steadily(contact_first_, size_of(manifolds)) &&
        resize_steadily(contact_count_, size_of(manifolds));
-  contacts_.set_size(0);
   level_ = level;
   return ok;
 }
