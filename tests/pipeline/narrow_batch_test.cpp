@@ -106,6 +106,32 @@ TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
   }
 }
 
+TEST_F(Batches, a_pair_by_itself_is_answered_as_among_others) {
+  NarrowPhase phase;
+  NarrowResult result;
+  for (const NarrowTier tier : kTiers) {
+    const auto options_of = [tier](ContactLevel level) {
+      return NarrowOptions{.level = level, .tier = tier, .margin = kMargin};
+    };
+    std::vector<std::vector<PairAnswers>> together;
+    for (const ContactLevel level : kLevels) together.push_back(ask(scene_, options_of(level)));
+    std::vector<PairAnswers> alone;
+    std::vector<PairAnswers> expected;
+    // The levels take turns in one result.
+    for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
+      const std::size_t level = i / 2 % 3;
+      ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), {&scene_.pairs[i], 1},
+                              options_of(kLevels[level]), result),
+                Status::ok);
+      ASSERT_EQ(result.size(), 1U);
+      ASSERT_EQ(result.level(), kLevels[level]);
+      alone.push_back(answers_of(result, 1).front());
+      expected.push_back(together[level][i]);
+    }
+    expect_same(expected, alone, "alone");
+  }
+}
+
 TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
   constexpr std::size_t kMany = 50000;  // several tasks sort them
   const std::size_t few = scene_.pairs.size();

@@ -108,6 +108,28 @@ TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
   }
 }
 
+TEST_F(NarrowInput, a_pair_by_itself_is_refused_as_among_others) {
+  const auto body = static_cast<std::uint32_t>(scene_.shapes.size());
+  scene_.shapes.insert(scene_.shapes.end(), {ShapeId{}, ShapeId::of(ShapeKind::box, 1U << 20U)});
+  scene_.poses.resize(scene_.shapes.size());
+  for (const std::uint32_t other : {0U, body, body + 1, body + 2, ~0U}) {
+    for (const BodyPair pair : {BodyPair{body, other}, BodyPair{other, body}, BodyPair{1, other},
+                                BodyPair{other, body + 1}}) {
+      const BodyPair twice[] = {pair, pair};
+      const Status alone = phase_.collide(scene_.pool, scene_.bodies(), {&pair, 1}, {}, result_);
+      EXPECT_EQ(alone, phase_.collide(scene_.pool, scene_.bodies(), twice, {}, result_));
+    }
+  }
+  for (const BodyPair pair : {BodyPair{0, body}, BodyPair{body, 0}, BodyPair{body, body + 1}}) {
+    scene_.pairs = {pair};
+    expect_refused(Status::invalid_key);
+    EXPECT_EQ(phase_.bad_body(), body);
+  }
+  scene_.pairs = {{0, body + 2}};
+  expect_refused(Status::invalid_argument);
+  EXPECT_EQ(phase_.bad_body(), ~0U);
+}
+
 TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) {
   constexpr std::size_t kMany = 100000;  // several tasks look at them
   const std::vector<BodyPair> few = scene_.pairs;
