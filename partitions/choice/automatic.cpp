@@ -29,7 +29,7 @@ constexpr std::size_t kQuietFrames = 16;
 // Of so few objects a frame takes little longer than thinking about it: that is done in one of so
 // many.
 constexpr std::size_t kFew = 192;
-constexpr std::size_t kFewFrames = 4;
+constexpr std::size_t kFewFrames = 8;
 // Refreshes that pass before memory that was refused is asked for again.
 constexpr std::size_t kPatience = 64;
 // Objects up to which brute force cannot lose by more than thinking about it costs.
