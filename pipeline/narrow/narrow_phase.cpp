@@ -206,7 +206,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   return add_runs(runs);
 }
 
-// Counting takes several times as long as answering one pair of simple shapes.
+// Of one pair there is nothing to count, which takes several times as long as some answers do.
 Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId> shapes,
                              std::span<const BodyPair> pair, Column<std::uint32_t>& order,
                              Column<NarrowRun>& runs, std::uint32_t& bad_body) {

@@ -104,6 +104,34 @@ TEST_P(Nearest, objects_are_found_while_objects_come_go_and_move) {
   }
 }
 
+// Squares of distances are beyond floats, or denormal, or distances are.
+TEST_P(Nearest, objects_of_some_layers_are_found_at_any_scale) {
+  HitBuffer buffer;
+  Random random(11);
+  for (const float scale : {1e30F, 1e-30F, 1e-41F}) {
+    World world(config());
+    std::vector<Aabb> boxes = mixed_boxes(900);
+    for (Aabb& box : boxes) {
+      for (Vec3f* const end : {&box.min, &box.max}) {
+        for (int axis = 0; axis < 3; ++axis) (*end)[axis] *= scale;
+      }
+    }
+    const std::vector<Key> keys = world.insert(boxes);
+    std::vector<Object> wanted = world.objects();
+    for (std::size_t i = 0; i < keys.size(); i += 3) {
+      world.set_filter(keys[i], {.layers = 2});
+      std::erase_if(wanted, [&](const Object& object) { return object.id == keys[i].id; });
+    }
+    Filter filter;
+    filter.mask = ~2U;
+    for (const Question& q : some_questions(boxes, scaled(16), random)) {
+      SCOPED_TRACE(to_string(q));
+      ASSERT_TRUE(right_nearest(ask(world, q, buffer, filter), q.from, q.count, q.radius, wanted,
+                                world.partition()));
+    }
+  }
+}
+
 TEST_P(Nearest, of_equal_distance_come_by_id) {
   World world(config());
   world.insert(std::vector<Aabb>(100, {Vector3f::Ones(), Vector3f::Constant(2)}));
