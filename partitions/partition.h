@@ -268,7 +268,7 @@ class WINNOW_API Partition final {
   /// The same for many rays at once, which share the work where they are alike. One bad ray makes
   /// the whole batch `invalid_argument`.
   Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
-  /// Any one hit of each ray; the same bad rays are refused. What is found is the closest one.
+  /// Any one hit of each ray, the same on any number of threads; the same bad rays are refused.
   Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
   /// All hits of each ray, sorted by t: `hits.of(i)` are those of ray i.
   Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const;

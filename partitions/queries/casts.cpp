@@ -159,6 +159,35 @@ Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hi
   return Status::ok;
 }
 
+Status find_hits(const PartitionState& state, FindHits find, const RayBatch& rays,
+                 const HitColumns& hits, const Filter& filter) {
+  if (!all_valid(rays)) return Status::invalid_argument;
+  QueryView view;
+  if (const Status status = state.prepare(QueryKind::casts, rays.count, view);
+      status != Status::ok) {
+    return status;
+  }
+  const KeyTable& keys = state.rows.keys();
+  const KernelFilter wanted(filter, view, keys);
+  if (wanted.meets_nothing()) {
+    for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
+    return Status::ok;
+  }
+  // Small tasks, so that a batch of some thousands has work for every thread.
+  constexpr std::size_t kTask = kGroup / 4;
+  state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
+    RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
+    std::array<std::uint64_t, kMostSweeps> found;
+    while (group.next()) {
+      find(view, group.sweeps(), group.count(), wanted.wanted(), found.data());
+      for (std::uint32_t i = 0; i < group.count(); ++i) {
+        write_columns(hits, group.questions()[i], hit_or_null(keys, found[i]));
+      }
+    }
+  });
+  return Status::ok;
+}
+
 }  // namespace
 
 Status Partition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
@@ -173,37 +202,12 @@ Status Partition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
 
 Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
                           const Filter& filter) const {
-  if (state_ == nullptr) return status_;
-  if (!all_valid(rays)) return Status::invalid_argument;
-  QueryView view;
-  if (const Status status = state_->prepare(QueryKind::casts, rays.count, view);
-      status != Status::ok) {
-    return status;
-  }
-  const KeyTable& keys = state_->rows.keys();
-  const KernelFilter wanted(filter, view, keys);
-  if (wanted.meets_nothing()) {
-    for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
-    return Status::ok;
-  }
-  // Small tasks, so that a batch of some thousands has work for every thread.
-  constexpr std::size_t kTask = kGroup / 4;
-  state_->rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
-    RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
-    std::array<std::uint64_t, kMostSweeps> best;
-    while (group.next()) {
-      cast_kernels().closest(view, group.sweeps(), group.count(), wanted.wanted(), best.data());
-      for (std::uint32_t i = 0; i < group.count(); ++i) {
-        write_columns(hits, group.questions()[i], hit_or_null(keys, best[i]));
-      }
-    }
-  });
-  return Status::ok;
+  return state_ == nullptr ? status_
+                           : find_hits(*state_, cast_kernels().closest, rays, hits, filter);
 }
 
 Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
-  // Traversed together, the closest hit comes as cheap as any.
-  return closest(rays, hits, filter);
+  return state_ == nullptr ? status_ : find_hits(*state_, cast_kernels().any, rays, hits, filter);
 }
 
 Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {

@@ -51,22 +51,45 @@ class NearestHits {
   float* limit_;
 };
 
-/// Looks for hits along the first stretch of all sweeps together, which reaches about as far as the
-/// first hits in a scene of even density, and descends in order with what finds none there.
-class Closest {
+/// Keeps one hit of every sweep, whichever is found first, and asks for no more of that sweep.
+class AnyHits {
  public:
-  Closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
-          const QueryFilter& filter, std::uint64_t* best)
+  AnyHits(const Sweep*, const Wanted& wanted, std::uint64_t* found, float* limit)
+      : wanted_(wanted), found_(found), limit_(limit) {}
+
+  static bool make_room() { return true; }
+  void touched(std::uint32_t s, double t, std::uint32_t id) {
+    if (found_[s] != kNoHit || !wanted_.accepts(id)) return;
+    found_[s] = hit_of(t, id);
+    limit_[s] = kBeforeAll;
+  }
+
+ private:
+  // No sweep begins before 0.
+  static constexpr float kBeforeAll = -1.0F;
+
+  const Wanted& wanted_;
+  std::uint64_t* found_;
+  float* limit_;
+};
+
+/// Looks for hits along the first stretch of all sweeps together, which reaches about as far as the
+/// first hits in a scene of even density, and goes on with each sweep that found none there.
+template <typename Hits>
+class StretchAndRest {
+ public:
+  StretchAndRest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
+                 const QueryFilter& filter, std::uint64_t* found)
       : view_(view),
         sweeps_(sweeps),
         wanted_(view, filter),
-        hits_(sweeps, wanted_, best, limit_),
+        hits_(sweeps, wanted_, found, limit_),
         count_(count) {
     // Without blocks to lead to them all rows are tested anyway.
     const float edge = view.leaf_edge;
     const float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
-      best[s] = kNoHit;
+      found[s] = kNoHit;
       from_[s] = sweeps[s].from;
       last_[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
       // A unit of scaled t is about a unit of length.
@@ -75,10 +98,22 @@ class Closest {
     }
   }
 
-  void run() {
-    JointSweeps<NearestHits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
+  /// `go_on(sweep, probe, limit, test)` visits blocks of rows by `test(first_row)`.
+  template <typename GoOn>
+  void run(GoOn&& go_on) {
+    JointSweeps<Hits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
     for (std::uint32_t s = 0; s < count_; ++s) {
-      if (!is_finished(s)) descend_on(s);
+      if (is_finished(s)) continue;
+      const SweepTest probe(sweeps_[s], end_[s]);
+      float& limit = limit_[s];
+      limit = last_[s];
+      go_on(probe, wanted_, limit, [&](std::uint32_t first_row) {
+        return test_rows(view_, sweeps_[s], probe, wanted_, first_row, limit,
+                         [&](double t, std::uint32_t id) {
+                           hits_.touched(s, t, id);
+                           return limit >= 0.0F;
+                         });
+      });
     }
   }
 
@@ -91,23 +126,10 @@ class Closest {
     return limit_[s] < end_[s] || !(end_[s] < last_[s]);
   }
 
-  void descend_on(std::uint32_t s) {
-    const SweepTest probe(sweeps_[s], end_[s]);
-    float& limit = limit_[s];
-    limit = last_[s];
-    visit_in_order(view_, probe, wanted_, limit, [&](std::uint32_t first_row) {
-      return test_rows(view_, sweeps_[s], probe, wanted_, first_row, limit,
-                       [&](double t, std::uint32_t id) {
-                         hits_.touched(s, t, id);
-                         return true;
-                       });
-    });
-  }
-
   const QueryView& view_;
   const Sweep* sweeps_;
   const Wanted wanted_;
-  NearestHits hits_;
+  Hits hits_;
   std::uint32_t count_;
   float from_[kMostSweeps];
   float limit_[kMostSweeps];
@@ -117,25 +139,35 @@ class Closest {
 
 void closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
              const QueryFilter& filter, std::uint64_t* best) {
-  Closest(view, sweeps, count, filter, best).run();
+  StretchAndRest<NearestHits>(view, sweeps, count, filter, best)
+      .run([&](const SweepTest& probe, const Wanted& wanted, const float& limit, auto&& test) {
+        visit_in_order(view, probe, wanted, limit, test);
+      });
+}
+
+/// One sweep has no others to go with.
+void any_of_one(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
+                std::uint64_t& found) {
+  const Wanted wanted(view, filter);
+  const SweepTest probe(sweep);
+  const float limit = scaled_limit(sweep, sweep.max_t);
+  found = kNoHit;
+  visit_in_row_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](double t, std::uint32_t id) {
+      if (!wanted.accepts(id)) return true;
+      found = hit_of(t, id);
+      return false;
+    });
+  });
 }
 
 void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const QueryFilter& filter,
          std::uint64_t* found) {
-  const Wanted wanted(view, filter);
-  for (std::uint32_t s = 0; s < count; ++s) {
-    const SweepTest probe(sweeps[s]);
-    const float limit = scaled_limit(sweeps[s], sweeps[s].max_t);
-    found[s] = kNoHit;
-    visit_in_row_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-      return test_rows(view, sweeps[s], probe, wanted, first_row, limit,
-                       [&](double t, std::uint32_t id) {
-                         if (!wanted.accepts(id)) return true;
-                         found[s] = hit_of(t, id);
-                         return false;
-                       });
-    });
-  }
+  if (count == 1) return any_of_one(view, sweeps[0], filter, found[0]);
+  StretchAndRest<AnyHits>(view, sweeps, count, filter, found)
+      .run([&](const SweepTest& probe, const Wanted& wanted, float limit, auto&& test) {
+        visit_in_row_order(view, probe, wanted, limit, test);
+      });
 }
 
 /// Writes every hit.

@@ -45,6 +45,18 @@ std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
   return rays;
 }
 
+/// One hit of each of some rays.
+struct FoundOfEach {
+  explicit FoundOfEach(std::size_t rays) : key(rays), data(rays), t(rays) {}
+
+  HitColumns columns() { return {key.data(), data.data(), t.data()}; }
+  Hit operator[](std::size_t i) const { return {key[i], data[i], t[i]}; }
+
+  std::vector<Key> key;
+  std::vector<ClientData> data;
+  std::vector<float> t;
+};
+
 std::vector<ClientData> data_for(std::size_t count) {
   std::vector<ClientData> data;
   for (std::size_t i = 0; i < count; ++i) data.push_back(~ClientData{0} - 3 * i);
@@ -79,11 +91,8 @@ TEST_P(Casts, of_a_batch_are_those_of_single_rays) {
     world.insert(set.boxes, data_for(set.boxes.size()));
     const Partition& p = world.partition();
     const std::vector<Ray> rays = rays_among(set.casts);
-    std::vector<Key> keys(rays.size());
-    std::vector<ClientData> data(rays.size());
-    std::vector<float> t(rays.size());
-    const HitColumns columns{keys.data(), data.data(), t.data()};
-    const auto hit = [&](std::size_t i) { return Hit{keys[i], data[i], t[i]}; };
+    FoundOfEach hit(rays.size());
+    const HitColumns columns = hit.columns();
     ASSERT_EQ(world.threads().run([&] { return p.all(RayBatch(rays), batch); }), Status::ok);
     ASSERT_EQ(batch.questions(), rays.size());
     ASSERT_EQ(world.threads().run([&] { return p.closest(RayBatch(rays), columns); }), Status::ok);
@@ -92,12 +101,12 @@ TEST_P(Casts, of_a_batch_are_those_of_single_rays) {
       SCOPED_TRACE(to_string(Cast(rays[i])));
       const Hits all = all_of(world, rays[i], single);
       ASSERT_TRUE(same_hits(batch.of(i), all));
-      ASSERT_TRUE(is_first_of(hit(i), all));
+      ASSERT_TRUE(is_first_of(hit[i], all));
       total += all.size();
     }
     ASSERT_EQ(batch.size(), total);
     ASSERT_EQ(world.threads().run([&] { return p.any(RayBatch(rays), columns); }), Status::ok);
-    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is_any_of(hit(i), batch.of(i)));
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(is_any_of(hit[i], batch.of(i)));
   }
 }
 
@@ -126,17 +135,35 @@ TEST_P(Casts, of_a_batch_may_be_columns_and_want_only_some_columns_back) {
   ASSERT_EQ(p.all(batch, got), Status::ok);
   EXPECT_TRUE(same_hits(got.hits(), expected.hits()));
   ASSERT_FALSE(got.empty());
-  std::vector<Key> keys(rays.size());
-  std::vector<ClientData> data(rays.size());
-  std::vector<float> t(rays.size());
-  ASSERT_EQ(p.closest(batch, {.key = keys.data()}), Status::ok);
-  ASSERT_EQ(p.closest(batch, {.data = data.data()}), Status::ok);
-  ASSERT_EQ(p.closest(batch, {.t = t.data()}), Status::ok);
+  FoundOfEach hit(rays.size());
+  ASSERT_EQ(p.closest(batch, {.key = hit.key.data()}), Status::ok);
+  ASSERT_EQ(p.closest(batch, {.data = hit.data.data()}), Status::ok);
+  ASSERT_EQ(p.closest(batch, {.t = hit.t.data()}), Status::ok);
   ASSERT_EQ(p.closest(batch, {}), Status::ok);
   ASSERT_EQ(p.any(batch, {}), Status::ok);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_TRUE(is_first_of({keys[i], data[i], t[i]}, expected.of(i))) << i;
+    EXPECT_TRUE(is_first_of(hit[i], expected.of(i))) << i;
   }
+}
+
+// Which of many hits is taken depends on no number of threads.
+TEST_P(Casts, any_hits_of_a_batch_are_those_that_one_thread_finds) {
+  const std::vector<Aabb> boxes = mixed_boxes(2000);
+  Random random(9);
+  const std::vector<Ray> rays = plain_rays(boxes, 3000, random);
+  const auto data_found = [&](const Config& config) {
+    World world(config);
+    world.insert(boxes, data_for(boxes.size()));
+    std::vector<ClientData> data(rays.size());
+    const Status status = world.threads().run(
+        [&] { return world.partition().any(RayBatch(rays), {.data = data.data()}); });
+    EXPECT_EQ(status, Status::ok);
+    return data;
+  };
+  Config alone = config();
+  alone.threads = 1;
+  alone.host = {};
+  EXPECT_TRUE(data_found(config()) == data_found(alone));
 }
 
 TEST_P(Casts, of_an_empty_batch_are_none) {
@@ -226,8 +253,14 @@ TEST_P(Casts, with_a_predicate_find_what_it_lets_pass) {
   const std::vector<Ray> rays = rays_among(casts);
   HitBuffer batch;
   ASSERT_EQ(world.partition().all(RayBatch(rays), batch, filter), Status::ok);
+  FoundOfEach closest(rays.size());
+  FoundOfEach any(rays.size());
+  ASSERT_EQ(world.partition().closest(RayBatch(rays), closest.columns(), filter), Status::ok);
+  ASSERT_EQ(world.partition().any(RayBatch(rays), any.columns(), filter), Status::ok);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_TRUE(same_hits(batch.of(i), all_of(world, rays[i], buffer, filter)));
+    ASSERT_TRUE(is_first_of(closest[i], batch.of(i)));
+    ASSERT_TRUE(is_any_of(any[i], batch.of(i)));
   }
 }
 
