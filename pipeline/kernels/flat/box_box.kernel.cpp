@@ -193,6 +193,16 @@ struct BoxBox {
     return ~certified;
   }
 
+  // The lanes of boxes that overlap although edges are parallel, whose products have no sign. Out
+  // of line: boxes that are turned any way do not come here.
+  template <typename T>
+  [[gnu::noinline]] static Mask16 overlap_of_parallel(const BoxPair<T>& pair,
+                                                      const Lanes<T>& face) {
+    Lanes<T> left_out;
+    const Lanes<T> s = max(face, largest_crossed_separation(pair, left_out));
+    return bits(s + left_out < -(pair.scale * Lanes<T>(kFlatSlack<T>)));
+  }
+
   // The lanes that what is measured tells apart or together, and those of boxes that overlap: for
   // the few blocks with boxes that hardly touch or hardly miss each other.
   template <typename T>
@@ -217,7 +227,13 @@ struct BoxBox {
       over = bits(s < -slack);
       known = over | bits(s > reach);
     }
-    const Mask16 unknown = ~known & valid & block.lanes();
+    Mask16 unknown = ~known & valid & block.lanes();
+    if (unknown != 0) {
+      const Mask16 inside = overlap_of_parallel(pair, face) & unknown;
+      known |= inside;
+      over |= inside;
+      unknown &= ~inside;
+    }
     if (unknown != 0) {
       Mask16 settled_over = 0;
       known |= settle(pair, settled_over) & unknown;

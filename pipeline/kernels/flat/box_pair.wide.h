@@ -82,6 +82,16 @@ struct BoxPair {
     const Lanes<T> reach_b = half_b[m] * abs(turn[i][n]) + half_b[n] * abs(turn[i][m]);
     return apart - (reach_a + reach_b);
   }
+  /// Square of the length of the product of two axes.
+  [[gnu::always_inline]] Lanes<T> sine_square(int i, int j) const {
+    const Lanes<T>& k = turn[(i + 1) % 3][j];
+    const Lanes<T>& l = turn[(i + 2) % 3][j];
+    return k * k + l * l;
+  }
+  /// How far edge j of b reaches across axis i of a.
+  [[gnu::always_inline]] Lanes<T> reach_across(int i, int j) const {
+    return half_b[j] * (abs(turn[(i + 1) % 3][j]) + abs(turn[(i + 2) % 3][j]));
+  }
   /// Along any unit vector from a to b, in the frame of a.
   [[gnu::always_inline]] Lanes<T> along(const Lanes<T> (&n)[3]) const {
     Lanes<T> reach = abs(n[0]) * half_a[0] + abs(n[1]) * half_a[1] + abs(n[2]) * half_a[2];
@@ -120,6 +130,23 @@ template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest_edge_separation(const BoxPair<T>& pair) {
   Lanes<T> s = pair.edges(0, 0);
   for (int k = 1; k < 9; ++k) s = max(s, pair.edges(k / 3, k % 3));
+  return s;
+}
+
+/// The same without the products of parallel edges, whose sign tells nothing; `left_out` is as
+/// `offer_edges` returns it.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> largest_crossed_separation(const BoxPair<T>& pair,
+                                                                  Lanes<T>& left_out) {
+  Lanes<T> s = -pair.scale;
+  left_out = Lanes<T>(T(0));
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const LaneMask<T> crossed = pair.sine_square(i, j) > Lanes<T>(kParallelSquare<T>);
+      s = max(s, select(crossed, pair.edges(i, j), s));
+      left_out = max(left_out, select(crossed, left_out, pair.reach_across(i, j)));
+    }
+  }
   return s;
 }
 
@@ -163,32 +190,23 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> offer_edges(const BoxPair<T>& pair, const Lanes<T>& slack,
                                                    BestAxis<T>& best) {
-  Lanes<T> square[3][3];
-  for (int k = 0; k < 9; ++k)
-    square[k / 3][k % 3] = pair.turn[k / 3][k % 3] * pair.turn[k / 3][k % 3];
-  Lanes<T> least = square[1][0] + square[2][0];
-  for (int k = 1; k < 9; ++k) {
-    const int i = k / 3;
-    least = min(least, square[(i + 1) % 3][k % 3] + square[(i + 2) % 3][k % 3]);
-  }
+  Lanes<T> least = pair.sine_square(0, 0);
+  for (int k = 1; k < 9; ++k) least = min(least, pair.sine_square(k / 3, k % 3));
   const Lanes<T> parallel(kParallelSquare<T>);
   Lanes<T> left_out(T(0));
   if (bits(least > parallel) == kAllLanes<T>) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        best.offer(pair.edges(i, j) + slack, square[(i + 1) % 3][j] + square[(i + 2) % 3][j],
-                   6 + 3 * i + j);
+        best.offer(pair.edges(i, j) + slack, pair.sine_square(i, j), 6 + 3 * i + j);
       }
     }
     return left_out;
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const Lanes<T> length2 = square[(i + 1) % 3][j] + square[(i + 2) % 3][j];
+      const Lanes<T> length2 = pair.sine_square(i, j);
       const LaneMask<T> crossed = length2 > parallel;
-      const Lanes<T> reach =
-          pair.half_b[j] * (abs(pair.turn[(i + 1) % 3][j]) + abs(pair.turn[(i + 2) % 3][j]));
-      left_out = max(left_out, select(crossed, Lanes<T>(T(0)), reach));
+      left_out = max(left_out, select(crossed, Lanes<T>(T(0)), pair.reach_across(i, j)));
       best.offer(select(crossed, pair.edges(i, j) + slack, -pair.scale),
                  select(crossed, length2, Lanes<T>(T(1))), 6 + 3 * i + j);
     }
