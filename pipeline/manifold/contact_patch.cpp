@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace winnow {
 
@@ -198,10 +199,10 @@ std::uint32_t flat_contacts(const FlatPatch& a, const FlatPatch& b, const double
   return contact_patch(view(a), view(b), normal, margin, out);
 }
 
-void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
-                   double point[3]) noexcept {
+double deepest_point(const Patch& a, const Patch& b, const double normal[3],
+                     double point[3]) noexcept {
   const PatchFrame frame(normal);
-  const Outline outline[2] = {{view(a), frame, 1.0}, {view(b), frame, -1.0}};
+  const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
   PatchMeetings m(kSamePlace * std::max(outline[0].size, outline[1].size));
   find_meetings(outline[0], outline[1], m);
   const PatchMeeting* best = m.point;
@@ -213,6 +214,13 @@ void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3
     point[r] = best->x * frame.axis[0][r] + best->y * frame.axis[1][r] +
                best->height[0] * frame.axis[2][r];
   }
+  const bool meets = m.apart <= m.same;
+  return meets ? best->height[0] - best->height[1] : -std::numeric_limits<double>::infinity();
+}
+
+double deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+                     double point[3]) noexcept {
+  return deepest_point(view(a), view(b), normal, point);
 }
 
 }  // namespace winnow

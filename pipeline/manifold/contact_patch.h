@@ -144,8 +144,11 @@ struct SeenFaces {
 /// contact_patch of them.
 std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept;
 
-/// The point of a where two patches meet deepest along the normal.
-void deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
-                   double point[3]) noexcept;
+/// The point of a where two patches meet deepest along the normal, or come closest; returns how
+/// deep the cores are there. Patches have vertices.
+double deepest_point(const Patch& a, const Patch& b, const double normal[3],
+                     double point[3]) noexcept;
+double deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+                     double point[3]) noexcept;
 
 }  // namespace winnow

@@ -446,6 +446,7 @@ void closest_meeting(const Outline* const outline[2], PatchMeetings& out) {
     }
   }
   out.add(best);
+  out.apart = least;
 }
 
 // A point over or under a polygon.

@@ -122,6 +122,8 @@ struct PatchMeetings {
   std::uint32_t count = 0;
   /// Points closer than that are one, and points so little outside of a side are inside.
   double same;
+  /// How far the outlines are from each other where they do not meet.
+  double apart = 0.0;
 
   explicit PatchMeetings(double tolerance) noexcept : same(tolerance) {}
 

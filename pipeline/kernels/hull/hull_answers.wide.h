@@ -124,10 +124,6 @@ class HullAnswers {
       job_.overlap[pair.index] = distance <= 0.0;
       return true;
     } else {
-      if (Level == 1 && pair.state != HullState::apart && !touching_point(pair, place, core) &&
-          kRobust) {
-        return false;
-      }
       job_.distance[pair.index] = distance;
       job_.error_bound[pair.index] = error;
       double normal[3];
@@ -137,8 +133,11 @@ class HullAnswers {
         const double doubt = error + kContactDoubt * (pair.size + pair.rounding);
         return contacts(pair, {normal, world, job_.margin, distance, doubt}, core.winner);
       } else {
-        write_point(pair, core.point, normal, distance);
-        return true;
+        if (pair.state == HullState::apart || touching_point(pair, place, core)) {
+          write_point(pair, core.point, normal, distance);
+          return true;
+        }
+        return write_shared_point(pair, {normal, world, 0.0, distance, 2.0 * error}, core.winner);
       }
     }
   }
@@ -171,6 +170,16 @@ class HullAnswers {
     for (int k = 0; k < 3; ++k) {
       job_.point[k][pair.index] = pair.swapped ? world[k] - pair.offset[k] : world[k];
     }
+  }
+
+  /// The same where features that are parallel touch. False if that is not where the pair is
+  /// deepest: this takes the solver.
+  bool write_shared_point(const HullPair& pair, const HullContacts& ask,
+                          const HullCandidate* winner) {
+    double point[3];
+    if (!point_of_features<Shapes::kSimpleSecond>(pair, ask, winner, point)) return false;
+    for (int k = 0; k < 3; ++k) job_.point[k][pair.index] = point[k];
+    return true;
   }
 
   /// False if no contact would be as deep as the pair: this takes the solver.

@@ -178,6 +178,19 @@ static inline void find_feature(const HullPair& pair, const HullCandidate* winne
   patch.edge_between(winner->arc.vertex[0], winner->arc.vertex[1]);
 }
 
+/// Those of both. `Simple`: the second is no hull but stands for a sphere, capsule, box or
+/// triangle.
+template <bool Simple>
+static inline void find_features(const HullPair& pair, const HullCandidate* winner,
+                                 HullPatch& first, HullPatch& second) {
+  find_feature(pair, winner, true, first);
+  if constexpr (Simple) {
+    second.whole();
+  } else {
+    find_feature(pair, winner, false, second);
+  }
+}
+
 /// What is asked of the contacts of a pair.
 struct HullContacts {
   /// In the first's frame, and from body a to body b in the axes of the world.
@@ -190,19 +203,13 @@ struct HullContacts {
 };
 
 /// Writes the contacts of a pair and returns their number; 0 if the features do not meet where the
-/// pair is deepest. `Simple`: the second is no hull but stands for a sphere, capsule, box or
-/// triangle.
+/// pair is deepest.
 template <bool Simple>
 static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& ask,
                                            const HullCandidate* winner, ContactWriter& writer) {
   HullPatch first(pair, ask.normal, true);
   HullPatch second(pair, ask.normal, false);
-  find_feature(pair, winner, true, first);
-  if constexpr (Simple) {
-    second.whole();
-  } else {
-    find_feature(pair, winner, false, second);
-  }
+  find_features<Simple>(pair, winner, first, second);
   ContactPoint points[kManifoldPoints];
   const std::uint32_t count =
       contact_patch(pair.swapped ? second.patch() : first.patch(),
@@ -218,6 +225,21 @@ static inline std::uint32_t write_contacts(const HullPair& pair, const HullConta
   }
   writer.size += count;
   return count;
+}
+
+/// Where features touch of which no vertex tells where: the point of body a, in the axes of the
+/// world. False if the features do not meet where the pair is deepest, as far as `doubt`.
+template <bool Simple>
+static inline bool point_of_features(const HullPair& pair, const HullContacts& ask,
+                                     const HullCandidate* winner, double* point) {
+  HullPatch first(pair, ask.normal, true);
+  HullPatch second(pair, ask.normal, false);
+  find_features<Simple>(pair, winner, first, second);
+  const Patch a = pair.swapped ? second.patch() : first.patch();
+  const Patch b = pair.swapped ? first.patch() : second.patch();
+  const double depth = deepest_point(a, b, ask.world, point) + a.rounding + b.rounding;
+  for (int k = 0; k < 3; ++k) point[k] += a.rounding * ask.world[k];
+  return __builtin_fabs(depth + ask.distance) <= ask.doubt;
 }
 
 /// What of the first is closest to a point: the face of least depth, or what the closest vertices

@@ -214,7 +214,11 @@ static inline bool touching_point(const HullPair& pair, const HullPlace<T>& plac
     const T sine = HullPlace<T>::dot3(across, d);
     const T t = HullPlace<T>::dot3(across, r) / sine;
     for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
-    return t >= T(0) && t <= T(1);
+    // Likewise along the second.
+    const T from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
+                             d[0] * n[1] - d[1] * n[0]};
+    const T u = HullPlace<T>::dot3(from_first, r) / sine;
+    return t >= T(0) && t <= T(1) && u >= T(0) && u <= T(1);
   }
   const bool mine = c.kind == Kind::second_face;
   const HullShape& hull = mine ? *pair.first : *pair.second;
