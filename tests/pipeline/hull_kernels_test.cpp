@@ -84,9 +84,24 @@ struct Answers {
   std::vector<std::uint64_t> feature;
 };
 
-enum class Style { ball, sphere_large, box, plate, rich, rounded };
+enum class Style { ball, sphere_large, box, plate, rich, rounded, prism };
+
+/// How hulls stand to each other: upright ones have faces and edges in parallel.
+enum class Turn { any, upright, none };
+
+/// Upright.
+Points prism_of(std::uint64_t sides, double half_height) {
+  Points points;
+  for (std::uint64_t i = 0; i < 2 * sides; ++i) {
+    const double turn = 6.283185307179586 * static_cast<double>(i / 2) / static_cast<double>(sides);
+    points.emplace_back(0.6 * std::cos(turn), 0.6 * std::sin(turn),
+                        i % 2 == 0 ? half_height : -half_height);
+  }
+  return points;
+}
 
 Points points_of(Style style, Random& random) {
+  if (style == Style::prism) return prism_of(3 + random.below(30), random.uniform(0.4, 1));
   Points points;
   if (style == Style::box || style == Style::plate || style == Style::rich) {
     const Eigen::Vector3d half(random.uniform(0.4, 1), random.uniform(0.4, 1),
@@ -111,16 +126,17 @@ Points points_of(Style style, Random& random) {
   return points;
 }
 
-Pose pose_near(const Eigen::Vector3d& origin, double reach, Random& random, bool turned) {
+Pose pose_near(const Eigen::Vector3d& origin, double reach, Random& random, Turn turn) {
   Pose pose;
   for (int k = 0; k < 3; ++k) pose.position[k] = origin[k] + random.uniform(-reach, reach);
-  if (!turned) return pose;
+  if (turn == Turn::none) return pose;
   for (double& q : pose.orientation) q = random.uniform(-1, 1);
+  if (turn == Turn::upright) pose.orientation[1] = pose.orientation[2] = 0.0;
   return pose;
 }
 
 /// Pairs of hulls of one style near each other.
-PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, bool turned = true) {
+PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, Turn turn = Turn::any) {
   PairScene scene;
   Random random(seed);
   const double rounding = style == Style::rounded ? 0.2 : 0.0;
@@ -129,7 +145,7 @@ PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, bool turn
     EXPECT_EQ(scene.pool.add_hull(points_of(style, random), rounding, id), Status::ok);
     scene.shapes.push_back(id);
     const Eigen::Vector3d origin(1e3 * (i / 2), -50.0, 7.0);
-    scene.poses.push_back(pose_near(origin, 0.7, random, turned));
+    scene.poses.push_back(pose_near(origin, 0.7, random, turn));
   }
   for (std::uint32_t i = 0; i < pairs; ++i) scene.pairs.push_back({2 * i, 2 * i + 1});
   return scene;
@@ -189,9 +205,9 @@ double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d
   return most - hull.rounding;
 }
 
-TEST_P(HullKernels, points_lie_on_both_hulls) {
-  const PairScene scene = scene_of(GetParam(), scaled(150), 2);
-  const Answers answers(scene, 1, true);
+void expect_points_on_both(const PairScene& scene, bool robust, bool rounded) {
+  const Answers answers(scene, 1, robust);
+  const double doubt = robust ? 1e-7 : 1e-4;
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
     const BodyPair p = scene.pairs[i];
@@ -199,11 +215,22 @@ TEST_P(HullKernels, points_lie_on_both_hulls) {
         answers.point(i) + Eigen::Map<const Eigen::Vector3d>(scene.poses[p.a].position);
     const Eigen::Vector3d b = a + answers.column[0][i] * answers.normal(i);
     // On the rounding around an edge a point is outside of no face.
-    EXPECT_LE(outside(scene, p.a, a), 1e-9) << i;
-    EXPECT_LE(outside(scene, p.b, b), 1e-9) << i;
-    if (GetParam() == Style::rounded) continue;
-    EXPECT_GE(outside(scene, p.a, a), -1e-9) << i;
-    EXPECT_GE(outside(scene, p.b, b), -1e-9) << i;
+    EXPECT_LE(outside(scene, p.a, a), doubt) << i;
+    EXPECT_LE(outside(scene, p.b, b), doubt) << i;
+    if (rounded) continue;
+    EXPECT_GE(outside(scene, p.a, a), -doubt) << i;
+    EXPECT_GE(outside(scene, p.b, b), -doubt) << i;
+  }
+}
+
+TEST_P(HullKernels, points_lie_on_both_hulls) {
+  for (const Turn turn : {Turn::any, Turn::upright, Turn::none}) {
+    const PairScene scene = scene_of(GetParam(), scaled(400), 2, turn);
+    for (const bool robust : {false, true}) {
+      SCOPED_TRACE(testing::Message()
+                   << "turn " << static_cast<int>(turn) << ", robust " << robust);
+      expect_points_on_both(scene, robust, GetParam() == Style::rounded);
+    }
   }
 }
 
@@ -262,7 +289,7 @@ TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
 }
 
 TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
-  const PairScene scene = scene_of(GetParam(), scaled(60), 6, false);
+  const PairScene scene = scene_of(GetParam(), scaled(60), 6, Turn::none);
   const Answers answers(scene, 2, true);
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
@@ -277,7 +304,17 @@ TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
 
 INSTANTIATE_TEST_SUITE_P(Of, HullKernels,
                          testing::Values(Style::ball, Style::sphere_large, Style::box, Style::plate,
-                                         Style::rich, Style::rounded));
+                                         Style::rich, Style::rounded, Style::prism));
+
+// Features in parallel have no one point in which they touch: no reason to ask the solver.
+TEST(UprightPrisms, are_rarely_left_to_the_solver) {
+  for (const Turn turn : {Turn::upright, Turn::none}) {
+    const PairScene scene = scene_of(Style::prism, 400, 7, turn);
+    for (int level = 0; level < 3; ++level) {
+      EXPECT_LE(Answers(scene, level, true).uncertified.size(), 20U) << level;
+    }
+  }
+}
 
 TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
   PairScene scene;

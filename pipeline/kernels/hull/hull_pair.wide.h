@@ -354,12 +354,11 @@ static inline T height_of(const HullShape& hull, const T* direction) {
   return largest_lane(best);
 }
 
-/// The highest vertex along `direction`; false if another one is within `doubt` of it.
+/// The first vertex that is at least so high along `direction`; false if there are others.
 template <typename T>
-static inline bool sole_vertex(const HullShape& hull, const T* direction, T doubt,
-                               std::uint32_t& vertex) {
+static inline bool sole_vertex_from(const HullShape& hull, const T* direction, T limit,
+                                    std::uint32_t& vertex) {
   constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-  const T limit = height_of(hull, direction) - doubt;
   const Vec3<T> d{direction[0], direction[1], direction[2]};
   std::uint32_t found = 0;
   for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
@@ -371,6 +370,13 @@ static inline bool sole_vertex(const HullShape& hull, const T* direction, T doub
     found += winnow::WINNOW_ISA_NAME::count(high);
   }
   return found == 1;
+}
+
+/// The highest vertex along `direction`; false if another one is within `doubt` of it.
+template <typename T>
+static inline bool sole_vertex(const HullShape& hull, const T* direction, T doubt,
+                               std::uint32_t& vertex) {
+  return sole_vertex_from(hull, direction, height_of(hull, direction) - doubt, vertex);
 }
 
 /// Vertex i in the hull's own frame.

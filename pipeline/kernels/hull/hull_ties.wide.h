@@ -6,8 +6,8 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Arcs that float cannot follow: where hulls are nearly parallel, several vertices of the second
 /// are as far along a face's normal of the first as float can tell, and the search may have taken
-/// the same for both ends of an arc along which they change. Here the vertices that tie are told
-/// apart in double, on all arcs around the face.
+/// the same for both ends of an arc along which they change. Here they are told apart in double, on
+/// all arcs around the face.
 class HullTies {
  public:
   /// `best` and `lower`: the least depth known and the least that it can be.
@@ -18,15 +18,14 @@ class HullTies {
   /// more to look at than there is room for.
   bool around(std::uint32_t face, double depth) {
     const HullFace& f = pair_.first->faces[face];
-    if (!find_ties(f.normal, f.offset - depth)) return false;
-    return count_ < 2 || follow_all(face);
+    return !has_ties(f.normal, f.offset - depth) || follow_all(face);
   }
 
   /// Looks again at an arc on which a third vertex is nearer than the two that were found.
   bool along_arc(const HullArc& arc) {
     measure_.arc(arc);
     const double high = height_of(*pair_.first, measure_.normal);
-    if (!find_ties(measure_.normal, high - measure_.depth) || count_ < 2) return false;
+    if (!has_ties(measure_.normal, high - measure_.depth)) return false;
     double ends[2][3];
     arc_ends(pair_, arc, ends);
     return follow(arc.edge, ends[0], ends[1]);
@@ -41,7 +40,6 @@ class HullTies {
   [[nodiscard]] const double* normal() const { return normal_; }
 
  private:
-  static constexpr std::uint32_t kMostTies = 32;
   static constexpr int kMostParts = 16;
 
   /// Between two directions along which two vertices of the second are the nearest.
@@ -61,41 +59,29 @@ class HullTies {
     return true;
   }
 
-  /// Those of which float could not tell which is the lowest, `least` or a little higher.
-  bool find_ties(const double* normal, double least) {
-    constexpr std::uint32_t kWidth = Lanes<double>::kCount;
-    const HullShape& second = *pair_.second;
-    double local[3];
-    turn_back3(place_.turn, normal, local);
-    for (double& x : local) x = -x;
+  /// Whether float could not tell which vertex is the lowest, `least` or a little higher.
+  [[nodiscard]] bool has_ties(const double* normal, double least) const {
     const double doubt = 4.0 * static_cast<double>(kFloatError) * pair_.size;
-    const Lanes<double> limit(dot3(normal, place_.shift) - least - doubt);
-    const Vec3<double> d{local[0], local[1], local[2]};
-    count_ = 0;
-    for (std::uint32_t row = 0; row < second.vertex_count; row += kWidth) {
-      Mask16 high = bits(along(second.vertex, row, d) >= limit);
-      const std::uint32_t left = second.vertex_count - row;
-      if (left < kWidth) high &= lanes_below(left);
-      for (; high != 0; high &= high - 1) {
-        if (count_ == kMostTies) return false;
-        tied_[count_++] = row + winnow::WINNOW_ISA_NAME::first(high);
-      }
-    }
-    return true;
+    double local[3];
+    against(normal, local);
+    std::uint32_t vertex = 0;
+    const double height = dot3(normal, place_.shift) - least;
+    return !sole_vertex_from(*pair_.second, local, height - doubt, vertex);
   }
 
-  /// Of the vertices that tie the one farthest against a direction.
+  /// The vertex of the second that is farthest against a direction, the first of some.
   [[nodiscard]] std::uint32_t nearest(const double* direction) const {
-    std::uint32_t best = tied_[0];
-    double least = __builtin_inf();
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      double x[3];
-      place_.of_second(*pair_.second, tied_[i], x);
-      const double height = dot3(direction, x);
-      best = height < least ? tied_[i] : best;
-      least = height < least ? height : least;
-    }
-    return best;
+    double local[3];
+    against(direction, local);
+    std::uint32_t vertex = 0;
+    sole_vertex_from(*pair_.second, local, height_of(*pair_.second, local), vertex);
+    return vertex;
+  }
+
+  /// The opposite direction, in the second's frame.
+  void against(const double* direction, double* local) const {
+    turn_back3(place_.turn, direction, local);
+    for (int k = 0; k < 3; ++k) local[k] = -local[k];
   }
 
   bool follow(std::uint32_t edge, const double* from, const double* to) {
@@ -169,8 +155,6 @@ class HullTies {
   HullCandidate winner_ = {};
   /// The vertex of the first at whose edge an arc lies.
   double mine_[3];
-  std::uint32_t count_ = 0;
-  std::uint32_t tied_[kMostTies];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull
