@@ -347,6 +347,31 @@ struct BoxTriangle {
     return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
   }
 
+  // Shapes that overlap although edges are parallel, whose products have no sign: what these could
+  // separate more than the other axes is as in `offer_product`. Out of line: where no edges are
+  // parallel it is not called.
+  template <typename T>
+  [[gnu::noinline]] static LaneMask<T> overlap_of_parallel(const BoxTrianglePair<T>& pair) {
+    const Lanes<T> zero(T(0));
+    Lanes<T> least = pair.scale * Lanes<T>(kFlatSlack<T>);
+    const auto is_parallel = [&](int j, const Lanes<T>& length2) __attribute__((always_inline)) {
+      return length2 <= pair.b.length[j] * pair.b.length[j] * Lanes<T>(kParallelSquare<T>);
+    };
+    for_products(
+        pair, [&](int, int j, const Lanes<T>& length2, const Lanes<T>&)
+                  __attribute__((always_inline)) {
+                    least += select(is_parallel(j, length2), Lanes<T>(T(2)) * sqrt(length2), zero);
+                  });
+    const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
+    LaneMask<T> over = (face < -least) & (pair.over_triangle() < -(least * pair.b.area));
+    for_products(
+        pair, [&](int, int j, const Lanes<T>& length2, const Lanes<T>& s)
+                  __attribute__((always_inline)) {
+                    over = over & (is_parallel(j, length2) | (s < -(least * pair.b.length[j])));
+                  });
+    return over;
+  }
+
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
@@ -363,6 +388,7 @@ struct BoxTriangle {
             apart = apart | (s > reach * pair.b.length[j]);
             over = over & (s < -(slack * pair.b.length[j]));
           });
+      if ((bits(apart | over) & valid) != valid) over = over | (overlap_of_parallel(pair) & !apart);
     }
     return answer_overlaps<BoxTriangleStage<T>>(job, block, pair, apart, over);
   }
