@@ -387,6 +387,9 @@ class Narrow final : public PairsCommand {
            "Numbers of pairs; those of more than 16,384 lie scattered in memory");
     add_threads_option(app, threads_, "Numbers of threads that winnow takes");
     number(app, "--rounds", race_.rounds, 1, 1000, "Rounds in which all take turns");
+    app.add_flag("--upright", upright_,
+                 "Bodies turned about the vertical axis alone, prisms for hulls, walls for "
+                 "triangles: edges and faces are parallel");
     add_pair_options(app);
   }
 
@@ -405,6 +408,7 @@ class Narrow final : public PairsCommand {
                           .threads = threads_,
                           .peers = peers_,
                           .seed = seed_,
+                          .upright = upright_,
                           .race = race_},
                          PairKeys::settings);
         });
@@ -416,6 +420,7 @@ class Narrow final : public PairsCommand {
 
   std::vector<std::size_t> pairs_{8192, 100'000};
   std::vector<int> threads_{1};
+  bool upright_ = false;
   NarrowRaceOptions race_;
 };
 

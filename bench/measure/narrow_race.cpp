@@ -157,7 +157,8 @@ NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
   measured.pairs = options.pairs;
   const auto set = make_pair_set(options.kind, {.pairs = options.pairs,
                                                 .seed = options.seed,
-                                                .scattered = options.pairs > kMostPairsInCache});
+                                                .scattered = options.pairs > kMostPairsInCache,
+                                                .upright = options.upright});
   std::vector<NarrowContender> contenders =
       narrow_contenders(*set, options.tiers, options.threads, options.peers);
   MachineClock clock;

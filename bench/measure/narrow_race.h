@@ -76,6 +76,7 @@ struct NarrowMeasureOptions {
   std::vector<int> threads{1};  ///< winnow's; other libraries use one
   bool peers = false;           ///< other libraries too, where the tool was built with them
   std::uint64_t seed = 1;
+  bool upright = false;  ///< as PairSetOptions say
   NarrowRaceOptions race{};
 };
 

@@ -79,7 +79,8 @@ class PairDrawing {
     std::vector<std::uint8_t> is_b(bodies);
     for (const BodyPair& pair : set_.pairs) is_b[pair.b] = 1;
     const std::uint32_t hulls = options_.scattered ? kScatteredHulls : kHulls;
-    ShapeStyle style{set_.kind.a, set_.kind.hull_vertices, hulls, 1.0, options_.thinness};
+    ShapeStyle style{set_.kind.a, set_.kind.hull_vertices, hulls,
+                     1.0,         options_.thinness,       options_.upright};
     ShapeSource a(set_.pool, style, random_);
     style.kind = set_.kind.b;
     style.scale = options_.ratio;
@@ -95,11 +96,11 @@ class PairDrawing {
   void place(const BodyPair& pair) {
     Pose& a = set_.poses[pair.a];
     Pose& b = set_.poses[pair.b];
-    turn_at_random(random_, a);
+    turn(a);
     if (options_.angle) {
       turn_from(random_, a, *options_.angle, b);
     } else {
-      turn_at_random(random_, b);
+      turn(b);
     }
     const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
     const Eigen::Vector3d offset = random_in_ball(random_, reach);
@@ -107,6 +108,10 @@ class PairDrawing {
       a.position[axis] = on_grid(random_.in(-0.5 * kWorld, 0.5 * kWorld));
       b.position[axis] = on_grid(a.position[axis] + offset[axis]);
     }
+  }
+
+  void turn(Pose& pose) {
+    options_.upright ? turn_upright(random_, pose) : turn_at_random(random_, pose);
   }
 
   [[nodiscard]] double on_grid(double x) const {

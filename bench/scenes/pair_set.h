@@ -47,6 +47,9 @@ struct PairSetOptions {
   /// At most 1: triangles are drawn, and then one corner is brought to the opposite edge until it
   /// is only so many times as far from it.
   double thinness = 1.0;
+  /// Bodies stand upright, turned about the vertical axis alone, hulls are prisms and triangles
+  /// walls: edges and faces are parallel, as in most of what people build.
+  bool upright = false;
 };
 
 /// Position, orientation and size are drawn uniformly, b's centre in a ball a little larger than

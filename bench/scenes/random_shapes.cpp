@@ -38,6 +38,19 @@ void turn_at_random(Random& random, Pose& pose) {
   }
 }
 
+void turn_upright(Random& random, Pose& pose) {
+  for (;;) {
+    const double w = random.in(-1.0, 1.0);
+    const double z = random.in(-1.0, 1.0);
+    const double square = w * w + z * z;
+    if (square < 1e-2 || square > 1.0) continue;
+    const double scale = 1.0 / std::sqrt(square);
+    const double turn[4] = {scale * w, 0.0, 0.0, scale * z};
+    std::copy_n(turn, 4, pose.orientation);
+    return;
+  }
+}
+
 void turn_from(Random& random, const Pose& from, double angle, Pose& pose) {
   const Eigen::Vector3d half = 0.5 * angle * random_unit(random);
   const Eigen::Quaterniond turn(1.0, half.x(), half.y(), half.z());
@@ -63,6 +76,7 @@ DrawnShape ShapeSource::put(const Shape& shape, double radius) {
 DrawnShape ShapeSource::draw_triangle() {
   Eigen::Matrix3d corners;
   for (int i = 0; i < 3; ++i) corners.col(i) = random_unit(random_) * length(0.5, 1.0);
+  if (style_.upright) corners.col(1).head<2>() = corners.col(0).head<2>();
   if (style_.thinness < 1.0) {
     const Eigen::Vector3d foot = 0.5 * (corners.col(0) + corners.col(1));
     corners.col(2) = foot + style_.thinness * (corners.col(2) - foot);
@@ -75,14 +89,31 @@ DrawnShape ShapeSource::draw_triangle() {
   return put(triangle, corners.colwise().norm().maxCoeff());
 }
 
-DrawnShape ShapeSource::draw_hull() {
+std::vector<Eigen::Vector3d> ShapeSource::draw_corners() {
   const Eigen::Array3d axes(length(0.5, 1.0), length(0.5, 1.0), length(0.5, 1.0));
   std::vector<Eigen::Vector3d> points;
-  DrawnShape drawn;
+  if (style_.upright) {
+    // Sides of equal width.
+    constexpr double kTurn = 6.283185307179586;
+    const std::uint32_t sides = style_.hull_vertices / 2;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const double angle = kTurn * i / sides;
+      for (const double end : {-0.5, 0.5}) {
+        points.emplace_back(axes.x() * std::cos(angle), axes.x() * std::sin(angle), axes.z() * end);
+      }
+    }
+    return points;
+  }
   for (std::uint32_t i = 0; i < style_.hull_vertices; ++i) {
     points.emplace_back(random_unit(random_).array() * axes);
-    drawn.radius = std::max(drawn.radius, points.back().norm());
   }
+  return points;
+}
+
+DrawnShape ShapeSource::draw_hull() {
+  const std::vector<Eigen::Vector3d> points = draw_corners();
+  DrawnShape drawn;
+  for (const Eigen::Vector3d& point : points) drawn.radius = std::max(drawn.radius, point.norm());
   need(pool_.add_hull(points, 0.0, drawn.id), "a hull");
   return drawn;
 }

@@ -24,6 +24,8 @@ struct ShapeStyle {
   std::uint32_t hulls = 0;  ///< different ones
   double scale = 1.0;
   double thinness = 1.0;  ///< of triangles: at most 1, of their height
+  /// Hulls are prisms with a vertical axis, and an edge of triangles is vertical.
+  bool upright = false;
 };
 
 /// Draws shapes of one kind into a pool. Hulls are made when it is made.
@@ -38,6 +40,7 @@ class ShapeSource {
   template <typename Shape>
   [[nodiscard]] DrawnShape put(const Shape& shape, double radius);
   [[nodiscard]] DrawnShape draw_hull();
+  [[nodiscard]] std::vector<Eigen::Vector3d> draw_corners();
   [[nodiscard]] DrawnShape draw_triangle();
   [[nodiscard]] double length(double least, double most) {
     return style_.scale * random_.in(least, most);
@@ -55,6 +58,8 @@ class ShapeSource {
 [[nodiscard]] Eigen::Vector3d random_in_ball(Random& random, double radius);
 /// Uniform over all rotations.
 void turn_at_random(Random& random, Pose& pose);
+/// Uniform over all rotations about the vertical axis, which is z.
+void turn_upright(Random& random, Pose& pose);
 /// `pose` becomes `from` turned about a random axis by the angle whose half has the tangent
 /// `angle` / 2.
 void turn_from(Random& random, const Pose& from, double angle, Pose& pose);
