@@ -98,7 +98,7 @@ class StretchAndRest {
     }
   }
 
-  /// `go_on(sweep, probe, limit, test)` visits blocks of rows by `test(first_row)`.
+  /// `go_on(probe, wanted, limit, test)` visits the blocks of rows of a sweep by `test(first_row)`.
   template <typename GoOn>
   void run(GoOn&& go_on) {
     JointSweeps<Hits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
