@@ -79,8 +79,11 @@ class PairDrawing {
     std::vector<std::uint8_t> is_b(bodies);
     for (const BodyPair& pair : set_.pairs) is_b[pair.b] = 1;
     const std::uint32_t hulls = options_.scattered ? kScatteredHulls : kHulls;
-    ShapeStyle style{set_.kind.a, set_.kind.hull_vertices, hulls,
-                     1.0,         options_.thinness,       options_.upright};
+    ShapeStyle style{.kind = set_.kind.a,
+                     .hull_vertices = set_.kind.hull_vertices,
+                     .hulls = hulls,
+                     .thinness = options_.thinness,
+                     .upright = options_.upright};
     ShapeSource a(set_.pool, style, random_);
     style.kind = set_.kind.b;
     style.scale = options_.ratio;

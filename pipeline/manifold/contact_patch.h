@@ -144,8 +144,9 @@ struct SeenFaces {
 /// contact_patch of them.
 std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept;
 
-/// The point of a where two patches meet deepest along the normal, or come closest; returns how
-/// deep the cores are there. Patches have vertices.
+/// The point of a where two patches meet deepest along the normal; returns how deep the cores are
+/// there. Patches, which have vertices, that do not meet give the point where they come closest,
+/// and minus infinity.
 double deepest_point(const Patch& a, const Patch& b, const double normal[3],
                      double point[3]) noexcept;
 double deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],

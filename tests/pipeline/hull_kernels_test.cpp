@@ -207,7 +207,7 @@ double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d
 
 void expect_points_on_both(const PairScene& scene, bool robust, bool rounded) {
   const Answers answers(scene, 1, robust);
-  const double doubt = robust ? 1e-7 : 1e-4;
+  const double doubt = robust ? 1e-9 : 1e-4;
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
     const BodyPair p = scene.pairs[i];
