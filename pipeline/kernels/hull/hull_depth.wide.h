@@ -61,6 +61,7 @@ class HullDepth {
     best_ = __builtin_sqrtf(pair.depth_squared) / pair.scale * 1.00001F + slack_;
     count_ = 0;
     records_ = 0;
+    tie_.face = kMostFaces;
     place(pair);
     close_faces(second_);
     measure_open_faces();
@@ -180,7 +181,7 @@ class HullDepth {
         for (float& x : direction) x = -x;
         const float depth =
             plane[3][face] - dot3(normal, second_.shift) + height_of(*second_.other, direction);
-        propose_face(HullCandidate::Kind::second_face, face, depth);
+        propose_face(HullCandidate::Kind::second_face, face, depth, 0.0F);
       }
     }
   }
@@ -192,7 +193,36 @@ class HullDepth {
     record.offset = plane[3][face];
     record.face = face;
     meet(record);
-    propose_face(HullCandidate::Kind::first_face, face, record.depth);
+    if (record.depth <= best_ + slack_) find_tie(record);
+    // Kept a little longer than others for the arcs that `is_tied_end` leaves to HullTies.
+    propose_face(HullCandidate::Kind::first_face, face, record.depth, kTie * slack_);
+  }
+
+  /// Finds the middle of the second's vertices that a face meets, if there are several as far as
+  /// float can tell.
+  void find_tie(const HullDirection& face) {
+    float local[3];
+    turn_back3(first_.turn, face.normal, local);
+    for (float& x : local) x = -x;
+    const float height = dot3(face.normal, first_.shift) - dot3(face.normal, face.point);
+    float middle[3];
+    if (middle_from(*first_.other, local, height - kTie * slack_, middle) < 2) return;
+    turn3(first_.turn, middle, tie_.middle);
+    for (int k = 0; k < 3; ++k) tie_.middle[k] += first_.shift[k];
+    tie_.face = face.face;
+    tie_.depth = face.depth;
+  }
+
+  /// Whether an arc begins at the tied face and the middle of its vertices is deeper than the best
+  /// at the other end, and so in between.
+  [[nodiscard]] bool is_below_tie(const HullEdge& edge) const {
+    const std::uint32_t* face = edge.face;
+    if (face[0] != tie_.face && face[1] != tie_.face) return false;
+    if (!(tie_.depth > slack_) || tie_.depth > best_ + slack_) return false;
+    const std::uint32_t other = face[0] == tie_.face ? face[1] : face[0];
+    const float* const* plane = first_.hull->plane_float;
+    const float normal[3] = {plane[0][other], plane[1][other], plane[2][other]};
+    return plane[3][other] - dot3(normal, tie_.middle) > best_ + slack_;
   }
 
   /// Finds the vertex of the second that a direction meets, and so the depth along it.
@@ -208,13 +238,14 @@ class HullDepth {
     direction.depth = direction.offset - dot3(direction.normal, direction.point);
   }
 
-  void propose_face(HullCandidate::Kind kind, std::uint32_t face, float depth) {
+  /// `less`: by how much what the face stands for can be less deep.
+  void propose_face(HullCandidate::Kind kind, std::uint32_t face, float depth, float less) {
     best_ = depth < best_ ? depth : best_;
-    if (!(depth <= best_ + slack_)) return;
+    if (!(depth - less <= best_ + slack_)) return;
     HullCandidate c;
     c.kind = kind;
     c.face = face;
-    c.depth = depth;
+    c.depth = depth - less;
     propose(c);
   }
 
@@ -251,7 +282,7 @@ class HullDepth {
     const std::uint32_t count = list_open_arcs(hull);
     for (std::uint32_t i = 0; i < count; ++i) {
       const HullEdge& edge = hull.edges[open_[i]];
-      if (is_deep(edge)) continue;
+      if (is_deep(edge) || is_below_tie(edge)) continue;
       const HullDirection& a = measured(edge.face[0]);
       const HullDirection& b = measured(edge.face[1]);
       if (a.vertex == b.vertex || is_deep(edge)) continue;
@@ -269,7 +300,8 @@ class HullDepth {
     return true;
   }
 
-  /// Fills open_; measures at all faces that are not closed.
+  /// Fills open_; measures at all faces that are not closed, but for those around a tied face that
+  /// its middle closes.
   std::uint32_t list_open_arcs(const HullShape& hull) {
     std::uint32_t count = 0;
     for (std::uint32_t e = 0; e < hull.edge_count; ++e) {
@@ -281,7 +313,9 @@ class HullDepth {
       count += (a & b) == 0 ? 1U : 0U;
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-      for (const std::uint32_t face : hull.edges[open_[i]].face) {
+      const HullEdge& edge = hull.edges[open_[i]];
+      if (is_below_tie(edge)) continue;
+      for (const std::uint32_t face : edge.face) {
         if (closed_by(face) == 0) measured(face);
       }
     }
@@ -395,7 +429,7 @@ class HullDepth {
     HullDirection middle;
     float weight[2];
     float lowest = 0.0F;
-    const Verdict verdict = cut(from, to, middle, weight, lowest);
+    const Verdict verdict = cut(from, to, arc.is_whole(), middle, weight, lowest);
     if (verdict == Verdict::lost) return false;
     arc.vertex[0] = from.vertex;
     arc.vertex[1] = to.vertex;
@@ -422,14 +456,25 @@ class HullDepth {
     return true;
   }
 
+  /// Whether the points known at both ends of a whole arc are as high at one of them as float can
+  /// tell, and the arc nowhere lower: HullTies finds both points there, and looks at all such arcs
+  /// around the face. `other_point`: the height there of the point of the other end.
+  [[nodiscard]] bool is_tied_end(const HullDirection& end, float other_point, float lowest) const {
+    const float least = other_point < lowest ? other_point : lowest;
+    return end.depth <= best_ + slack_ && least >= end.depth - kTie * slack_;
+  }
+
+  /// Of the slack: heights that differ by less are tied.
+  static constexpr float kTie = 0.25F;
+
   enum class Verdict : std::uint8_t { deep, near, lost };
 
   /// Heights along an arc are at least those of the two points of the difference known at its ends:
   /// where the two are equal this bound is smallest (or at an end, which has been looked at). If
   /// that is near the best depth, measures there. Any direction between the ends will do for a
   /// bound: to one side of the crossing one point is lower than there, to the other the other.
-  Verdict cut(const HullDirection& a, const HullDirection& b, HullDirection& middle, float* weight,
-              float& lowest) {
+  Verdict cut(const HullDirection& a, const HullDirection& b, bool whole, HullDirection& middle,
+              float* weight, float& lowest) {
     const float cosine = dot3(a.normal, b.normal);
     if (!(cosine > -0.98F)) return Verdict::lost;
     const float a_at_b = b.offset - dot3(b.normal, a.point);
@@ -449,6 +494,9 @@ class HullDepth {
     weight[0] = p * scale;
     weight[1] = q * scale;
     lowest = height * scale;
+    if (whole && (is_tied_end(a, b_at_a, lowest) || is_tied_end(b, a_at_b, lowest))) {
+      return Verdict::deep;
+    }
     for (int k = 0; k < 3; ++k) {
       middle.normal[k] = weight[0] * a.normal[k] + weight[1] * b.normal[k];
     }
@@ -459,8 +507,17 @@ class HullDepth {
     return Verdict::near;
   }
 
+  /// A face of the first near which the depth is smallest, and the middle of the vertices of the
+  /// second that are the lowest along its normal.
+  struct Tie {
+    std::uint32_t face;
+    float depth;
+    float middle[3];
+  };
+
   Side first_;
   Side second_;
+  Tie tie_;
   float best_;
   float slack_;
   std::uint32_t count_;

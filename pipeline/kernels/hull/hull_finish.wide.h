@@ -184,61 +184,120 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
   if (!sure) answer.error = static_cast<T>(__builtin_inf());
 }
 
-/// Where the second's vertex nearest to the first's inside touches, or the first's; false if the
-/// touching features are parallel, so that one vertex does not tell.
+/// Whether a point in a hull's own frame lies in front of no face by more than `doubt`; false for
+/// flat hulls.
+template <typename T>
+static inline bool contains(const HullShape& hull, const T* x, T doubt) {
+  const double at[3] = {static_cast<double>(x[0]), static_cast<double>(x[1]),
+                        static_cast<double>(x[2])};
+  for (std::uint32_t i = 0; i < hull.face_count; ++i) {
+    const HullFace& face = hull.faces[i];
+    if (!(dot3(face.normal, at) - face.offset <= static_cast<double>(doubt))) return false;
+  }
+  return hull.dimension == 3;
+}
+
+/// Where two edges cross as seen along the normal: the point on the first's. False if that is
+/// beyond an end of one of them, or if they are parallel.
+template <typename T>
+static inline bool crossing_point(const HullPair& pair, const HullPlace<T>& place,
+                                  HullDistance<T>& answer) {
+  const HullArc& arc = answer.winner->arc;
+  const HullEdge& edge = pair.first->edges[arc.edge];
+  T a[2][3];
+  T b[2][3];
+  for (int i = 0; i < 2; ++i) {
+    vertex_at(*pair.first, edge.vertex[i], a[i]);
+    place.of_second(*pair.second, arc.vertex[i], b[i]);
+  }
+  T d[3];
+  T e[3];
+  T r[3];
+  for (int k = 0; k < 3; ++k) {
+    d[k] = a[1][k] - a[0][k];
+    e[k] = b[1][k] - b[0][k];
+    r[k] = b[0][k] - a[0][k];
+  }
+  // Across the second edge and the normal.
+  const T* n = answer.normal;
+  const T across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
+                       e[0] * n[1] - e[1] * n[0]};
+  const T sine = HullPlace<T>::dot3(across, d);
+  const T t = HullPlace<T>::dot3(across, r) / sine;
+  for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
+  // Likewise along the second.
+  const T from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
+                           d[0] * n[1] - d[1] * n[0]};
+  const T u = HullPlace<T>::dot3(from_first, r) / sine;
+  return t >= T(0) && t <= T(1) && u >= T(0) && u <= T(1);
+}
+
+/// Where two hulls touch along a normal, by the vertices that are farthest along it.
+template <typename T>
+class HullTouch {
+ public:
+  HullTouch(const HullPair& pair, const HullPlace<T>& place, const HullDistance<T>& answer)
+      : pair_(pair),
+        place_(place),
+        answer_(answer),
+        rounding_(kRounding<T> * static_cast<T>(pair.size)) {}
+
+  /// Finds the middle of the first's or the second's farthest vertices, as a point on the first in
+  /// its frame; returns how many those are.
+  std::uint32_t find_middle(bool first, T* x) const {
+    if (first) return middle_of(*pair_.first, answer_.normal, x);
+    T direction[3];
+    turn_back3(place_.turn, answer_.normal, direction);
+    for (T& d : direction) d = -d;
+    T local[3];
+    const std::uint32_t tied = middle_of(*pair_.second, direction, local);
+    turn3(place_.turn, local, x);
+    for (int k = 0; k < 3; ++k) x[k] += place_.shift[k] - answer_.distance * answer_.normal[k];
+    return tied;
+  }
+
+  /// Whether a point of the touching plane lies on the first or the second.
+  [[nodiscard]] bool lies_on(bool first, const T* x) const {
+    if (first) return contains(*pair_.first, x, rounding_);
+    T across[3];
+    for (int k = 0; k < 3; ++k) {
+      across[k] = x[k] + answer_.distance * answer_.normal[k] - place_.shift[k];
+    }
+    T local[3];
+    turn_back3(place_.turn, across, local);
+    return contains(*pair_.second, local, rounding_);
+  }
+
+ private:
+  std::uint32_t middle_of(const HullShape& hull, const T* direction, T* x) const {
+    return middle_from(hull, direction, height_of(hull, direction) - T(8) * rounding_, x);
+  }
+
+  const HullPair& pair_;
+  const HullPlace<T>& place_;
+  const HullDistance<T>& answer_;
+  T rounding_;
+};
+
+/// Where edges cross or one vertex touches a face. Where features are parallel, the middle of one
+/// of them, or else halfway between both, which hulls that are symmetrical about their middles
+/// share if they touch at all; false if none of these is on both.
 template <typename T>
 static inline bool touching_point(const HullPair& pair, const HullPlace<T>& place,
                                   HullDistance<T>& answer) {
   using Kind = HullCandidate::Kind;
-  const HullCandidate& c = *answer.winner;
-  if (c.kind == Kind::arc) {
-    const HullEdge& edge = pair.first->edges[c.arc.edge];
-    T a[2][3];
-    T b[2][3];
-    for (int i = 0; i < 2; ++i) {
-      vertex_at(*pair.first, edge.vertex[i], a[i]);
-      place.of_second(*pair.second, c.arc.vertex[i], b[i]);
-    }
-    T d[3];
-    T e[3];
-    T r[3];
-    for (int k = 0; k < 3; ++k) {
-      d[k] = a[1][k] - a[0][k];
-      e[k] = b[1][k] - b[0][k];
-      r[k] = b[0][k] - a[0][k];
-    }
-    // Across the second edge and the normal: where the edges cross as seen along the normal.
-    const T* n = answer.normal;
-    const T across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
-                         e[0] * n[1] - e[1] * n[0]};
-    const T sine = HullPlace<T>::dot3(across, d);
-    const T t = HullPlace<T>::dot3(across, r) / sine;
-    for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
-    // Likewise along the second.
-    const T from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
-                             d[0] * n[1] - d[1] * n[0]};
-    const T u = HullPlace<T>::dot3(from_first, r) / sine;
-    return t >= T(0) && t <= T(1) && u >= T(0) && u <= T(1);
-  }
-  const bool mine = c.kind == Kind::second_face;
-  const HullShape& hull = mine ? *pair.first : *pair.second;
-  T direction[3];
-  if (mine) {
-    for (int k = 0; k < 3; ++k) direction[k] = answer.normal[k];
-  } else {
-    turn_back3(place.turn, answer.normal, direction);
-    for (T& x : direction) x = -x;
-  }
-  std::uint32_t vertex = 0;
-  const T doubt = T(8) * kRounding<T> * static_cast<T>(pair.size);
-  if (!sole_vertex(hull, direction, doubt, vertex)) return false;
-  if (mine) {
-    vertex_at(hull, vertex, answer.point);
-  } else {
-    place.of_second(hull, vertex, answer.point);
-    for (int k = 0; k < 3; ++k) answer.point[k] -= answer.distance * answer.normal[k];
-  }
-  return true;
+  const Kind kind = answer.winner->kind;
+  if (kind == Kind::arc && crossing_point(pair, place, answer)) return true;
+  const HullTouch<T> touch(pair, place, answer);
+  const bool first = kind == Kind::second_face;
+  const std::uint32_t tied = touch.find_middle(first, answer.point);
+  if ((kind != Kind::arc && tied == 1) || touch.lies_on(!first, answer.point)) return true;
+  T other[3];
+  touch.find_middle(!first, other);
+  for (int k = 0; k < 3; ++k) answer.point[k] = T(0.5) * (answer.point[k] + other[k]);
+  if (touch.lies_on(true, answer.point) && touch.lies_on(false, answer.point)) return true;
+  for (int k = 0; k < 3; ++k) answer.point[k] = other[k];
+  return touch.lies_on(first, answer.point);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -372,11 +372,30 @@ static inline bool sole_vertex_from(const HullShape& hull, const T* direction, T
   return found == 1;
 }
 
-/// The highest vertex along `direction`; false if another one is within `doubt` of it.
+/// The mean of all vertices that are at least so high along `direction`; returns how many those
+/// are.
 template <typename T>
-static inline bool sole_vertex(const HullShape& hull, const T* direction, T doubt,
-                               std::uint32_t& vertex) {
-  return sole_vertex_from(hull, direction, height_of(hull, direction) - doubt, vertex);
+static inline std::uint32_t middle_from(const HullShape& hull, const T* direction, T limit,
+                                        T* middle) {
+  constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+  const Vec3<T> d{direction[0], direction[1], direction[2]};
+  const T* const* vertex = columns_of(hull, T());
+  std::uint32_t found = 0;
+  for (int k = 0; k < 3; ++k) middle[k] = T(0);
+  for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
+    Mask16 high = bits(along(vertex, row, d) >= Lanes<T>(limit));
+    const std::uint32_t left = hull.vertex_count - row;
+    if (left < kWidth) high &= lanes_below(left);
+    found += winnow::WINNOW_ISA_NAME::count(high);
+    for (; high != 0; high &= high - 1) {
+      const std::uint32_t i = row + first(high);
+      for (int k = 0; k < 3; ++k) middle[k] += vertex[k][i];
+    }
+  }
+  if (found > 1) {
+    for (int k = 0; k < 3; ++k) middle[k] /= static_cast<T>(found);
+  }
+  return found;
 }
 
 /// Vertex i in the hull's own frame.

@@ -18,7 +18,7 @@ class HullTies {
   /// more to look at than there is room for.
   bool around(std::uint32_t face, double depth) {
     const HullFace& f = pair_.first->faces[face];
-    return !has_ties(f.normal, f.offset - depth) || follow_all(face);
+    return !has_ties(f.normal, f.offset - depth) || follow_all(face, f.offset - depth);
   }
 
   /// Looks again at an arc on which a third vertex is nearer than the two that were found.
@@ -48,13 +48,25 @@ class HullTies {
     std::uint32_t vertex[2];
   };
 
-  [[gnu::noinline]] bool follow_all(std::uint32_t face) {
+  /// `least`: the lowest vertices of the second along the face's normal.
+  [[gnu::noinline]] bool follow_all(std::uint32_t face, double least) {
     const HullShape& hull = *pair_.first;
+    const double* normal = hull.faces[face].normal;
+    double local[3];
+    against(normal, local);
+    double tied[3];
+    const double height = dot3(normal, place_.shift) - least;
+    middle_from(*pair_.second, local, height - kDoubleError * pair_.size, tied);
+    double middle[3];
+    turn3(place_.turn, tied, middle);
+    for (int k = 0; k < 3; ++k) middle[k] += place_.shift[k];
     for (std::uint32_t i = 0; i < hull.faces[face].count; ++i) {
       const std::uint32_t edge = hull.loop_edge[hull.faces[face].first + i];
       const std::uint32_t* sides = hull.edges[edge].face;
       const std::uint32_t other = sides[0] == face ? sides[1] : sides[0];
-      if (!follow(edge, hull.faces[face].normal, hull.faces[other].normal)) return false;
+      vertex_at(hull, hull.edges[edge].vertex[0], mine_);
+      if (is_deep(middle, normal, hull.faces[other].normal)) continue;
+      if (!follow(edge, normal, hull.faces[other].normal)) return false;
     }
     return true;
   }
@@ -69,13 +81,11 @@ class HullTies {
     return !sole_vertex_from(*pair_.second, local, height - doubt, vertex);
   }
 
-  /// The vertex of the second that is farthest against a direction, the first of some.
+  /// The vertex of the second that is farthest against a direction.
   [[nodiscard]] std::uint32_t nearest(const double* direction) const {
     double local[3];
     against(direction, local);
-    std::uint32_t vertex = 0;
-    sole_vertex_from(*pair_.second, local, height_of(*pair_.second, local), vertex);
-    return vertex;
+    return highest_vertex<double>(*pair_.second, {local[0], local[1], local[2]});
   }
 
   /// The opposite direction, in the second's frame.
@@ -85,19 +95,37 @@ class HullTies {
   }
 
   bool follow(std::uint32_t edge, const double* from, const double* to) {
+    vertex_at(*pair_.first, pair_.first->edges[edge].vertex[0], mine_);
+    const std::uint32_t last = nearest(to);
+    double theirs[3];
+    place_.of_second(*pair_.second, last, theirs);
+    if (is_deep(theirs, from, to)) return true;
     const double* ends[2] = {from, to};
     Part stack[kMostParts];
     for (int i = 0; i < 2; ++i) {
       for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
-      stack[0].vertex[i] = nearest(ends[i]);
     }
-    vertex_at(*pair_.first, pair_.first->edges[edge].vertex[0], mine_);
+    stack[0].vertex[0] = nearest(from);
+    stack[0].vertex[1] = last;
     int height = 1;
     for (int looked = 0; height > 0; ++looked) {
       if (looked == kMostParts || height + 1 >= kMostParts) return false;
       const Part part = stack[--height];
       look(edge, part, stack, height);
     }
+    return true;
+  }
+
+  /// Bounds an arc by one point of the second, if that is no less deep than the best at both ends:
+  /// its height is concave in between.
+  bool is_deep(const double* point, const double* from, const double* to) {
+    double w[3];
+    for (int k = 0; k < 3; ++k) w[k] = mine_[k] - point[k];
+    const double here = dot3(from, w) / __builtin_sqrt(dot3(from, from));
+    const double there = dot3(to, w) / __builtin_sqrt(dot3(to, to));
+    const double height = (here < there ? here : there) + kDoubleError * pair_.size;
+    if (!(height >= best_)) return false;
+    bound(height);
     return true;
   }
 
