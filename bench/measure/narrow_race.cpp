@@ -104,7 +104,12 @@ std::vector<NarrowContender> narrow_contenders(const PairSet& set,
     }
   }
   if (peers) {
-    for (auto& peer : make_narrow_peers()) contenders.push_back({std::move(peer), 1});
+    for (auto& peer : make_narrow_peers()) {
+      const bool takes_any = std::any_of(kLevels.begin(), kLevels.end(), [&](ContactLevel level) {
+        return peer->takes(set.kind, level);
+      });
+      if (takes_any) contenders.push_back({std::move(peer), 1});
+    }
   }
   for (const NarrowContender& contender : contenders) contender.engine->start(set);
   return contenders;

@@ -88,6 +88,8 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
+    // A scaled btMultiSphereShape is none: its farthest points are not those of an ellipsoid.
+    if (kind.a == ellipsoid || kind.b == ellipsoid) return nullptr;
     if (level == ContactLevel::manifold) return &BulletNarrow::manifold;
     const bool verdict = level == ContactLevel::boolean;
     const bool round = kind.b == sphere || kind.b == capsule;

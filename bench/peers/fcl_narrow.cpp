@@ -54,6 +54,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
         return with_second<ConeGeometry>(kind.b, level);
       case hull:
         return with_second<HullGeometry>(kind.b, level);
+      case ellipsoid:
+        return with_second<EllipsoidGeometry>(kind.b, level);
       default:
         return over_plane<Corners>(level);
     }
@@ -117,6 +119,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
         return of_shapes<A, ConeGeometry>(level);
       case ShapeKind::hull:
         return of_shapes<A, HullGeometry>(level);
+      case ShapeKind::ellipsoid:
+        return of_shapes<A, EllipsoidGeometry>(level);
       case ShapeKind::triangle:
         return of_shapes<A, Corners>(level);
       default:

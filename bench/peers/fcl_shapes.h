@@ -7,6 +7,7 @@
 #include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/geometry/shape/halfspace.h>
 #include <fcl/geometry/shape/sphere.h>
 
@@ -24,6 +25,7 @@ using CapsuleGeometry = fcl::Capsule<double>;
 using BoxGeometry = fcl::Box<double>;
 using CylinderGeometry = fcl::Cylinder<double>;
 using ConeGeometry = fcl::Cone<double>;
+using EllipsoidGeometry = fcl::Ellipsoid<double>;
 using HalfSpaceGeometry = fcl::Halfspace<double>;
 using HullGeometry = fcl::Convex<double>;
 
@@ -46,6 +48,10 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
     case ShapeKind::cone:
       return std::make_shared<ConeGeometry>(tables.cones[i].radius,
                                             2.0 * tables.cones[i].half_length);
+    case ShapeKind::ellipsoid: {
+      const double* radius = tables.ellipsoids[i].radius;
+      return std::make_shared<EllipsoidGeometry>(radius[0], radius[1], radius[2]);
+    }
     case ShapeKind::half_space: {
       const HalfSpaceShape& half = tables.half_spaces[i];
       return std::make_shared<HalfSpaceGeometry>(

@@ -90,6 +90,16 @@ void of_cone(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point)
   to_world(body, at, *point);
 }
 
+void of_ellipsoid(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
+  double local[3];
+  to_local(body, *direction, local);
+  for (int i = 0; i < 3; ++i) local[i] *= body.size[i];
+  const double length = std::hypot(local[0], local[1], local[2]);
+  for (int i = 0; i < 3; ++i) local[i] *= length > 0.0 ? body.size[i] / length : 0.0;
+  to_world(body, local, *point);
+}
+
 void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
@@ -125,6 +135,8 @@ ccd_support_fn support_of(ShapeKind kind) {
       return of_cylinder;
     case ShapeKind::cone:
       return of_cone;
+    case ShapeKind::ellipsoid:
+      return of_ellipsoid;
     default:
       return of_points;
   }
@@ -146,6 +158,9 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
       break;
     case ShapeKind::box:
       std::copy_n(tables.boxes[id.index()].half, 3, body.size);
+      break;
+    case ShapeKind::ellipsoid:
+      std::copy_n(tables.ellipsoids[id.index()].radius, 3, body.size);
       break;
     case ShapeKind::cylinder:
       body.size[0] = tables.cylinders[id.index()].radius;

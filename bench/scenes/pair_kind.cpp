@@ -7,7 +7,7 @@ using enum ShapeKind;
 
 constexpr std::size_t kMainKinds = 11;
 
-constexpr std::array<PairKind, 36> kKinds{{{"sphere-sphere", sphere, sphere},
+constexpr std::array<PairKind, 45> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"sphere-capsule", sphere, capsule},
                                            {"capsule-capsule", capsule, capsule},
                                            {"sphere-box", sphere, box},
@@ -42,7 +42,16 @@ constexpr std::array<PairKind, 36> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"cone-half_space", cone, half_space},
                                            {"hull16-triangle", hull, triangle, 16},
                                            {"hull16-half_space", hull, half_space, 16},
-                                           {"triangle-half_space", triangle, half_space}}};
+                                           {"triangle-half_space", triangle, half_space},
+                                           {"sphere-ellipsoid", sphere, ellipsoid},
+                                           {"capsule-ellipsoid", capsule, ellipsoid},
+                                           {"box-ellipsoid", box, ellipsoid},
+                                           {"cylinder-ellipsoid", cylinder, ellipsoid},
+                                           {"cone-ellipsoid", cone, ellipsoid},
+                                           {"hull16-ellipsoid", hull, ellipsoid, 16},
+                                           {"ellipsoid-ellipsoid", ellipsoid, ellipsoid},
+                                           {"ellipsoid-triangle", ellipsoid, triangle},
+                                           {"ellipsoid-half_space", ellipsoid, half_space}}};
 
 }  // namespace
 

@@ -10,7 +10,8 @@
 
 namespace winnow::bench {
 
-/// A kind of pair that is measured. `a` comes before `b` in the order of the kinds.
+/// A kind of pair that is measured. `a` comes before `b` in the order of the kinds, but that
+/// triangles and half-spaces are last.
 struct PairKind {
   std::string_view name;
   ShapeKind a{};
@@ -22,7 +23,7 @@ struct PairKind {
 /// Those that everything is measured on, cheapest first.
 [[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
 /// All kinds: the main ones, then every other pair of a sphere, capsule, box, cylinder, cone, hull,
-/// triangle and half-space.
+/// ellipsoid, triangle and half-space.
 [[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
 /// Null if there is none of the name.
 [[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;

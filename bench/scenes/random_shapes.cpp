@@ -140,6 +140,10 @@ DrawnShape ShapeSource::draw() {
       const ConeShape cone{length(0.25, 1.0), length(0.25, 1.0), 0.0};
       return put(cone, std::hypot(cone.radius, cone.half_length));
     }
+    case ShapeKind::ellipsoid: {
+      const Eigen::Vector3d radius(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
+      return put(EllipsoidShape{{radius.x(), radius.y(), radius.z()}}, radius.maxCoeff());
+    }
     case ShapeKind::half_space: {
       const Eigen::Vector3d normal = random_unit(random_);
       return put(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, 0.0}, length(0.25, 1.0));

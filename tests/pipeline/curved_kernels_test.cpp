@@ -1,5 +1,6 @@
-// Kernels of cylinders, cones and of hulls on half-spaces: small cases derived on paper, then
-// against the solver, on every instruction set, far from the origin and at other places of a batch.
+// Kernels of cylinders, cones, ellipsoids and of hulls on half-spaces: small cases derived on
+// paper, then against the solver, on every instruction set, far from the origin and at other places
+// of a batch.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -179,6 +180,43 @@ TEST(CurvedKernels, a_rim_in_an_edge_is_as_deep_as_it_reaches_in) {
   expect_depth(scene, 0.0625, {0.0, 0.0, 1.0});
 }
 
+TEST(CurvedKernels, an_egg_over_a_plane_is_as_high_as_its_lowest_point) {
+  // Turned by a right angle about x: its second axis is upright.
+  const PairScene scene = pair_of(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.5}, EllipsoidShape{{1, 3, 2}},
+                                  Pose{}, turned_about_x(kRightAngle, 3.25));
+  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  EXPECT_NEAR(answer.distance, -0.25, 1e-15);
+  EXPECT_NEAR(answer.normal[2], 1.0, 1e-15);
+  ASSERT_EQ(answer.contacts.size(), 1U);
+  EXPECT_NEAR(answer.contacts[0].position[2], 0.375, 1e-6);
+}
+
+TEST(CurvedKernels, a_ball_by_an_egg_is_as_far_as_from_the_point_that_faces_it) {
+  // The point (r cos t, s sin t) of an ellipse with radii r and s faces along
+  // (cos t / r, sin t / s): here of radii 2 and 1 at the angle with sine 0.6, to either side.
+  const double surface[2] = {2.0 * 0.8, 0.6};
+  const double out[2] = {0.4 / std::hypot(0.4, 0.6), 0.6 / std::hypot(0.4, 0.6)};
+  for (const double away : {1.0, -0.125}) {
+    const Pose at = Pose::at(surface[0] + away * out[0], surface[1] + away * out[1], 0);
+    const PairScene scene = pair_of(SphereShape{0.25}, EllipsoidShape{{2.0, 1.0, 4.0}}, at, Pose{});
+    const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+    EXPECT_NEAR(answer.distance, away - 0.25, 4e-15);
+    EXPECT_LE(answer.error_bound, 1e-13);
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(answer.normal[k], -out[k], 1e-14);
+  }
+}
+
+TEST(CurvedKernels, an_egg_in_a_wall_is_as_deep_as_it_reaches_in) {
+  expect_depth(pair_of(BoxShape{{4, 4, 1}, 0.0}, EllipsoidShape{{1.0, 2.0, 1.5}}, Pose{},
+                       Pose::at(0.5, 0.125, 1.75)),
+               0.75, {0.0, 0.0, 1.0});
+}
+
+TEST(CurvedKernels, eggs_end_to_end_are_as_deep_as_their_ends) {
+  const EllipsoidShape egg{{1.0, 1.25, 1.5}};
+  expect_depth(pair_of(egg, egg, Pose{}, Pose::at(0, 0, 2.75)), 0.25, {0.0, 0.0, 1.0});
+}
+
 TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
   // Both drums look the same from either side.
   const CylinderShape drum{0.5, 2.0, 0.0};
@@ -238,20 +276,18 @@ void PrintTo(const CurvedKind& kind, std::ostream* out) {
   *out << to_string(kind.a) << "_" << to_string(kind.b);
 }
 constexpr CurvedKind kCurvedKinds[] = {
-    {sphere, cylinder}, {sphere, cone},       {capsule, cylinder},    {capsule, cone},
-    {box, cylinder},    {box, cone},          {cylinder, cylinder},   {cylinder, cone},
-    {cone, cone},       {cylinder, triangle}, {cone, triangle},       {cylinder, hull},
-    {cone, hull},       {hull, half_space},   {cylinder, half_space}, {cone, half_space}};
+    {sphere, cylinder},    {sphere, cone},      {capsule, cylinder},
+    {capsule, cone},       {box, cylinder},     {box, cone},
+    {cylinder, cylinder},  {cylinder, cone},    {cone, cone},
+    {cylinder, triangle},  {cone, triangle},    {cylinder, hull},
+    {cone, hull},          {hull, half_space},  {cylinder, half_space},
+    {cone, half_space},    {sphere, ellipsoid}, {half_space, ellipsoid},
+    {capsule, ellipsoid},  {box, ellipsoid},    {cylinder, ellipsoid},
+    {cone, ellipsoid},     {hull, ellipsoid},   {triangle, ellipsoid},
+    {ellipsoid, ellipsoid}};
 
 class CurvedPairs : public testing::TestWithParam<CurvedKind> {
  protected:
-  void SetUp() override {
-    const std::vector<ShapeKind> kinds = all_kinds();
-    for (const ShapeKind kind : {GetParam().a, GetParam().b}) {
-      if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) GTEST_SKIP() << "no hulls";
-    }
-  }
-
   static PairScene scene_of(PairStyle style, std::size_t count, std::uint64_t seed = 11) {
     PairScene scene;
     Random random(seed);
@@ -277,8 +313,11 @@ TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
     for (std::size_t i = 0; i < solved.size(); ++i) {
       const double d = solved[i].distance;
       const double doubt = solved[i].error_bound + found[i].error_bound;
-      ASSERT_EQ(verdict[i].overlap, solved[i].overlap) << i << " " << d;
-      ASSERT_EQ(found[i].overlap, solved[i].overlap) << i << " " << d;
+      // What touches an ellipsoid is decided by no exact arithmetic.
+      if (GetParam().b != ellipsoid || std::abs(d) > solved[i].error_bound) {
+        ASSERT_EQ(verdict[i].overlap, solved[i].overlap) << i << " " << d;
+        ASSERT_EQ(found[i].overlap, solved[i].overlap) << i << " " << d;
+      }
       ASSERT_LE(std::abs(found[i].distance - d), doubt) << i;
       ASSERT_EQ(!touch[i].contacts.empty(), touch[i].distance <= kReach) << i;
       if (touch[i].contacts.empty()) continue;

@@ -1,5 +1,5 @@
-// Cylinders and cones against everything but spheres and half-spaces. The code is one for all kinds
-// of pairs, which a job tells: a branch that goes the same way for all of its pairs.
+// Cylinders, cones and ellipsoids against everything but spheres and half-spaces. The code is one
+// for all kinds of pairs, which a job tells: a branch that goes the same way for all of its pairs.
 
 #include "pipeline/kernels/curved/curved_answers.wide.h"
 
@@ -19,6 +19,13 @@ WINNOW_CURVED(cylinder_triangle)
 WINNOW_CURVED(cone_cone)
 WINNOW_CURVED(cone_hull)
 WINNOW_CURVED(cone_triangle)
+WINNOW_CURVED(capsule_ellipsoid)
+WINNOW_CURVED(box_ellipsoid)
+WINNOW_CURVED(cylinder_ellipsoid)
+WINNOW_CURVED(cone_ellipsoid)
+WINNOW_CURVED(hull_ellipsoid)
+WINNOW_CURVED(triangle_ellipsoid)
+WINNOW_CURVED(ellipsoid_ellipsoid)
 #undef WINNOW_CURVED
 
 }  // namespace winnow

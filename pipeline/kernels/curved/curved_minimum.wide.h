@@ -3,13 +3,19 @@
 // Where the depth of two cores has a local minimum, to double's precision, and how far around it
 // nothing is less deep: a polytope that says roughly where the least depth is needs no more.
 //
-// Near its least depth the difference of two cores is often as simple as a point, discs (of rims)
-// and segments (edges, and lines of sides) added up; it contains those, so their heights h bound
-// its own from below. For n = n0 + t, t across n0 and |t| <= T, a disc of radius r whose axis makes
-// the sine s with n0 rises over its tangent by at least r (e . t)^2 / (2 (s + T)), with e across
-// both, and a segment along g, whose ends are at least p away from where it is met, by p |g . t|,
-// which is not less than p (g . t)^2 / T. Where these together are not less than h(n0) |t|^2 / 2,
-// h(n) is at least h(n0) |n|. A flat part, met at least p inside its border, rises by p |t|.
+// Near its least depth the difference of two cores is often as simple as a point, discs (of rims),
+// ellipsoids and segments (edges, and lines of sides) added up; it contains those, so their heights
+// h bound its own from below. For n = n0 + t, t across n0 and |t| <= T, a disc of radius r whose
+// axis makes the sine s with n0 rises over its tangent by at least r (e . t)^2 / (2 (s + T)), with
+// e across both, and a segment along g, whose ends are at least p away from where it is met, by p
+// |g . t|, which is not less than p (g . t)^2 / T. Where these together are not less than h(n0)
+// |t|^2 / 2, h(n) is at least h(n0) |n|. A flat part, met at least p inside its border, rises by p
+// |t|.
+//
+// The height of an ellipsoid along n is the length of M n, its axes times its radii, as that of a
+// disc is of one whose third radius is 0. It rises by at least |P M t|^2 / (2 (|M n0| + m T)), for
+// the largest radius m and the projection P across M n0; what is taken off an ellipsoid all around
+// takes at most half of it times |t|^2.
 //
 // The line of a cone's side turns with the normal. Where it is met the share q of it from the tip,
 // half of q times the cone's disc and half of the distance to the nearer end are as good as a disc
@@ -19,7 +25,7 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// A point, up to two discs and up to two segments from it, added up, in the first's frame.
+/// A point, up to two discs, ellipsoids and segments from it, added up, in the first's frame.
 struct SimpleSum {
   struct Disc {
     double radius;
@@ -38,15 +44,46 @@ struct SimpleSum {
     double along[3];
   };
 
+  struct Ellipsoid {
+    double radius[3];
+    /// Unit, those of the radii.
+    double axis[3][3];
+    /// What is taken off all around.
+    double off;
+  };
+
   double point[3];
   /// What of it is the first's.
   double mine[3];
   std::uint32_t discs;
   std::uint32_t segments;
+  std::uint32_t ellipsoids;
   std::uint32_t own_discs;
+  std::uint32_t own_ellipsoids;
   std::uint32_t own_segments;
   Disc disc[2];
   Segment segment[2];
+  Ellipsoid ellipsoid[2];
+};
+
+/// An ellipsoid's height along a unit direction, in parts: that of its core is the length of
+/// `stretched` less `off`.
+struct EllipsoidHeight {
+  /// The direction's parts along the axes, times the radii.
+  double stretched[3];
+  double length;
+
+  EllipsoidHeight(const SimpleSum::Ellipsoid& ellipsoid, const double* n) {
+    for (int k = 0; k < 3; ++k) stretched[k] = ellipsoid.radius[k] * dot3(ellipsoid.axis[k], n);
+    length = __builtin_sqrt(dot3(stretched, stretched));
+  }
+
+  /// How `stretched` turns where the direction moves along e.
+  void turn(const SimpleSum::Ellipsoid& ellipsoid, const double* e, double* across) const {
+    for (int k = 0; k < 3; ++k) across[k] = ellipsoid.radius[k] * dot3(ellipsoid.axis[k], e);
+    const double along = dot3(across, stretched) / (length * length);
+    for (int k = 0; k < 3; ++k) across[k] -= along * stretched[k];
+  }
 };
 
 /// Unit directions across n and each other (Duff et al., "Building an orthonormal basis,
@@ -75,6 +112,7 @@ struct NearPoints {
   [[nodiscard]] bool is_round() const {
     return form->kind == ShapeKind::cylinder || form->kind == ShapeKind::cone;
   }
+  [[nodiscard]] bool is_smooth() const { return form->kind == ShapeKind::ellipsoid; }
   /// Of a cylinder or cone: how many are at the upper end.
   [[nodiscard]] int high() const {
     int count = 0;
@@ -83,7 +121,7 @@ struct NearPoints {
   }
   /// Points of polytopes that are the same but for rounding become so.
   void unite() {
-    if (is_round()) return;
+    if (is_round() || is_smooth()) return;
     for (int i = 1; i < 3; ++i) {
       for (int j = 0; j < i; ++j) {
         double most = 0.0;
@@ -134,8 +172,10 @@ class LocalMinimum {
     if (is_flat_) return true;
     sum_.discs = 0;
     sum_.segments = 0;
+    sum_.ellipsoids = 0;
     if (!add_side(0)) return false;
     sum_.own_discs = sum_.discs;
+    sum_.own_ellipsoids = sum_.ellipsoids;
     sum_.own_segments = sum_.segments;
     return add_side(1) && approach() && meet_segments();
   }
@@ -150,6 +190,12 @@ class LocalMinimum {
       double across[3];
       const double sine = sine_of(sum_.disc[i].axis, across);
       add_square(e, across, sum_.disc[i].radius / (sine + tangent), q);
+    }
+    for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
+      const SimpleSum::Ellipsoid& s = sum_.ellipsoid[i];
+      const double most = largest_of(largest_of(s.radius[0], s.radius[1]), s.radius[2]);
+      const EllipsoidHeight height(s, normal_);
+      add_ellipsoid_rise(e, s, height, height.length + most * tangent, q);
     }
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
       const SimpleSum::Segment& s = sum_.segment[i];
@@ -182,6 +228,11 @@ class LocalMinimum {
       double rim[3];
       rim_of(sum_.disc[i], rim);
       for (int k = 0; k < 3; ++k) point[k] += rim[k];
+    }
+    for (std::uint32_t i = 0; i < sum_.own_ellipsoids; ++i) {
+      double x[3];
+      touch_of(sum_.ellipsoid[i], x);
+      for (int k = 0; k < 3; ++k) point[k] += x[k];
     }
     for (std::uint32_t i = 0; i < sum_.own_segments; ++i) {
       for (int k = 0; k < 3; ++k) point[k] += at_[i] * sum_.segment[i].along[k];
@@ -220,6 +271,7 @@ class LocalMinimum {
 
   bool lie_flat(int side) {
     const NearPoints& points = side_[side];
+    if (points.is_smooth()) return false;
     const SidePlace place(*pair_, side == 1);
     return points.is_round() ? lie_on_cap(points, place, side) : lie_on_face(points, place, side);
   }
@@ -316,6 +368,7 @@ class LocalMinimum {
     const NearPoints& points = side_[side];
     const SidePlace place(*pair_, side == 1);
     if (points.is_round()) return add_round(points, place, side);
+    if (points.is_smooth()) return add_ellipsoid(*points.form, place, side);
     const double* other = nullptr;
     for (int i = 1; i < 3; ++i) {
       if (are_same(points.at[i], points.at[0])) continue;
@@ -346,6 +399,19 @@ class LocalMinimum {
     }
     const double along[3] = {0.0, 0.0, 2.0 * half};
     return !is_side || add_edge(along, place);
+  }
+
+  bool add_ellipsoid(const Form& form, const SidePlace& place, int side) {
+    add_point(form.center, place, side);
+    SimpleSum::Ellipsoid& s = sum_.ellipsoid[sum_.ellipsoids++];
+    for (int k = 0; k < 3; ++k) {
+      double axis[3] = {0.0, 0.0, 0.0};
+      axis[k] = 1.0;
+      place.direction(axis, s.axis[k]);
+      s.radius[k] = form.number[k];
+    }
+    s.off = form.number[3];
+    return true;
   }
 
   void add_point(const double* x, const SidePlace& place, int side) {
@@ -398,6 +464,17 @@ class LocalMinimum {
     for (int k = 0; k < 3; ++k) rim[k] *= scale;
   }
 
+  /// From the middle of an ellipsoid to its point farthest along the normal.
+  void touch_of(const SimpleSum::Ellipsoid& ellipsoid, double* x) const {
+    const EllipsoidHeight height(ellipsoid, normal_);
+    const double over = 1.0 / largest_of(height.length, 1e-150);
+    for (int k = 0; k < 3; ++k) x[k] = -ellipsoid.off * normal_[k];
+    for (int i = 0; i < 3; ++i) {
+      const double reach = ellipsoid.radius[i] * height.stretched[i] * over;
+      for (int k = 0; k < 3; ++k) x[k] += reach * ellipsoid.axis[i][k];
+    }
+  }
+
   /// The sum's point farthest along the normal, where its segments begin.
   void met(double* w) const {
     for (int k = 0; k < 3; ++k) w[k] = sum_.point[k];
@@ -405,6 +482,11 @@ class LocalMinimum {
       double rim[3];
       rim_of(sum_.disc[i], rim);
       for (int k = 0; k < 3; ++k) w[k] += rim[k];
+    }
+    for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
+      double x[3];
+      touch_of(sum_.ellipsoid[i], x);
+      for (int k = 0; k < 3; ++k) w[k] += x[k];
     }
   }
 
@@ -417,6 +499,17 @@ class LocalMinimum {
     q[2] += f * v * v;
   }
 
+  /// Adds how an ellipsoid rises over its tangent plane, less what is taken off it: `length` is
+  /// that of what the direction is stretched to, at most.
+  static void add_ellipsoid_rise(const double (*e)[3], const SimpleSum::Ellipsoid& ellipsoid,
+                                 const EllipsoidHeight& height, double length, double* q) {
+    double across[2][3];
+    for (int i = 0; i < 2; ++i) height.turn(ellipsoid, e[i], across[i]);
+    q[0] += dot3(across[0], across[0]) / length - ellipsoid.off;
+    q[1] += dot3(across[0], across[1]) / length;
+    q[2] += dot3(across[1], across[1]) / length - ellipsoid.off;
+  }
+
   bool set_normal(const double* n) {
     const double length = __builtin_sqrt(dot3(n, n));
     if (!(length > kLeastSine)) return false;
@@ -424,10 +517,10 @@ class LocalMinimum {
     return true;
   }
 
-  /// Two of discs and segments keep the normal; a cone's side is both.
+  /// Two of discs and segments keep the normal; a cone's side is both, and an ellipsoid enough.
   [[nodiscard]] bool is_stiff() const {
     const bool has_cone_side = sum_.segments > 0 && sum_.segment[0].radius > 0.0;
-    return has_cone_side || sum_.segments + sum_.discs >= 2;
+    return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
   }
 
   /// Newton's method over the normals that meet all segments.
@@ -522,6 +615,11 @@ class LocalMinimum {
       const double sine = sine_of(sum_.disc[i].axis, across);
       if (!(sine > kLeastSine)) return false;
       add_square(e, across, sum_.disc[i].radius / sine, q);
+    }
+    for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
+      const EllipsoidHeight at(sum_.ellipsoid[i], normal_);
+      if (!(at.length > kLeastSine * kLeastSine)) return false;
+      add_ellipsoid_rise(e, sum_.ellipsoid[i], at, at.length, q);
     }
     if (!(q[0] > 0.0)) return false;
     const double slope[2] = {dot3(e[0], w), dot3(e[1], w)};

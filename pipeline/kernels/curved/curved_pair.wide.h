@@ -19,7 +19,8 @@ struct Form {
 
   ShapeKind kind;
   /// Box: half extents. Capsule, cylinder, cone: radius of the core, 0, half length. Triangle:
-  /// three vertices.
+  /// three vertices. Ellipsoid: radii, and what is taken off all around, which the rounding has
+  /// instead: the least radius of curvature.
   double number[kNumbers];
   const HullShape* hull;
   double rounding;
@@ -108,6 +109,15 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
       form.number[2] = tables.cones[i].half_length;
       form.rounding = tables.cones[i].rounding;
       break;
+    case ShapeKind::ellipsoid: {
+      const double* r = tables.ellipsoids[i].radius;
+      const double most = largest_of(largest_of(r[0], r[1]), r[2]);
+      const double least = -largest_of(largest_of(-r[0], -r[1]), -r[2]);
+      for (int k = 0; k < 3; ++k) form.number[k] = r[k];
+      form.number[3] = most > 0.0 ? least * (least / most) : 0.0;
+      form.rounding = tables.ellipsoids[i].rounding + form.number[3];
+      break;
+    }
     case ShapeKind::triangle: {
       double most = 0.0;
       for (int v = 0; v < 3; ++v) {
@@ -208,6 +218,19 @@ template <typename T>
   return {d.x * over, d.y * over, z};
 }
 
+/// That of an ellipsoid: n as in Form::number. Relative to the largest product, so that no square
+/// vanishes that counts.
+template <typename T>
+[[gnu::always_inline]] static inline Vec3<T> ellipsoid_point(const Lanes<T>* n, const Vec3<T>& d) {
+  const Vec3<T> stretched{n[0] * d.x, n[1] * d.y, n[2] * d.z};
+  const Lanes<T> most = max(max(abs(stretched.x), abs(stretched.y)), abs(stretched.z));
+  const Vec3<T> share = stretched * (Lanes<T>(T(1)) / max(most, Lanes<T>(kLeastAcross<T>)));
+  const Lanes<T> over = Lanes<T>(T(1)) / max(sqrt(dot(share, share)), Lanes<T>(T(1)));
+  const Lanes<T> off = n[3] / max(sqrt(dot(d, d)), Lanes<T>(kLeastAcross<T>));
+  return {n[0] * share.x * over - off * d.x, n[1] * share.y * over - off * d.y,
+          n[2] * share.z * over - off * d.z};
+}
+
 /// The farthest point of a core along d, in its frame; `of_hull` finds that of hulls.
 template <typename T, typename OfHull>
 [[gnu::always_inline]] static inline Vec3<T> support(const FormLanes<T>& form, const Vec3<T>& d,
@@ -238,6 +261,8 @@ template <typename T, typename OfHull>
       const Vec3<T> rim = rim_point(n[0], d, across, -n[2]);
       return select(on_tip, Vec3<T>{zero, zero, n[2]}, rim);
     }
+    case ShapeKind::ellipsoid:
+      return ellipsoid_point(n, d);
     default:
       return of_hull(d);
   }

@@ -215,11 +215,14 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,
                                             double margin, ContactPoint (&out)[kManifoldPoints]) {
-  const CurvedPatch first(pair, true, normal);
-  const CurvedPatch second(pair, false, normal);
-  std::uint32_t count =
-      contact_patch(pair.swapped ? second.view() : first.view(),
-                    pair.swapped ? first.view() : second.view(), world, margin, out);
+  // Ellipsoids, the last of the kinds, touch in a point.
+  std::uint32_t count = 0;
+  if (pair.second.kind != ShapeKind::ellipsoid) {
+    const CurvedPatch first(pair, true, normal);
+    const CurvedPatch second(pair, false, normal);
+    count = contact_patch(pair.swapped ? second.view() : first.view(),
+                          pair.swapped ? first.view() : second.view(), world, margin, out);
+  }
   ContactPoint own{};
   for (int k = 0; k < 3; ++k) {
     own.position[k] = static_cast<float>(point[k] + 0.5 * distance * world[k]);

@@ -38,6 +38,14 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
       x[2] = cone ? (on_tip ? n[2] : -n[2]) : towards(d[2], n[2]);
       return;
     }
+    case ShapeKind::ellipsoid: {
+      const double stretched[3] = {n[0] * d[0], n[1] * d[1], n[2] * d[2]};
+      const double length = __builtin_sqrt(dot3(stretched, stretched));
+      const double over = 1.0 / largest_of(length, 1e-150);
+      const double off = n[3] / __builtin_sqrt(dot3(d, d));
+      for (int k = 0; k < 3; ++k) x[k] = n[k] * (stretched[k] * over) - off * d[k];
+      return;
+    }
     default:
       hull_support(*form.hull, d, scale, x);
   }
