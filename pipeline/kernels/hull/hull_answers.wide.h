@@ -77,8 +77,9 @@ class HullAnswers {
       const double d = pair.first->center[k] - (middle[k] + pair.shift[k]);
       square += d * d;
     }
-    const double reach = pair.first->inner_radius + pair.second->inner_radius;
-    return square < reach * reach * (1.0 - 1e-9);
+    const double doubt = kDoubleError * pair.size;
+    const double reach = pair.first->inner_radius + pair.second->inner_radius - doubt;
+    return reach > 0.0 && square < reach * reach;
   }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
