@@ -36,10 +36,7 @@ class HullAnswers {
     std::uint32_t placed = 0;
     for (std::uint32_t i = begin; i < begin + count; ++i) {
       HullPair& pair = pair_[placed];
-      if (i + kAhead < job_.count) {
-        __builtin_prefetch(job_.poses + job_.pairs[i + kAhead].a);
-        __builtin_prefetch(job_.poses + job_.pairs[i + kAhead].b);
-      }
+      fetch_ahead(job_, i);
       if (!place(i, placed, pair)) {
         give_up(i);
       } else if (Level == 0 && balls_meet(pair)) {
@@ -57,8 +54,6 @@ class HullAnswers {
     }
   }
 
-  /// How many pairs ahead poses are asked for.
-  static constexpr std::uint32_t kAhead = 16;
   /// Beyond all distances that occur.
   static constexpr double kFarthest = 1e10;
 
