@@ -68,8 +68,13 @@ template <typename T>
   const auto of_least = [&](const Lanes<T>& w, const Lanes<T>& e) {
     return select(e > zero, zero, w * w);
   };
-  Lanes<T> s = sqrt(of_least(weight.x, excess.x) + of_least(weight.y, excess.y) +
-                    of_least(weight.z, excess.z));
+  // Never 0, which has no inverse: beside a flat ellipsoid this is as good.
+  const Lanes<T> most = max(max(radius.x, radius.y), radius.z);
+  const Lanes<T> hardly =
+      most * most * Lanes<T>(sizeof(T) == sizeof(double) ? T(1e-30) : T(1e-12F));
+  Lanes<T> s = max(sqrt(of_least(weight.x, excess.x) + of_least(weight.y, excess.y) +
+                        of_least(weight.z, excess.z)),
+                   hardly);
   const auto inverse = [&] {
     return Vec3<T>{one / (s + excess.x), one / (s + excess.y), one / (s + excess.z)};
   };
@@ -83,15 +88,17 @@ template <typename T>
   }
   const Vec3<T> way = times(q, over);
   const Vec3<T> outward = way * (one / sqrt(dot(way, way)));
-  const Reach<T> reach = reach_of(radius, outward);
-  const Vec3<T> gap = q - reach.point;
+  const Vec3<T> share = times(weight, over);
+  const Lanes<T> within = one / max(sqrt(dot(share, share)), one);
+  const Vec3<T> gap = q - times(radius, share) * within;
   // Any t above -thin^2 bounds the squared distance to the surface (Lagrange's dual function).
   // Where it is not above zero, the point is hardly inside or has no s: nothing is known.
   const Lanes<T> t = s - thin * thin;
   const Lanes<T> least = t * (dot(times(q, q), over) - one);
   const Lanes<T> unknown(T(__builtin_nan("")));
   const Lanes<T> inside = select(least > zero, -sqrt(max(least, zero)), unknown);
-  return {outward, dot(outward, q) - reach.height, select(t > zero, sqrt(dot(gap, gap)), inside)};
+  const Lanes<T> low = dot(outward, q) - reach_of(radius, outward).height;
+  return {outward, low, select(t > zero, sqrt(dot(gap, gap)), inside)};
 }
 
 struct SphereEllipsoid {
