@@ -4,8 +4,7 @@
 // of a kind (pipeline/kinds/) links the kernels of its pairs with itself and with all kinds before
 // it in that order, and nothing else names them.
 //
-// The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone,
-// ellipsoid.
+// The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone, ellipsoid.
 
 #include "pipeline/kernels/kernels.h"
 

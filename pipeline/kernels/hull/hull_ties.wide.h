@@ -28,6 +28,7 @@ class HullTies {
     if (!has_ties(measure_.normal, high - measure_.depth)) return false;
     double ends[2][3];
     arc_ends(pair_, arc, ends);
+    vertex_at(*pair_.first, pair_.first->edges[arc.edge].vertex[0], mine_);
     return follow(arc.edge, ends[0], ends[1]);
   }
 
@@ -95,7 +96,6 @@ class HullTies {
   }
 
   bool follow(std::uint32_t edge, const double* from, const double* to) {
-    vertex_at(*pair_.first, pair_.first->edges[edge].vertex[0], mine_);
     const std::uint32_t last = nearest(to);
     double theirs[3];
     place_.of_second(*pair_.second, last, theirs);

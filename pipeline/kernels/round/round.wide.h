@@ -116,6 +116,30 @@ template <typename T>
           bits(near) & c.certified & block.lanes()};
 }
 
+/// Levels distance and manifold of pairs that touch in one point, where body a's has no feature;
+/// returns the uncertified lanes.
+template <int L, typename T>
+[[gnu::always_inline]] inline Mask16 write_touch(NarrowJob& job, const PairBlock<T>& block,
+                                                 const CertifiedLanes<T>& c, const Vec3<T>& foot,
+                                                 const Lanes<T>& radius,
+                                                 const Lanes<T>& feature_b) {
+  write_certified<L>(job, block, c, foot, radius);
+  if constexpr (L == kManifold) {
+    const Lanes<T> zero(T(0));
+    write_contacts(job, block, {witness_contact(job, block, c, foot, radius, zero, feature_b)});
+  }
+  return ~c.certified;
+}
+
+/// The same of a sphere as body a, whose core is its position.
+template <int L, typename T>
+[[gnu::always_inline]] inline Mask16 write_ball(NarrowJob& job, const PairBlock<T>& block,
+                                                const CertifiedLanes<T>& c, const Lanes<T>& radius,
+                                                const Lanes<T>& feature_b) {
+  const Lanes<T> zero(T(0));
+  return write_touch<L>(job, block, c, Vec3<T>{zero, zero, zero}, radius, feature_b);
+}
+
 /// A signed distance that lies between the two numbers, but for kRoundings * epsilon * scale.
 template <typename T>
 struct ProofLanes {

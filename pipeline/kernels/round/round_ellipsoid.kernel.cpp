@@ -134,15 +134,7 @@ struct SphereEllipsoid {
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
-      const CertifiedLanes<T> answer = answer_proven(r.proof, r.normal);
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, r.radius);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, r.radius, zero, zero)});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer_proven(r.proof, r.normal), r.radius, Lanes<T>(T(0)));
     }
   }
 };
@@ -185,11 +177,7 @@ struct HalfSpaceEllipsoid {
       const Lanes<T> zero(T(0));
       const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
                                      certified_lanes(r.distance, r.bound, r.scale, r.scale > zero)};
-      write_certified<L>(job, block, answer, r.foot, zero);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block, {witness_contact(job, block, answer, r.foot, zero, zero, zero)});
-      }
-      return ~answer.certified;
+      return write_touch<L>(job, block, answer, r.foot, zero, zero);
     }
   }
 };

@@ -87,15 +87,7 @@ struct SphereBox {
       const LaneMask<T> unique = r.view.lead > r.scale * Lanes<T>(kShortest<T>);
       const CertifiedLanes<T> answer{r.distance, bound, r.axes.to_world(r.view.towards),
                                      certified_lanes(r.distance, bound, r.scale, unique)};
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, r.sphere_radius);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, r.sphere_radius, zero,
-                                        box_feature(r.view.towards))});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer, r.sphere_radius, box_feature(r.view.towards));
     }
   }
 };

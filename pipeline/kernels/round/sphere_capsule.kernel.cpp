@@ -23,15 +23,7 @@ struct SphereCapsule {
       return answer_overlap(job, block, witness);
     } else {
       CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(kShortest<T>));
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, ra);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, ra, zero,
-                                        segment_feature(t, capsule.half_length))});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer, ra, segment_feature(t, capsule.half_length));
     }
   }
 };

@@ -18,13 +18,7 @@ struct SphereSphere {
       // The offset is right to a rounding of itself, and so is the normal, however short it is.
       const Lanes<T> shortest(sizeof(T) == sizeof(double) ? T(1e-130) : T(1e-15F));
       CertifiedLanes<T> answer = answer_distance(witness, shortest);
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, ra);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block, {witness_contact(job, block, answer, foot, ra, zero, zero)});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer, ra, Lanes<T>(T(0)));
     }
   }
 };

@@ -130,14 +130,7 @@ struct SphereSpun {
     } else {
       const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
                                      certified_lanes(r.distance, r.bound, r.scale, r.unique)};
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, r.radius);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, r.radius, zero, zero)});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer, r.radius, Lanes<T>(T(0)));
     }
   }
 };

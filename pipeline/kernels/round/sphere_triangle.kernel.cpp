@@ -74,15 +74,7 @@ struct SphereTriangle {
     if constexpr (L == kBoolean) {
       return answer_proven_sign(job, block, r.proof);
     } else {
-      const CertifiedLanes<T> answer = answer_proven(r.proof, r.normal);
-      const Lanes<T> zero(T(0));
-      const Vec3<T> foot{zero, zero, zero};
-      write_certified<L>(job, block, answer, foot, r.radius);
-      if constexpr (L == kManifold) {
-        write_contacts(job, block,
-                       {witness_contact(job, block, answer, foot, r.radius, zero, r.feature)});
-      }
-      return ~answer.certified;
+      return write_ball<L>(job, block, answer_proven(r.proof, r.normal), r.radius, r.feature);
     }
   }
 };
