@@ -7,9 +7,11 @@
 #include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
+#include <algorithm>
 #include <memory>
 
 /// Shapes and poses as Bullet has them, in float.
@@ -24,7 +26,8 @@ inline btTransform transform_of(const Pose& pose) {
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(pose.position));
 }
 
-/// Hulls are made smaller by the margin that they then have.
+/// Hulls are made smaller by the margin that they then have. That of two balls is the smaller one's
+/// radius, which Bullet takes off both.
 inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id,
                                                  double hull_margin) {
   const std::uint32_t i = id.index();
@@ -46,6 +49,16 @@ inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, Shap
       return std::make_unique<btConeShapeZ>(
           static_cast<btScalar>(tables.cones[i].radius),
           static_cast<btScalar>(2.0 * tables.cones[i].half_length));
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape& taper = tables.tapered_capsules[i];
+      const btScalar half = static_cast<btScalar>(taper.half_length);
+      const btVector3 middle[2] = {{0, 0, -half}, {0, 0, half}};
+      const btScalar radius[2] = {static_cast<btScalar>(taper.radius[0]),
+                                  static_cast<btScalar>(taper.radius[1])};
+      auto balls = std::make_unique<btMultiSphereShape>(middle, radius, 2);
+      balls->setMargin(std::min(radius[0], radius[1]));
+      return balls;
+    }
     case ShapeKind::triangle: {
       const auto& v = tables.triangles[i].vertex;
       return std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));

@@ -38,6 +38,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
+    // FCL has no tapered capsules.
+    if (kind.a == tapered_capsule || kind.b == tapered_capsule) return nullptr;
     if (kind.a == triangle && kind.b == triangle) {
       return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
     }

@@ -14,7 +14,7 @@ namespace {
 struct CcdBody {
   double turn[9];  // rotation, by columns
   double position[3];
-  double size[3];           // half lengths of a box; radius and half length of the round ones
+  double size[3];           // half lengths of a box; radii and half length of the round ones
   const double* vertex[3];  // columns of coordinates
   std::uint32_t vertices;
 };
@@ -58,6 +58,18 @@ void of_capsule(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poi
   const double h = along < 0.0 ? -body.size[1] : body.size[1];
   for (int i = 0; i < 3; ++i) point->v[i] = body.position[i] + h * axis[i];
   add_radius(*direction, body.size[0], *point);
+}
+
+void of_taper(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
+  const double* axis = body.turn + 6;
+  const double along =
+      axis[0] * direction->v[0] + axis[1] * direction->v[1] + axis[2] * direction->v[2];
+  const double rise = (body.size[0] - body.size[1]) * length_of(*direction);
+  const bool low = rise > 2.0 * body.size[2] * along;
+  const double h = low ? -body.size[2] : body.size[2];
+  for (int i = 0; i < 3; ++i) point->v[i] = body.position[i] + h * axis[i];
+  add_radius(*direction, body.size[low ? 0 : 1], *point);
 }
 
 void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
@@ -137,6 +149,8 @@ ccd_support_fn support_of(ShapeKind kind) {
       return of_cone;
     case ShapeKind::ellipsoid:
       return of_ellipsoid;
+    case ShapeKind::tapered_capsule:
+      return of_taper;
     default:
       return of_points;
   }
@@ -162,6 +176,12 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
     case ShapeKind::ellipsoid:
       std::copy_n(tables.ellipsoids[id.index()].radius, 3, body.size);
       break;
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape& taper = tables.tapered_capsules[id.index()];
+      std::copy_n(taper.radius, 2, body.size);
+      body.size[2] = taper.half_length;
+      break;
+    }
     case ShapeKind::cylinder:
       body.size[0] = tables.cylinders[id.index()].radius;
       body.size[1] = tables.cylinders[id.index()].half_length;

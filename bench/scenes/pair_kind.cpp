@@ -7,7 +7,7 @@ using enum ShapeKind;
 
 constexpr std::size_t kMainKinds = 11;
 
-constexpr std::array<PairKind, 45> kKinds{{{"sphere-sphere", sphere, sphere},
+constexpr std::array<PairKind, 55> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"sphere-capsule", sphere, capsule},
                                            {"capsule-capsule", capsule, capsule},
                                            {"sphere-box", sphere, box},
@@ -51,7 +51,17 @@ constexpr std::array<PairKind, 45> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"hull16-ellipsoid", hull, ellipsoid, 16},
                                            {"ellipsoid-ellipsoid", ellipsoid, ellipsoid},
                                            {"ellipsoid-triangle", ellipsoid, triangle},
-                                           {"ellipsoid-half_space", ellipsoid, half_space}}};
+                                           {"ellipsoid-half_space", ellipsoid, half_space},
+                                           {"sphere-taper", sphere, tapered_capsule},
+                                           {"capsule-taper", capsule, tapered_capsule},
+                                           {"box-taper", box, tapered_capsule},
+                                           {"cylinder-taper", cylinder, tapered_capsule},
+                                           {"cone-taper", cone, tapered_capsule},
+                                           {"hull16-taper", hull, tapered_capsule, 16},
+                                           {"ellipsoid-taper", ellipsoid, tapered_capsule},
+                                           {"taper-taper", tapered_capsule, tapered_capsule},
+                                           {"taper-triangle", tapered_capsule, triangle},
+                                           {"taper-half_space", tapered_capsule, half_space}}};
 
 }  // namespace
 

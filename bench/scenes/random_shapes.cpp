@@ -144,6 +144,10 @@ DrawnShape ShapeSource::draw() {
       const Eigen::Vector3d radius(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
       return put(EllipsoidShape{{radius.x(), radius.y(), radius.z()}}, radius.maxCoeff());
     }
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape taper{{length(0.125, 0.5), length(0.125, 0.5)}, length(0.25, 1.0)};
+      return put(taper, taper.half_length + std::max(taper.radius[0], taper.radius[1]));
+    }
     case ShapeKind::half_space: {
       const Eigen::Vector3d normal = random_unit(random_);
       return put(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, 0.0}, length(0.25, 1.0));

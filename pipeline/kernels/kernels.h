@@ -36,6 +36,8 @@ struct NarrowJob {
   /// By body.
   const ShapeId* shapes;
   const Pose* poses;
+  /// Whether poses fill more than the nearer caches: kernels ask memory for them ahead.
+  bool has_many_bodies;
   ShapeTables tables;
   /// Contacts are made of pairs that are no farther apart.
   double margin;
@@ -73,8 +75,8 @@ struct NarrowKernels {
   /// sizes.
   NarrowKernel fast[3];
   /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
-  /// 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones and ellipsoids meet more than
-  /// spheres and half-spaces.
+  /// 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones, ellipsoids and tapered capsules
+  /// meet more than spheres and half-spaces.
   NarrowKernel robust[3];
 };
 
@@ -90,6 +92,7 @@ struct NarrowKernels {
   WINNOW_X(sphere, triangle)            \
   WINNOW_X(sphere, half_space)          \
   WINNOW_X(sphere, ellipsoid)           \
+  WINNOW_X(sphere, tapered_capsule)     \
   WINNOW_X(capsule, capsule)            \
   WINNOW_X(capsule, box)                \
   WINNOW_X(capsule, cylinder)           \
@@ -98,6 +101,7 @@ struct NarrowKernels {
   WINNOW_X(capsule, triangle)           \
   WINNOW_X(capsule, half_space)         \
   WINNOW_X(capsule, ellipsoid)          \
+  WINNOW_X(capsule, tapered_capsule)    \
   WINNOW_X(box, box)                    \
   WINNOW_X(box, cylinder)               \
   WINNOW_X(box, cone)                   \
@@ -105,26 +109,34 @@ struct NarrowKernels {
   WINNOW_X(box, triangle)               \
   WINNOW_X(box, half_space)             \
   WINNOW_X(box, ellipsoid)              \
+  WINNOW_X(box, tapered_capsule)        \
   WINNOW_X(cylinder, cylinder)          \
   WINNOW_X(cylinder, cone)              \
   WINNOW_X(cylinder, hull)              \
   WINNOW_X(cylinder, triangle)          \
   WINNOW_X(cylinder, half_space)        \
   WINNOW_X(cylinder, ellipsoid)         \
+  WINNOW_X(cylinder, tapered_capsule)   \
   WINNOW_X(cone, cone)                  \
   WINNOW_X(cone, hull)                  \
   WINNOW_X(cone, triangle)              \
   WINNOW_X(cone, half_space)            \
   WINNOW_X(cone, ellipsoid)             \
+  WINNOW_X(cone, tapered_capsule)       \
   WINNOW_X(hull, hull)                  \
   WINNOW_X(hull, triangle)              \
   WINNOW_X(hull, half_space)            \
   WINNOW_X(hull, ellipsoid)             \
+  WINNOW_X(hull, tapered_capsule)       \
   WINNOW_X(triangle, triangle)          \
   WINNOW_X(triangle, half_space)        \
   WINNOW_X(triangle, ellipsoid)         \
+  WINNOW_X(triangle, tapered_capsule)   \
   WINNOW_X(half_space, ellipsoid)       \
-  WINNOW_X(ellipsoid, ellipsoid)
+  WINNOW_X(half_space, tapered_capsule) \
+  WINNOW_X(ellipsoid, ellipsoid)        \
+  WINNOW_X(ellipsoid, tapered_capsule)  \
+  WINNOW_X(tapered_capsule, tapered_capsule)
 
 #define WINNOW_DECLARE_PAIR(a, b) WINNOW_KERNELS(NarrowKernels, a##_##b##_kernels);
 WINNOW_NARROW_KERNELS(WINNOW_DECLARE_PAIR)

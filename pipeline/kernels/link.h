@@ -4,7 +4,8 @@
 // of a kind (pipeline/kinds/) links the kernels of its pairs with itself and with all kinds before
 // it in that order, and nothing else names them.
 //
-// The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone, ellipsoid.
+// The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone, ellipsoid,
+// tapered_capsule.
 
 #include "pipeline/kernels/kernels.h"
 

@@ -4,7 +4,7 @@
 // positions, orientations, and the numbers of the shapes in the order in which the structs hold
 // them.
 
-#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/fetch_ahead.wide.h"
 #include "simd/lanes/rows.h"
 #include "simd/lanes/vectors.h"
 
@@ -23,7 +23,7 @@ struct PairBlock {
 };
 
 /// Calls body(block) for all pairs of the job. Loads of a block do not depend on the one before, so
-/// misses overlap without being asked for ahead.
+/// misses of the nearer caches overlap without being asked for ahead.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
   constexpr std::uint32_t lanes = Lanes<T>::kCount;
@@ -37,6 +37,7 @@ template <typename T, typename Body>
       }
       block.pairs = tail;
     }
+    for (std::uint32_t i = 0; i < lanes && job.has_many_bodies; ++i) fetch_ahead(job, first + i);
     body(block);
   }
 }
@@ -203,6 +204,12 @@ template <typename Side, int Count, typename T, typename Shape>
           rows[0] = load_rows1(row);
         } else if constexpr (Count == 2) {
           load_rows2(row, rows);
+        } else if constexpr (Count == 3) {
+          Doubles two[2];
+          load_rows2(row, two);
+          rows[0] = two[0];
+          rows[1] = two[1];
+          rows[2] = load_rows1([&](int lane) { return row(lane) + 2; });
         } else {
           load_rows4(row, rows);
         }
@@ -246,17 +253,8 @@ template <typename Side, typename T, typename Shape>
 [[gnu::always_inline]] inline SpunLanes<T> load_spun(const NarrowJob& job,
                                                      const PairBlock<T>& block,
                                                      const Shape* table) {
-  const auto row = [&](int lane) { return numbers(table[shape_index<Side>(job, block, lane)]); };
   Lanes<T> r[3];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[3]) {
-        Doubles two[2];
-        load_rows2([&](int lane) { return row(from + lane); }, two);
-        out[0] = two[0];
-        out[1] = two[1];
-        out[2] = load_rows1([&](int lane) { return row(from + lane) + 2; });
-      },
-      r);
+  load_shapes<Side>(job, block, table, r);
   return {r[0], r[1], r[2]};
 }
 

@@ -10,6 +10,13 @@
 namespace winnow::solver {
 namespace {
 
+/// Of the origin.
+[[nodiscard]] double segment_distance(const Vec& a, const Vec& b) noexcept {
+  const Vec along = unit(b - a);
+  const double at = std::clamp(-along.dot(a), 0.0, (b - a).norm());
+  return (a + along * at).norm();
+}
+
 /// A polytope of triangles that grows by points outside of it, its faces in the order of their
 /// distance from the origin, which is inside. Of fixed size: some 130 KB, for the stack.
 class InnerPolytope {
@@ -144,15 +151,32 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   return true;
 }
 
+/// To a few roundings, of slivers as well: in terms of the longest side and of what of the third
+/// point is across it. (By Gram's determinants the foot in a sliver may seem to be on a side.)
 double InnerPolytope::triangle_distance(std::uint16_t p, std::uint16_t q,
                                         std::uint16_t r) const noexcept {
-  Simplex triangle;
-  triangle.count = 3;
-  triangle.point[0].w = points_[p];
-  triangle.point[1].w = points_[q];
-  triangle.point[2].w = points_[r];
-  reduce(triangle);
-  return triangle.closest().norm();
+  const Vec* a = &points_[p];
+  const Vec* b = &points_[q];
+  const Vec* c = &points_[r];
+  for (int turn = 0; turn < 2; ++turn) {
+    const double length = (*b - *a).squaredNorm();
+    if (length >= (*c - *b).squaredNorm() && length >= (*a - *c).squaredNorm()) break;
+    std::swap(a, b);
+    std::swap(b, c);
+  }
+  const double length = (*b - *a).norm();
+  const Vec along = (*b - *a) / length;
+  const double apex = along.dot(*c - *a);
+  const Vec arm = (*c - *a) - along * apex;
+  const double height = arm.norm();
+  const Vec up = unit(arm);
+  const Vec below = *a - along * along.dot(*a);
+  const double x = -along.dot(*a);
+  const double y = -up.dot(below);
+  const bool is_over =
+      y >= 0.0 && x * height >= apex * y && (length - x) * height >= (length - apex) * y;
+  if (is_over) return (below + up * y).norm();
+  return std::min({segment_distance(*a, *b), segment_distance(*b, *c), segment_distance(*c, *a)});
 }
 
 void InnerPolytope::push(std::uint16_t face) noexcept {

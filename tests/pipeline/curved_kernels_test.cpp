@@ -217,6 +217,88 @@ TEST(CurvedKernels, eggs_end_to_end_are_as_deep_as_their_ends) {
   expect_depth(pair_of(egg, egg, Pose{}, Pose::at(0, 0, 2.75)), 0.25, {0.0, 0.0, 1.0});
 }
 
+/// Balls of radii 4 and 1 whose middles are 5 apart: the side between them has the normal
+/// (0.8, 0, 0.6), and begins in (3.2, 0, -0.1).
+constexpr TaperedCapsuleShape kTaper{{4.0, 1.0}, 2.5};
+
+TEST(CurvedKernels, a_ball_beside_a_taper_is_as_far_as_from_its_side) {
+  // From the middle of the side, (2, 0, 1.5), to either side of it.
+  for (const double away : {1.0, -0.125}) {
+    const Pose at = Pose::at(2.0 + 0.8 * away, 0, 1.5 + 0.6 * away);
+    const PairAnswers answer =
+        answer_to(pair_of(SphereShape{0.25}, kTaper, at, Pose{}), ContactLevel::distance);
+    EXPECT_NEAR(answer.distance, away - 0.25, 4e-15);
+    EXPECT_LE(answer.error_bound, 1e-13);
+    EXPECT_NEAR(answer.normal[0], -0.8, 1e-14);
+    EXPECT_NEAR(answer.normal[2], -0.6, 1e-14);
+  }
+}
+
+TEST(CurvedKernels, a_taper_that_lies_on_its_side_touches_a_plane_with_both_balls) {
+  // Turned about y so that the side's normal points down.
+  const double half = 0.5 * (std::acos(0.6) - 2.0 * kRightAngle);
+  Pose lying = Pose::at(0, 0, 2.25);
+  lying.orientation[0] = std::cos(half);
+  lying.orientation[2] = std::sin(half);
+  const PairScene scene = pair_of(HalfSpaceShape{}, kTaper, Pose{}, lying);
+  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  EXPECT_NEAR(answer.distance, -0.25, 4e-15);
+  ASSERT_EQ(answer.contacts.size(), 2U);
+  for (const ContactPoint& contact : answer.contacts) {
+    EXPECT_NEAR(contact.depth, 0.25F, 1e-6F);
+    EXPECT_NEAR(contact.position[2], -0.125F, 1e-6F);
+  }
+  EXPECT_NEAR(std::abs(answer.contacts[0].position[0] - answer.contacts[1].position[0]), 4.0, 1e-6);
+}
+
+TEST(CurvedKernels, a_taper_whose_ball_holds_the_other_is_that_ball) {
+  const PairScene scene =
+      pair_of(SphereShape{1.0}, TaperedCapsuleShape{{3.0, 1.0}, 0.5}, Pose::at(0, 0, 4.0), Pose{});
+  EXPECT_EQ(answer_to(scene, ContactLevel::distance).distance, 0.5);
+}
+
+TEST(CurvedKernels, a_taper_in_a_wall_is_as_deep_as_its_ball_reaches_in) {
+  expect_depth(pair_of(BoxShape{{8, 8, 1}, 0.0}, TaperedCapsuleShape{{1.5, 0.5}, 1.0}, Pose{},
+                       Pose::at(0.5, 0.125, 1.0 + 1.0 + 1.5 - 1.75)),
+               1.75, {0.0, 0.0, 1.0});
+}
+
+TEST(CurvedKernels, tapers_side_by_side_are_as_deep_as_their_sides) {
+  // The second is the first's mirror image, so that their sides are in parallel.
+  const double n[3] = {0.8, 0.0, 0.6};
+  const TaperedCapsuleShape upside_down{{1.0, 4.0}, 2.5};
+  Pose beside = Pose::at(2.0 * 2.0, 0, 2.0 * 1.5);
+  for (int k = 0; k < 3; ++k) beside.position[k] -= 0.25 * n[k];
+  expect_depth(pair_of(kTaper, upside_down, Pose{}, beside), 0.25, {0.8, 0.0, 0.6});
+}
+
+TEST(CurvedKernels, tapers_in_each_other_are_as_deep_as_their_balls) {
+  // Upright both: the larger balls are side by side, 0.3 apart.
+  const TaperedCapsuleShape taper{{0.5, 0.125}, 0.25};
+  expect_depth(pair_of(taper, taper, Pose{}, Pose::at(0.18, 0.24, 0)), 0.7, {0.6, 0.8, 0.0});
+}
+
+TEST(CurvedKernels, a_needle_through_a_coin_is_no_deeper_than_along_any_direction) {
+  // The coin is 1e-8 wide, and the difference of the cores 3e-10 thin: its faces are slivers.
+  Pose along = Pose::at(0.69512259845849433, 0.69512259845849433, 0.69512259845849433);
+  Pose coin = along;
+  constexpr double kTurns[2][4] = {
+      {-0.63636952790856949, 0.49819173039831766, 0.64560454435751824, -0.35531863388147844},
+      {0.85442363077535899, 0.5283548791324173, -0.20992183015313848, -0.96507352250783573}};
+  std::copy_n(kTurns[0], 4, along.orientation);
+  std::copy_n(kTurns[1], 4, coin.orientation);
+  const double rounding = 0.25;
+  const PairScene scene = pair_of(
+      EllipsoidShape{{0.65358348169210523, 0.0, 0.0}, 0.0},
+      EllipsoidShape{{1.1007418655307882e-08, 6.7142671839396405e-09, 0.0}, rounding}, along, coin);
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    const auto answer = ask(scene, {.level = ContactLevel::distance, .tier = tier}).at(0);
+    // The least of the coin's extents across the needle, in long double.
+    EXPECT_NEAR(-answer.distance, rounding + 3.2603644706036771e-10, answer.error_bound);
+    EXPECT_LE(answer.error_bound, 1e-9);
+  }
+}
+
 TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
   // Both drums look the same from either side.
   const CylinderShape drum{0.5, 2.0, 0.0};
@@ -275,16 +357,41 @@ struct CurvedKind {
 void PrintTo(const CurvedKind& kind, std::ostream* out) {
   *out << to_string(kind.a) << "_" << to_string(kind.b);
 }
-constexpr CurvedKind kCurvedKinds[] = {
-    {sphere, cylinder},    {sphere, cone},      {capsule, cylinder},
-    {capsule, cone},       {box, cylinder},     {box, cone},
-    {cylinder, cylinder},  {cylinder, cone},    {cone, cone},
-    {cylinder, triangle},  {cone, triangle},    {cylinder, hull},
-    {cone, hull},          {hull, half_space},  {cylinder, half_space},
-    {cone, half_space},    {sphere, ellipsoid}, {half_space, ellipsoid},
-    {capsule, ellipsoid},  {box, ellipsoid},    {cylinder, ellipsoid},
-    {cone, ellipsoid},     {hull, ellipsoid},   {triangle, ellipsoid},
-    {ellipsoid, ellipsoid}};
+constexpr CurvedKind kCurvedKinds[] = {{sphere, cylinder},
+                                       {sphere, cone},
+                                       {capsule, cylinder},
+                                       {capsule, cone},
+                                       {box, cylinder},
+                                       {box, cone},
+                                       {cylinder, cylinder},
+                                       {cylinder, cone},
+                                       {cone, cone},
+                                       {cylinder, triangle},
+                                       {cone, triangle},
+                                       {cylinder, hull},
+                                       {cone, hull},
+                                       {hull, half_space},
+                                       {cylinder, half_space},
+                                       {cone, half_space},
+                                       {sphere, ellipsoid},
+                                       {half_space, ellipsoid},
+                                       {capsule, ellipsoid},
+                                       {box, ellipsoid},
+                                       {cylinder, ellipsoid},
+                                       {cone, ellipsoid},
+                                       {hull, ellipsoid},
+                                       {triangle, ellipsoid},
+                                       {ellipsoid, ellipsoid},
+                                       {sphere, tapered_capsule},
+                                       {half_space, tapered_capsule},
+                                       {capsule, tapered_capsule},
+                                       {box, tapered_capsule},
+                                       {cylinder, tapered_capsule},
+                                       {cone, tapered_capsule},
+                                       {hull, tapered_capsule},
+                                       {triangle, tapered_capsule},
+                                       {ellipsoid, tapered_capsule},
+                                       {tapered_capsule, tapered_capsule}};
 
 class CurvedPairs : public testing::TestWithParam<CurvedKind> {
  protected:
@@ -313,8 +420,8 @@ TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
     for (std::size_t i = 0; i < solved.size(); ++i) {
       const double d = solved[i].distance;
       const double doubt = solved[i].error_bound + found[i].error_bound;
-      // What touches an ellipsoid is decided by no exact arithmetic.
-      if (GetParam().b != ellipsoid || std::abs(d) > solved[i].error_bound) {
+      // What touches an ellipsoid or a tapered capsule is decided by no exact arithmetic.
+      if (GetParam().b < ellipsoid || std::abs(d) > solved[i].error_bound) {
         ASSERT_EQ(verdict[i].overlap, solved[i].overlap) << i << " " << d;
         ASSERT_EQ(found[i].overlap, solved[i].overlap) << i << " " << d;
       }

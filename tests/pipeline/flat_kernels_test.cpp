@@ -78,24 +78,26 @@ Answers run(const Scene& scene, Tier tier, ContactLevel level, double margin = 0
   r.feature.assign(room, 0);
   r.certified.assign(n, true);
   std::vector<std::uint32_t> uncertified(n);
-  NarrowJob job = {scene.pairs.data(),
-                   static_cast<std::uint32_t>(n),
-                   scene.shapes.data(),
-                   scene.poses.data(),
-                   scene.pool.tables(),
-                   margin,
-                   r.overlap.data(),
-                   r.distance.data(),
-                   r.bound.data(),
-                   {r.normal[0].data(), r.normal[1].data(), r.normal[2].data()},
-                   {r.point[0].data(), r.point[1].data(), r.point[2].data()},
-                   r.first.data(),
-                   r.count.data(),
-                   {{r.position[0].data(), r.position[1].data(), r.position[2].data()},
-                    r.depth.data(),
-                    r.feature.data(),
-                    0},
-                   uncertified.data()};
+  NarrowJob job{};
+  job.pairs = scene.pairs.data();
+  job.count = static_cast<std::uint32_t>(n);
+  job.shapes = scene.shapes.data();
+  job.poses = scene.poses.data();
+  job.tables = scene.pool.tables();
+  job.margin = margin;
+  job.overlap = r.overlap.data();
+  job.distance = r.distance.data();
+  job.error_bound = r.bound.data();
+  for (int k = 0; k < 3; ++k) {
+    job.normal[k] = r.normal[k].data();
+    job.point[k] = r.point[k].data();
+    job.contacts.position[k] = r.position[k].data();
+  }
+  job.contact_first = r.first.data();
+  job.contact_count = r.count.data();
+  job.contacts.depth = r.depth.data();
+  job.contacts.feature = r.feature.data();
+  job.uncertified = uncertified.data();
   const NarrowKernels* kernels = narrow_kernels(scene.kind[0], scene.kind[1]);
   const std::uint32_t index = kernel_index(level);
   const std::uint32_t left = (tier == kFast ? kernels->fast : kernels->robust)[index](job);

@@ -1,5 +1,6 @@
-// Cylinders, cones and ellipsoids against everything but spheres and half-spaces. The code is one
-// for all kinds of pairs, which a job tells: a branch that goes the same way for all of its pairs.
+// Cylinders, cones, ellipsoids and tapered capsules against everything but spheres and half-spaces.
+// The code is one for all kinds of pairs, which a job tells: a branch that goes the same way for
+// all of its pairs.
 
 #include "pipeline/kernels/curved/curved_answers.wide.h"
 
@@ -26,6 +27,14 @@ WINNOW_CURVED(cone_ellipsoid)
 WINNOW_CURVED(hull_ellipsoid)
 WINNOW_CURVED(triangle_ellipsoid)
 WINNOW_CURVED(ellipsoid_ellipsoid)
+WINNOW_CURVED(capsule_tapered_capsule)
+WINNOW_CURVED(box_tapered_capsule)
+WINNOW_CURVED(cylinder_tapered_capsule)
+WINNOW_CURVED(cone_tapered_capsule)
+WINNOW_CURVED(hull_tapered_capsule)
+WINNOW_CURVED(triangle_tapered_capsule)
+WINNOW_CURVED(ellipsoid_tapered_capsule)
+WINNOW_CURVED(tapered_capsule_tapered_capsule)
 #undef WINNOW_CURVED
 
 }  // namespace winnow

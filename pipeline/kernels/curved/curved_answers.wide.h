@@ -107,7 +107,7 @@ class CurvedAnswers {
     for (std::uint32_t i = begin; i < begin + count; ++i) {
       CurvedPair& pair = pair_[placed];
       pair.index = i;
-      hull::fetch_ahead(job_, i);
+      fetch_ahead(job_, i);
       if (place_pair(job_, job_.pairs[i], pair)) {
         ++placed;
       } else {

@@ -94,6 +94,8 @@ class CurvedDepth {
   static constexpr double kWidest = 1.0;
   static constexpr double kNarrowest = 0x1p-6;
   static constexpr double kCosineRounding = 1e-12;
+  /// Below all cosines.
+  static constexpr double kAllAround = -2.0;
   static constexpr std::uint32_t kMostMinima = 8;
   static constexpr std::uint32_t kMostPoints = 64;
   /// A polytope of p points has 2 p - 4 faces.
@@ -253,24 +255,30 @@ class CurvedDepth {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     LocalMinimum found;
     if (!found.find(*pair_, corner, mine, near)) return false;
+    double w[3];
+    double on_first[3];
+    difference_point(*pair_, found.normal(), w, on_first);
+    const double height = dot3(found.normal(), w);
+    const double least = found.least_of_ball();
+    if (height - least <= kTolerance) {
+      keep(found, kAllAround, height, least);
+      return true;
+    }
     double tangent = kWidest;
     while (!found.holds(tangent)) {
       tangent *= 0.5;
       if (tangent < kNarrowest) return false;
     }
-    double w[3];
-    double on_first[3];
-    difference_point(*pair_, found.normal(), w, on_first);
-    const double height = dot3(found.normal(), w);
     const double sure = found.height() - found.miss() * tangent;
     if (!(height - sure <= kTolerance)) return false;
-    keep(found, tangent, height, sure);
+    const double cosine = 1.0 / __builtin_sqrt(1.0 + tangent * tangent) + kCosineRounding;
+    keep(found, cosine, height, sure);
     return true;
   }
 
-  void keep(const LocalMinimum& found, double tangent, double height, double sure) {
+  void keep(const LocalMinimum& found, double cosine, double height, double sure) {
     for (int k = 0; k < 3; ++k) sure_around_[minima_][k] = found.normal()[k];
-    sure_cosine_[minima_] = 1.0 / __builtin_sqrt(1.0 + tangent * tangent) + kCosineRounding;
+    sure_cosine_[minima_] = cosine;
     ++minima_;
     sure_ = sure < sure_ ? sure : sure_;
     if (!(height < best_height_)) return;

@@ -19,7 +19,9 @@
 //
 // The line of a cone's side turns with the normal. Where it is met the share q of it from the tip,
 // half of q times the cone's disc and half of the distance to the nearer end are as good as a disc
-// and a segment: the cone is at least as high as its tip and its rim in any proportion.
+// and a segment: the cone is at least as high as its tip and its rim in any proportion. A tapered
+// capsule's side is that of the cone that its tip and the circle make along which the larger ball
+// takes over; the ball is an ellipsoid.
 
 #include "pipeline/kernels/curved/farthest_points.wide.h"
 
@@ -112,11 +114,27 @@ struct NearPoints {
   [[nodiscard]] bool is_round() const {
     return form->kind == ShapeKind::cylinder || form->kind == ShapeKind::cone;
   }
-  [[nodiscard]] bool is_smooth() const { return form->kind == ShapeKind::ellipsoid; }
+  [[nodiscard]] bool is_smooth() const {
+    return form->kind == ShapeKind::ellipsoid || is_tapered();
+  }
+  [[nodiscard]] bool is_tapered() const { return form->kind == ShapeKind::tapered_capsule; }
   /// Of a cylinder or cone: how many are at the upper end.
   [[nodiscard]] int high() const {
     int count = 0;
     for (const double(&x)[3] : at) count += x[2] > 0.0 ? 1 : 0;
+    return count;
+  }
+  /// Of a tapered capsule: how many are its tip. All others are farther from it than where the ball
+  /// takes over.
+  [[nodiscard]] int tips() const {
+    const double length = form->number[2] - form->number[1];
+    if (length == 0.0) return 3;
+    const double side = length * length - form->number[0] * form->number[0];
+    int count = 0;
+    for (const double(&x)[3] : at) {
+      const double z = x[2] - form->number[2];
+      count += x[0] * x[0] + x[1] * x[1] + z * z <= 0.25 * side ? 1 : 0;
+    }
     return count;
   }
   /// Points of polytopes that are the same but for rounding become so.
@@ -208,6 +226,16 @@ class LocalMinimum {
     }
     const double least = kMargin * height_;
     return q[0] > least && q[2] > least && (q[0] - least) * (q[2] - least) > q[1] * q[1];
+  }
+
+  /// A lower bound of all depths where the simple part is a ball that segments move, met no deeper
+  /// than its radius: it is as deep as the ball reaches beyond the origin from the point met. Else
+  /// below zero.
+  [[nodiscard]] double least_of_ball() const {
+    double radius = 0.0;
+    if (is_flat_ || !is_moved_ball(radius)) return -1.0;
+    const double below = height_ - radius;
+    return below > 0.0 ? -1.0 : radius - __builtin_sqrt(below * below + miss_ * miss_);
   }
 
   /// Unit, from the first to the second.
@@ -368,6 +396,7 @@ class LocalMinimum {
     const NearPoints& points = side_[side];
     const SidePlace place(*pair_, side == 1);
     if (points.is_round()) return add_round(points, place, side);
+    if (points.is_tapered()) return add_taper(points, place, side);
     if (points.is_smooth()) return add_ellipsoid(*points.form, place, side);
     const double* other = nullptr;
     for (int i = 1; i < 3; ++i) {
@@ -391,7 +420,7 @@ class LocalMinimum {
     const double end[3] = {0.0, 0.0, high == 3 || (is_cone && is_side) ? half : -half};
     const double axis[3] = {0.0, 0.0, 1.0};
     add_point(end, place, side);
-    if (is_cone && is_side) return add_cone_side(radius, half, place);
+    if (is_cone && is_side) return add_cone_side(radius, 2.0 * half, axis, place);
     if (!is_cone || high == 0) {
       SimpleSum::Disc& disc = sum_.disc[sum_.discs++];
       disc.radius = radius;
@@ -403,15 +432,44 @@ class LocalMinimum {
 
   bool add_ellipsoid(const Form& form, const SidePlace& place, int side) {
     add_point(form.center, place, side);
+    set_ellipsoid(form.number, form.number[3], place);
+    return true;
+  }
+
+  void set_ellipsoid(const double* radius, double off, const SidePlace& place) {
     SimpleSum::Ellipsoid& s = sum_.ellipsoid[sum_.ellipsoids++];
     for (int k = 0; k < 3; ++k) {
       double axis[3] = {0.0, 0.0, 0.0};
       axis[k] = 1.0;
       place.direction(axis, s.axis[k]);
-      s.radius[k] = form.number[k];
+      s.radius[k] = radius[k];
     }
-    s.off = form.number[3];
-    return true;
+    s.off = off;
+  }
+
+  /// The tip, the ball, or the side between them.
+  bool add_taper(const NearPoints& points, const SidePlace& place, int side) {
+    const double more = points.form->number[0];
+    const double ball[3] = {0.0, 0.0, points.form->number[1]};
+    const double tip[3] = {0.0, 0.0, points.form->number[2]};
+    const double length = tip[2] - ball[2];
+    const int tips = points.tips();
+    add_point(tips == 0 ? ball : tip, place, side);
+    if (tips == 3) return true;
+    if (tips == 0) {
+      const double radius[3] = {more, more, more};
+      if (more > 0.0) set_ellipsoid(radius, 0.0, place);
+      return true;
+    }
+    if (!(more > 0.0)) {
+      const double along[3] = {0.0, 0.0, -length};
+      return add_edge(along, place);
+    }
+    const double apart = __builtin_fabs(length);
+    const double axis[3] = {0.0, 0.0, length < 0.0 ? -1.0 : 1.0};
+    const double slant = __builtin_sqrt((apart - more) * (apart + more));
+    const double share = slant / apart;
+    return add_cone_side(more * share, slant * share, axis, place);
   }
 
   void add_point(const double* x, const SidePlace& place, int side) {
@@ -436,15 +494,14 @@ class LocalMinimum {
     return true;
   }
 
-  /// From the tip to the rim.
-  bool add_cone_side(double radius, double half, const SidePlace& place) {
-    const double axis[3] = {0.0, 0.0, 1.0};
+  /// From the tip, which the axis points to, to the rim.
+  bool add_cone_side(double radius, double height, const double* axis, const SidePlace& place) {
     SimpleSum::Segment& s = sum_.segment[sum_.segments++];
     place.direction(axis, s.axis);
-    s.length = __builtin_sqrt(radius * radius + 4.0 * half * half);
+    s.length = __builtin_sqrt(radius * radius + height * height);
     s.cosine = radius / s.length;
     s.radius = radius;
-    return radius > 0.0 && half > 0.0;
+    return radius > 0.0 && height > 0.0;
   }
 
   /// The sine of the angle between an axis and the normal, and the unit direction across both.
@@ -523,8 +580,34 @@ class LocalMinimum {
     return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
   }
 
+  /// And the radius.
+  bool is_moved_ball(double& radius) const {
+    if (sum_.discs > 0 || sum_.ellipsoids == 0) return false;
+    for (std::uint32_t i = 0; i < sum_.segments; ++i) {
+      if (sum_.segment[i].radius > 0.0) return false;
+    }
+    for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
+      const SimpleSum::Ellipsoid& s = sum_.ellipsoid[i];
+      if (s.radius[0] != s.radius[1] || s.radius[0] != s.radius[2] || s.off != 0.0) return false;
+      radius += s.radius[0];
+    }
+    return true;
+  }
+
+  /// Out of a ball the way is short that leads away from its middle.
+  void leave_ball() {
+    const double length = __builtin_sqrt(dot3(sum_.point, sum_.point));
+    if (!(length > 0.0)) return;
+    for (int k = 0; k < 3; ++k) normal_[k] = -sum_.point[k] / length;
+  }
+
   /// Newton's method over the normals that meet all segments.
   bool approach() {
+    double radius = 0.0;
+    if (sum_.segments == 0 && is_moved_ball(radius)) {
+      leave_ball();
+      return true;
+    }
     if (sum_.segments > 2 || !is_stiff()) return false;
     if (sum_.segments > 0 && !move_on_circle(normal_)) return false;
     if (sum_.segments == 2 && are_parallel()) take_amid_second();

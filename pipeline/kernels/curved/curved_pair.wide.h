@@ -20,7 +20,9 @@ struct Form {
   ShapeKind kind;
   /// Box: half extents. Capsule, cylinder, cone: radius of the core, 0, half length. Triangle:
   /// three vertices. Ellipsoid: radii, and what is taken off all around, which the rounding has
-  /// instead: the least radius of curvature.
+  /// instead: the least radius of curvature. Tapered capsule: by how much the larger ball is
+  /// larger, z of its middle, z of the smaller one's; the same twice, and no radius, where it holds
+  /// the smaller one.
   double number[kNumbers];
   const HullShape* hull;
   double rounding;
@@ -117,6 +119,17 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
       form.number[3] = most > 0.0 ? least * (least / most) : 0.0;
       form.rounding = tables.ellipsoids[i].rounding + form.number[3];
       break;
+    }
+    case ShapeKind::tapered_capsule: {
+      const TaperedCapsuleShape& s = tables.tapered_capsules[i];
+      const double more = __builtin_fabs(s.radius[1] - s.radius[0]);
+      const double end = s.radius[1] > s.radius[0] ? s.half_length : -s.half_length;
+      const bool is_ball = more >= 2.0 * s.half_length;
+      form.number[0] = is_ball ? 0.0 : more;
+      form.number[1] = end;
+      form.number[2] = is_ball ? end : -end;
+      form.rounding = (s.radius[1] > s.radius[0]) == is_ball ? s.radius[1] : s.radius[0];
+      return form.number[0] + s.half_length;
     }
     case ShapeKind::triangle: {
       double most = 0.0;
@@ -231,6 +244,17 @@ template <typename T>
           n[2] * share.z * over - off * d.z};
 }
 
+/// That of a tapered capsule: n as in Form::number.
+template <typename T>
+[[gnu::always_inline]] static inline Vec3<T> taper_point(const Lanes<T>* n, const Vec3<T>& d) {
+  const Lanes<T> zero(T(0));
+  const Lanes<T> length = sqrt(dot(d, d));
+  const LaneMask<T> on_tip = (n[2] - n[1]) * d.z >= n[0] * length;
+  const Lanes<T> over = n[0] / max(length, Lanes<T>(kLeastAcross<T>));
+  return select(on_tip, Vec3<T>{zero, zero, n[2]},
+                Vec3<T>{d.x * over, d.y * over, n[1] + d.z * over});
+}
+
 /// The farthest point of a core along d, in its frame; `of_hull` finds that of hulls.
 template <typename T, typename OfHull>
 [[gnu::always_inline]] static inline Vec3<T> support(const FormLanes<T>& form, const Vec3<T>& d,
@@ -263,6 +287,8 @@ template <typename T, typename OfHull>
     }
     case ShapeKind::ellipsoid:
       return ellipsoid_point(n, d);
+    case ShapeKind::tapered_capsule:
+      return taper_point(n, d);
     default:
       return of_hull(d);
   }

@@ -59,6 +59,9 @@ class CurvedPatch {
       case ShapeKind::hull:
         add_hull(d);
         break;
+      case ShapeKind::tapered_capsule:
+        add_taper(d);
+        break;
       default:
         add_round(d);
         break;
@@ -183,6 +186,15 @@ class CurvedPatch {
     add({out[0] * r, out[1] * r, -h}, kSideLine + 1, kSideLine);
   }
 
+  /// The line between the balls; a ball within the other has no part in it.
+  void add_taper(const double* d) {
+    const double more = form_.number[0];
+    const double ball = form_.number[1];
+    const double tip = form_.number[2];
+    add({more * d[0], more * d[1], ball + more * d[2]}, ball < 0.0 ? 1 : 0, 0);
+    if (tip != ball) add({0.0, 0.0, tip}, tip < 0.0 ? 1 : 0, 0);
+  }
+
   const CurvedPair& pair_;
   const Form& form_;
   bool of_first_;
@@ -215,9 +227,9 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,
                                             double margin, ContactPoint (&out)[kManifoldPoints]) {
-  // Ellipsoids, the last of the kinds, touch in a point.
+  // Ellipsoids touch in a point.
   std::uint32_t count = 0;
-  if (pair.second.kind != ShapeKind::ellipsoid) {
+  if (pair.first.kind != ShapeKind::ellipsoid && pair.second.kind != ShapeKind::ellipsoid) {
     const CurvedPatch first(pair, true, normal);
     const CurvedPatch second(pair, false, normal);
     count = contact_patch(pair.swapped ? second.view() : first.view(),

@@ -4,7 +4,7 @@
 // one pair per lane, a lane that is done taking the next pair. The last support along the direction
 // found bounds the distance from below, the point of the difference found bounds it from above.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/curved/farthest_points.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
@@ -39,6 +39,7 @@ class CurvedSearch {
         const int lane = static_cast<int>(first(done));
         if (goes_again(lane)) {
           start(lane, kAskew);
+          begin_beside(lane);
         } else {
           hand_back(lane);
           refill(lane);
@@ -59,6 +60,7 @@ class CurvedSearch {
   static constexpr double kDoubt = kIsDouble ? 1e-14 : 8e-6;
 
   static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
+  static constexpr double kBeside[3] = {-0.21875, 0.15625, 0.40625};
 
   void refill(int lane) {
     if (next_ == end_) {
@@ -112,6 +114,19 @@ class CurvedSearch {
       square += 1.0;
     }
     square_[lane] = static_cast<T>(square);
+  }
+
+  /// Takes a point of the difference that is farthest along a direction of its own: of two balls
+  /// all points that are found from one direction on are in one plane with the origin.
+  void begin_beside(int lane) {
+    double w[3];
+    double mine[3];
+    difference_point(*pair_[lane], kBeside, w, mine);
+    for (int k = 0; k < 3; ++k) {
+      slot_[0][k][lane] = static_cast<T>(w[k]);
+      slot_mine_[0][k][lane] = static_cast<T>(mine[k]);
+    }
+    present_[0][lane] = T(1);
   }
 
   static Vec3<T> load3(const T (*v)[kWidth]) {

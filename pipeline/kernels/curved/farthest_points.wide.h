@@ -46,6 +46,15 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
       for (int k = 0; k < 3; ++k) x[k] = n[k] * (stretched[k] * over) - off * d[k];
       return;
     }
+    case ShapeKind::tapered_capsule: {
+      const double length = __builtin_sqrt(dot3(d, d));
+      const bool on_tip = (n[2] - n[1]) * d[2] >= n[0] * length;
+      const double over = on_tip ? 0.0 : n[0] / largest_of(length, 1e-150);
+      x[0] = d[0] * over;
+      x[1] = d[1] * over;
+      x[2] = on_tip ? n[2] : n[1] + d[2] * over;
+      return;
+    }
     default:
       hull_support(*form.hull, d, scale, x);
   }

@@ -3,7 +3,7 @@
 // A pair of convex polytopes, possibly rounded, as the hull kernels pass it from stage to stage,
 // and which vertex of a hull lies farthest along a direction, sixteen vertices at a time.
 
-#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/fetch_ahead.wide.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -92,18 +92,6 @@ template <typename T>
 template <typename T>
 static inline void turn_back3(const T* m, const T* x, T* r) {
   for (int i = 0; i < 3; ++i) r[i] = m[i] * x[0] + m[3 + i] * x[1] + m[6 + i] * x[2];
-}
-
-/// Asks memory for the bodies of a pair that is some pairs after the i-th.
-[[gnu::always_inline]] static inline void fetch_ahead(const NarrowJob& job, std::uint32_t i) {
-  constexpr std::uint32_t kAhead = 16;
-  if (i + kAhead >= job.count) return;
-  for (const std::uint32_t body : {job.pairs[i + kAhead].a, job.pairs[i + kAhead].b}) {
-    // A pose may lie across two lines.
-    __builtin_prefetch(job.poses[body].position);
-    __builtin_prefetch(job.poses[body].orientation + 3);
-    __builtin_prefetch(job.shapes + body);
-  }
 }
 
 /// The rotation of a quaternion of any length; false if its square leaves double's range.

@@ -1,0 +1,182 @@
+// Tapered capsules against spheres and half-spaces: how far a point or a plane is from the nearer
+// of two balls, or from the side between them.
+
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/round/round.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::round {
+namespace {
+
+template <typename T>
+struct TaperLanes {
+  /// Of the balls at z = -half_length and z = half_length.
+  Lanes<T> radius[2];
+  Lanes<T> half_length;
+};
+
+template <typename T>
+[[gnu::always_inline]] inline TaperLanes<T> load_taper(const NarrowJob& job,
+                                                       const PairBlock<T>& block) {
+  Lanes<T> r[3];
+  load_shapes<SideB>(job, block, job.tables.tapered_capsules, r);
+  return {{r[0], r[1]}, r[2]};
+}
+
+/// What contacts on the lower and the upper ball are called; 0 is the side.
+template <typename T>
+inline constexpr T kBallNames[2] = {T(2), T(1)};
+
+struct SphereTaper {
+  template <typename T>
+  struct Solution {
+    Lanes<T> distance;
+    Lanes<T> bound;
+    Lanes<T> scale;
+    Vec3<T> normal;
+    LaneMask<T> unique;
+    Lanes<T> radius;
+    Lanes<T> feature;
+  };
+
+  /// In the plane of the point and the axis, the line that touches both balls leaves each of them
+  /// at the same angle, of which `sine` is the slope: what is beyond it sees a ball. Not inlined:
+  /// all levels share it.
+  template <typename T>
+  [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+    const Lanes<T> zero(T(0));
+    const Lanes<T> one(T(1));
+    const Vec3<T> c = load_offset(job, block);
+    const Turn<T> turn = load_turn<SideB>(job, block);
+    const Lanes<T> ra = load_sphere<SideA>(job, block);
+    const TaperLanes<T> shape = load_taper(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> p = -axes.to_local(c);
+    const Lanes<T> away = sqrt(p.x * p.x + p.y * p.y);
+    const Lanes<T> rise = shape.radius[0] - shape.radius[1];
+    const Lanes<T> length = shape.half_length + shape.half_length;
+    const LaneMask<T> is_ball = abs(rise) >= length;
+    const Lanes<T> sine = select(is_ball, zero, rise / length);
+    const Lanes<T> cosine = sqrt((one - sine) * (one + sine));
+    const Lanes<T> over_low = p.z + shape.half_length;
+    const Lanes<T> along = cosine * over_low - sine * away;
+    const LaneMask<T> low = select(is_ball, rise, -along) >= zero;
+    const LaneMask<T> side = (!(is_ball | low)) & (along < cosine * length);
+
+    const Lanes<T> over = select(low, over_low, p.z - shape.half_length);
+    const Lanes<T> from_ball = sqrt(away * away + over * over);
+    const Lanes<T> to_ball = from_ball - select(low, shape.radius[0], shape.radius[1]);
+    const Lanes<T> to_side = cosine * away + sine * over_low - shape.radius[0];
+    const Lanes<T> radial = select(side, cosine, away / from_ball);
+    const Lanes<T> axial = select(side, sine, over / from_ball);
+    // A point on the axis sees nothing aside of it, but for what `unique` leaves out.
+    const Lanes<T> outward = select(away > zero, radial / away, zero);
+    const Lanes<T> scale =
+        taxicab(c) + length + max(shape.radius[0], shape.radius[1]) + ra + doubt(turn);
+    return {
+        select(side, to_side, to_ball) - ra,
+        scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
+        scale,
+        -axes.to_world(Vec3<T>{p.x * outward, p.y * outward, axial}),
+        select(side, away, from_ball) > scale * Lanes<T>(kShortest<T>),
+        ra,
+        select(side, zero, select(low, Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])))};
+  }
+
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Solution<T> r = solve(job, block);
+    if constexpr (L == kBoolean) {
+      return answer_sign(job, block, r.distance, r.bound, r.scale);
+    } else {
+      const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
+                                     certified_lanes(r.distance, r.bound, r.scale, r.unique)};
+      return write_ball<L>(job, block, answer, r.radius, r.feature);
+    }
+  }
+};
+
+struct HalfSpaceTaper {
+  /// The balls' points that are nearest to the plane or deepest behind it, the nearer or deeper one
+  /// first.
+  template <typename T>
+  struct Solution {
+    Lanes<T> distance[2];
+    /// On the plane.
+    Vec3<T> foot[2];
+    Lanes<T> feature[2];
+    /// A ball within the other has no part in the surface.
+    LaneMask<T> has_second;
+    Lanes<T> bound;
+    Lanes<T> scale;
+    Vec3<T> normal;
+  };
+
+  /// Not inlined: all levels share it.
+  template <typename T>
+  [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+    const Vec3<T> c = load_offset(job, block);
+    const Turn<T> turn_a = load_turn<SideA>(job, block);
+    const Turn<T> turn_b = load_turn<SideB>(job, block);
+    const HalfSpaceLanes<T> plane = load_half_space<SideA>(job, block);
+    const TaperLanes<T> shape = load_taper(job, block);
+    const Vec3<T> normal = rotation(turn_a).to_world(plane.normal);
+    const Vec3<T> half = axis_z(turn_b) * shape.half_length;
+    const Lanes<T> height = dot(normal, c) - plane.offset;
+    const Lanes<T> up = dot(normal, half);
+    const Lanes<T> distance[2] = {height - up - shape.radius[0], height + up - shape.radius[1]};
+    const LaneMask<T> low = distance[0] <= distance[1];
+    const Vec3<T> foot[2] = {c - half - normal * (height - up), c + half - normal * (height + up)};
+    const Lanes<T> name[2] = {Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])};
+    const Lanes<T> rise = abs(shape.radius[0] - shape.radius[1]);
+    const Lanes<T> scale = taxicab(c) + abs(plane.offset) + shape.half_length +
+                           max(shape.radius[0], shape.radius[1]) + doubt(turn_a) + doubt(turn_b);
+    return {{min(distance[0], distance[1]), max(distance[0], distance[1])},
+            {select(low, foot[0], foot[1]), select(low, foot[1], foot[0])},
+            {select(low, name[0], name[1]), select(low, name[1], name[0])},
+            rise < shape.half_length + shape.half_length,
+            scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
+            scale,
+            normal};
+  }
+
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    const Solution<T> r = solve(job, block);
+    const Lanes<T> zero(T(0));
+    if constexpr (L == kBoolean) {
+      return answer_sign(job, block, r.distance[0], r.bound, r.scale);
+    } else {
+      const CertifiedLanes<T> answer{
+          r.distance[0], r.bound, r.normal,
+          certified_lanes(r.distance[0], r.bound, r.scale, r.scale > zero)};
+      write_certified<L>(job, block, answer, r.foot[0], zero);
+      if constexpr (L == kManifold) write_touches(job, block, r, answer);
+      return ~answer.certified;
+    }
+  }
+
+  template <typename T>
+  [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
+                                                   const Solution<T>& r,
+                                                   const CertifiedLanes<T>& answer) {
+    const Lanes<T> zero(T(0));
+    CertifiedLanes<T> second = answer;
+    second.distance = r.distance[1];
+    ContactLanes<T> contacts[2] = {
+        witness_contact(job, block, answer, r.foot[0], zero, zero, r.feature[0]),
+        witness_contact(job, block, second, r.foot[1], zero, zero, r.feature[1])};
+    contacts[1].lanes &= bits(r.has_second);
+    write_contacts(job, block, contacts);
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::round
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_tapered_capsule_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereTaper>();
+extern const NarrowKernels WINNOW_KERNEL_TABLE(half_space_tapered_capsule_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceTaper>();
+
+}  // namespace winnow
