@@ -331,16 +331,16 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
-  // Where the features miss the point of least distance, as caps with 16 corners do by a little, or
-  // meet nowhere within the margin, it takes the place of their deepest; where they miss it by
-  // much, it is put in front of them.
+  // Where the features miss the point of least distance, as caps with 16 corners do by a little,
+  // meet nowhere within the margin or in one point alone, it takes the place of their deepest;
+  // where they miss it by much, it is put in front of them.
   const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
   if (near && miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
     contacts[0] = own;
-  } else if (!near || miss > 4e-7 * problem.size) {
+  } else if (!near || count == 1 || miss > 4e-7 * problem.size) {
     const std::uint64_t feature = near ? contacts[0].feature : own.feature;
     contacts[0] = own;
     contacts[0].feature = feature;

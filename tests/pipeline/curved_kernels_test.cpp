@@ -436,6 +436,51 @@ TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
   }
 }
 
+/// A body of the scene and points as bodies: how far each is from it.
+std::vector<double> distances_to_points(PairScene& scene, std::uint32_t body,
+                                        const std::vector<Pose>& points) {
+  ShapeId point;
+  EXPECT_EQ(scene.pool.add(SphereShape{0.0}, point), Status::ok);
+  std::vector<ShapeId> shapes{scene.shapes[body]};
+  std::vector<Pose> poses{scene.poses[body]};
+  std::vector<BodyPair> pairs;
+  for (const Pose& at : points) {
+    pairs.push_back({0, static_cast<std::uint32_t>(poses.size())});
+    shapes.push_back(point);
+    poses.push_back(at);
+  }
+  NarrowPhase narrow;
+  NarrowResult result;
+  EXPECT_EQ(
+      narrow.collide(scene.pool, {shapes, poses}, pairs, {.level = ContactLevel::distance}, result),
+      Status::ok);
+  return {result.distance().begin(), result.distance().end()};
+}
+
+TEST_P(CurvedPairs, have_contacts_on_both_surfaces) {
+  PairScene scene = scene_of(PairStyle::ordinary, scaled(1000), 12);
+  const auto touch = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  for (std::size_t i = 0; i < touch.size(); ++i) {
+    const double bound = 2e-6 * (extent(scene, scene.pairs[i]) + kReach);
+    for (const double side : {0.5, -0.5}) {
+      std::vector<Pose> points;
+      const std::uint32_t body = side > 0.0 ? scene.pairs[i].a : scene.pairs[i].b;
+      for (const ContactPoint& contact : touch[i].contacts) {
+        Pose at = scene.poses[scene.pairs[i].a];
+        std::copy_n(Pose{}.orientation, 4, at.orientation);
+        for (int k = 0; k < 3; ++k) {
+          at.position[k] += static_cast<double>(contact.position[k]) +
+                            side * static_cast<double>(contact.depth) * touch[i].normal[k];
+        }
+        points.push_back(at);
+      }
+      for (const double distance : distances_to_points(scene, body, points)) {
+        ASSERT_LE(distance, bound) << i << " of " << (side > 0.0 ? "a" : "b");
+      }
+    }
+  }
+}
+
 TEST_P(CurvedPairs, of_ordinary_sizes_hardly_need_the_solver) {
   const PairScene scene = scene_of(PairStyle::ordinary, 2000);
   for (const ContactLevel level :

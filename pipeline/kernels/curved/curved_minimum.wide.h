@@ -580,7 +580,7 @@ class LocalMinimum {
     return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
   }
 
-  /// And the radius.
+  /// Whether it is a ball that segments move, and the radius.
   bool is_moved_ball(double& radius) const {
     if (sum_.discs > 0 || sum_.ellipsoids == 0) return false;
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {

@@ -32,8 +32,9 @@ constexpr std::uint32_t box_edge_between(std::uint32_t p, std::uint32_t q) {
 /// The supporting feature of one core, in the axes of the world, relative to body a.
 class CurvedPatch {
  public:
-  /// `normal` is in the first's frame and points from the first to the second.
-  CurvedPatch(const CurvedPair& pair, bool of_first, const double* normal)
+  /// `normal` is in the first's frame and points from the first to the second; `at` is the point of
+  /// the core that is closest to the other or deepest in it, in the core's frame.
+  CurvedPatch(const CurvedPair& pair, bool of_first, const double* normal, const double* at)
       : pair_(pair), form_(of_first ? pair.first : pair.second), of_first_(of_first) {
     double d[3];
     if (of_first) {
@@ -57,7 +58,7 @@ class CurvedPatch {
         }
         break;
       case ShapeKind::hull:
-        add_hull(d);
+        add_hull(d, at);
         break;
       case ShapeKind::tapered_capsule:
         add_taper(d);
@@ -119,15 +120,17 @@ class CurvedPatch {
         vertex, edge_feature);
   }
 
-  void add_hull(const double* d) {
+  /// Of a supporting edge only the faces beside it count, not those that have but one of its ends:
+  /// those with the point.
+  void add_hull(const double* d, const double* at) {
     const HullShape& shape = *form_.hull;
     const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
                                 static_cast<float>(d[2])};
-    const std::uint32_t vertex = hull::farthest_vertex(shape, direction);
-    float x[3];
-    hull::vertex_at(shape, vertex, x);
+    const float touched[3] = {static_cast<float>(at[0] * pair_.unit),
+                              static_cast<float>(at[1] * pair_.unit),
+                              static_cast<float>(at[2] * pair_.unit)};
     const float doubt = hull::kFloatError * static_cast<float>(pair_.size * pair_.unit);
-    const std::uint32_t face = hull::face_across(shape, d, x, doubt);
+    const std::uint32_t face = hull::face_across(shape, d, touched, doubt);
     if (face != hull::kNoFeature) {
       const HullFace& f = shape.faces[face];
       // Of polygons with more corners than there is room for, every second (third, ...) is taken.
@@ -138,6 +141,9 @@ class CurvedPatch {
       feature_ = face;
       return;
     }
+    const std::uint32_t vertex = hull::farthest_vertex(shape, direction);
+    float x[3];
+    hull::vertex_at(shape, vertex, x);
     const std::uint32_t other = hull::neighbour_across(shape, direction, vertex, x);
     if (other == hull::kNoFeature) {
       add_vertex(vertex, 0);
@@ -221,17 +227,21 @@ static inline std::uint32_t point_feature(const Form& form, const double* at, do
 /// frame; `world`, from body a to body b, and `point`, on the surface of a relative to it, in the
 /// axes of the world; `core` is the point of the first's core, `apart` the distance of the cores,
 /// both scaled. The deepest point is as deep as the distance says: where the features miss that by
-/// a little, as polygons for rims do, or meet nowhere within the margin, it takes the place of
-/// their deepest; where they miss it by much, it is put in front of them.
+/// a little, as polygons for rims do, meet nowhere within the margin or in one point alone, it
+/// takes the place of their deepest; where they miss it by much, it is put in front of them.
 static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,
                                             double margin, ContactPoint (&out)[kManifoldPoints]) {
+  double theirs[3];
+  double local[3];
+  for (int k = 0; k < 3; ++k) theirs[k] = core[k] + apart * normal[k] - pair.shift[k];
+  turn_back3(pair.turn, theirs, local);
   // Ellipsoids touch in a point.
   std::uint32_t count = 0;
   if (pair.first.kind != ShapeKind::ellipsoid && pair.second.kind != ShapeKind::ellipsoid) {
-    const CurvedPatch first(pair, true, normal);
-    const CurvedPatch second(pair, false, normal);
+    const CurvedPatch first(pair, true, normal, core);
+    const CurvedPatch second(pair, false, normal, local);
     count = contact_patch(pair.swapped ? second.view() : first.view(),
                           pair.swapped ? first.view() : second.view(), world, margin, out);
   }
@@ -240,10 +250,6 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
     own.position[k] = static_cast<float>(point[k] + 0.5 * distance * world[k]);
   }
   own.depth = static_cast<float>(-distance);
-  double theirs[3];
-  double local[3];
-  for (int k = 0; k < 3; ++k) theirs[k] = core[k] + apart * normal[k] - pair.shift[k];
-  turn_back3(pair.turn, theirs, local);
   const std::uint64_t mine = point_feature(pair.first, core, pair.size);
   const std::uint64_t other = point_feature(pair.second, local, pair.size);
   own.feature = pair.swapped ? other << 32U | mine : mine << 32U | other;
@@ -255,7 +261,7 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
     count = count < kManifoldPoints ? count + 1 : count;
     for (std::uint32_t i = count - 1; i > 0; --i) out[i] = out[i - 1];
     out[0] = own;
-  } else if (!near || miss > 4e-7 * size) {
+  } else if (!near || count == 1 || miss > 4e-7 * size) {
     if (near) own.feature = out[0].feature;
     out[0] = own;
     count = count == 0 ? 1 : count;
