@@ -23,70 +23,9 @@
 // capsule's side is that of the cone that its tip and the circle make along which the larger ball
 // takes over; the ball is an ellipsoid.
 
-#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/curved/simple_sum.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
-
-/// A point, up to two discs, ellipsoids and segments from it, added up, in the first's frame.
-struct SimpleSum {
-  struct Disc {
-    double radius;
-    double axis[3];
-  };
-  /// An edge, or a line of a side.
-  struct Segment {
-    /// All points of it are as far along a normal whose angle with the axis has this cosine. Of an
-    /// edge or a cylinder's side the axis is its direction, and the cosine 0.
-    double axis[3];
-    double cosine;
-    double length;
-    /// Of a cone's disc, else 0.
-    double radius;
-    /// Unit; of a cone's side it turns with the normal.
-    double along[3];
-  };
-
-  struct Ellipsoid {
-    double radius[3];
-    /// Unit, those of the radii.
-    double axis[3][3];
-    /// What is taken off all around.
-    double off;
-  };
-
-  double point[3];
-  /// What of it is the first's.
-  double mine[3];
-  std::uint32_t discs;
-  std::uint32_t segments;
-  std::uint32_t ellipsoids;
-  std::uint32_t own_discs;
-  std::uint32_t own_ellipsoids;
-  std::uint32_t own_segments;
-  Disc disc[2];
-  Segment segment[2];
-  Ellipsoid ellipsoid[2];
-};
-
-/// An ellipsoid's height along a unit direction, in parts: that of its core is the length of
-/// `stretched` less `off`.
-struct EllipsoidHeight {
-  /// The direction's parts along the axes, times the radii.
-  double stretched[3];
-  double length;
-
-  EllipsoidHeight(const SimpleSum::Ellipsoid& ellipsoid, const double* n) {
-    for (int k = 0; k < 3; ++k) stretched[k] = ellipsoid.radius[k] * dot3(ellipsoid.axis[k], n);
-    length = __builtin_sqrt(dot3(stretched, stretched));
-  }
-
-  /// How `stretched` turns where the direction moves along e.
-  void turn(const SimpleSum::Ellipsoid& ellipsoid, const double* e, double* across) const {
-    for (int k = 0; k < 3; ++k) across[k] = ellipsoid.radius[k] * dot3(ellipsoid.axis[k], e);
-    const double along = dot3(across, stretched) / (length * length);
-    for (int k = 0; k < 3; ++k) across[k] -= along * stretched[k];
-  }
-};
 
 /// Unit directions across n and each other (Duff et al., "Building an orthonormal basis,
 /// revisited", 2017).
@@ -101,81 +40,6 @@ static inline void span_across(const double* n, double (*e)[3]) {
     e[1][k] = second[k];
   }
 }
-
-static inline bool are_same(const double* a, const double* b) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/// Three points of one core, in its frame, that were farthest along directions near each other.
-struct NearPoints {
-  const Form* form;
-  double at[3][3];
-
-  [[nodiscard]] bool is_round() const {
-    return form->kind == ShapeKind::cylinder || form->kind == ShapeKind::cone;
-  }
-  [[nodiscard]] bool is_smooth() const {
-    return form->kind == ShapeKind::ellipsoid || is_tapered();
-  }
-  [[nodiscard]] bool is_tapered() const { return form->kind == ShapeKind::tapered_capsule; }
-  /// Of a cylinder or cone: how many are at the upper end.
-  [[nodiscard]] int high() const {
-    int count = 0;
-    for (const double(&x)[3] : at) count += x[2] > 0.0 ? 1 : 0;
-    return count;
-  }
-  /// Of a tapered capsule: how many are its tip. All others are farther from it than where the ball
-  /// takes over.
-  [[nodiscard]] int tips() const {
-    const double length = form->number[2] - form->number[1];
-    if (length == 0.0) return 3;
-    const double side = length * length - form->number[0] * form->number[0];
-    int count = 0;
-    for (const double(&x)[3] : at) {
-      const double z = x[2] - form->number[2];
-      count += x[0] * x[0] + x[1] * x[1] + z * z <= 0.25 * side ? 1 : 0;
-    }
-    return count;
-  }
-  /// Points of polytopes that are the same but for rounding become so.
-  void unite() {
-    if (is_round() || is_smooth()) return;
-    for (int i = 1; i < 3; ++i) {
-      for (int j = 0; j < i; ++j) {
-        double most = 0.0;
-        for (int k = 0; k < 3; ++k) {
-          most = largest_of(most, __builtin_fabs(at[i][k] - at[j][k]));
-        }
-        if (most > 4.0 * kRoundingError) continue;
-        for (int k = 0; k < 3; ++k) at[i][k] = at[j][k];
-      }
-    }
-  }
-};
-
-/// Brings points of one core to the first's frame, those of the second with their signs turned, so
-/// that both add up to the difference.
-class SidePlace {
- public:
-  SidePlace(const CurvedPair& pair, bool second) : pair_(pair), second_(second) {}
-
-  void direction(const double* x, double* r) const {
-    if (!second_) {
-      for (int k = 0; k < 3; ++k) r[k] = x[k];
-      return;
-    }
-    turn3(pair_.turn, x, r);
-    for (int k = 0; k < 3; ++k) r[k] = -r[k];
-  }
-  void point(const double* x, double* r) const {
-    direction(x, r);
-    for (int k = 0; k < 3 && second_; ++k) r[k] -= pair_.shift[k];
-  }
-
- private:
-  const CurvedPair& pair_;
-  bool second_;
-};
 
 class LocalMinimum {
  public:
