@@ -122,7 +122,7 @@ struct HullOverPlane {
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const Plane<T> plane = load_plane(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
     const Vec3<T> up = axes.to_local(plane.normal);

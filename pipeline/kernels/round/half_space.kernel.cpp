@@ -10,7 +10,7 @@ namespace {
 struct SphereFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 1> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
     const Lanes<T> radius = load_sphere<SideA>(job, block);
     const Lanes<T> zero(T(0));
     return {{{zero, zero, zero}}, {plane.height},      {zero}, radius,
@@ -21,7 +21,7 @@ struct SphereFeet {
 struct CapsuleFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 2> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
     const Vec3<T> arm = axis_z(turn) * a.half_length;
@@ -40,7 +40,7 @@ struct CapsuleFeet {
 struct TriangleFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const TriangleLanes<T> a = load_triangle<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
@@ -68,7 +68,7 @@ struct BoxFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
-    const Plane<T> plane = load_plane(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const BoxLanes<T> a = load_box<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);

@@ -8,22 +8,27 @@
 namespace winnow::WINNOW_ISA_NAME::round {
 
 /// The half-space's plane, relative to the position of body a: the outward normal, and the height
-/// of that position over it.
+/// of the other body's position over it.
 template <typename T>
 struct Plane {
   Vec3<T> normal;
   Lanes<T> height;
   /// The sum of the magnitudes of what height was made of; NaN for a bad pose.
   Lanes<T> scale;
+  /// The position of body b.
+  Vec3<T> to_b;
 };
 
-template <typename T>
+/// Of the side's body.
+template <typename Side, typename T>
 [[gnu::always_inline]] inline Plane<T> load_plane(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
-  const Turn<T> turn = load_turn<SideB>(job, block);
-  const HalfSpaceLanes<T> b = load_half_space<SideB>(job, block);
-  const Vec3<T> normal = rotation(turn).to_world(b.normal);
-  return {normal, -dot(normal, c) - b.offset, taxicab(c) + abs(b.offset) + doubt(turn)};
+  const Turn<T> turn = load_turn<Side>(job, block);
+  const HalfSpaceLanes<T> plane = load_half_space<Side>(job, block);
+  const Vec3<T> normal = rotation(turn).to_world(plane.normal);
+  const Lanes<T> along = dot(normal, c);
+  const Lanes<T> other = __is_same(Side, SideA) ? along : -along;
+  return {normal, other - plane.offset, taxicab(c) + abs(plane.offset) + doubt(turn), c};
 }
 
 /// Points of a shape's core over a plane, relative to body a, in the axes of the world.
@@ -63,12 +68,10 @@ struct FeetAnswers {
     if constexpr (L == kBoolean) {
       return answer_sign(job, block, distance, bound, feet.scale);
     } else {
-      const Mask16 known =
-          certified_lanes(distance, bound, feet.scale, feet.scale > Lanes<T>(T(0)));
-      const CertifiedLanes<T> answer{distance, bound, -feet.normal, known};
+      const CertifiedLanes<T> answer = answer_along(-feet.normal, distance, bound, feet.scale);
       write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
-      if constexpr (L == kManifold) write_touches(job, block, feet, known);
-      return ~known;
+      if constexpr (L == kManifold) write_touches(job, block, feet, answer.certified);
+      return ~answer.certified;
     }
   }
 

@@ -93,6 +93,15 @@ template <typename T>
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
+/// The same along a direction that is always known.
+template <typename T>
+[[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,
+                                                             const Lanes<T>& distance,
+                                                             const Lanes<T>& bound,
+                                                             const Lanes<T>& scale) {
+  return {distance, bound, normal, certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)))};
+}
+
 /// Writes the columns of levels distance and manifold. `foot` is the point of core a, `radius` its
 /// rounding.
 template <int L, typename T>
@@ -138,6 +147,33 @@ template <int L, typename T>
                                                 const Lanes<T>& feature_b) {
   const Lanes<T> zero(T(0));
   return write_touch<L>(job, block, c, Vec3<T>{zero, zero, zero}, radius, feature_b);
+}
+
+/// A sphere as body a beside a shape that has its distance in closed form.
+template <typename T>
+struct BallSolution {
+  Lanes<T> distance;
+  Lanes<T> bound;
+  Lanes<T> scale;
+  /// In the axes of the world, where `unique` holds.
+  Vec3<T> normal;
+  LaneMask<T> unique;
+  Lanes<T> radius;
+  /// Of body b.
+  Lanes<T> feature;
+};
+
+/// All levels; returns the uncertified lanes.
+template <int L, typename T>
+[[gnu::always_inline]] inline Mask16 answer_ball(NarrowJob& job, const PairBlock<T>& block,
+                                                 const BallSolution<T>& r) {
+  if constexpr (L == kBoolean) {
+    return answer_sign(job, block, r.distance, r.bound, r.scale);
+  } else {
+    const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
+                                   certified_lanes(r.distance, r.bound, r.scale, r.unique)};
+    return write_ball<L>(job, block, answer, r.radius, r.feature);
+  }
 }
 
 /// A signed distance that lies between the two numbers, but for kRoundings * epsilon * scale.

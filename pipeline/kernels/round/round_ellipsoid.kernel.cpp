@@ -1,7 +1,7 @@
 // Ellipsoids against spheres and half-spaces: how far a point or a plane is from one.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/kernels/round/over_plane.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -153,19 +153,15 @@ struct HalfSpaceEllipsoid {
   /// Not inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
-    const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn_a = load_turn<SideA>(job, block);
-    const Turn<T> turn_b = load_turn<SideB>(job, block);
-    const HalfSpaceLanes<T> plane = load_half_space<SideA>(job, block);
+    const Plane<T> plane = load_plane<SideA>(job, block);
+    const Turn<T> turn = load_turn<SideB>(job, block);
     const EllipsoidLanes<T> shape = load_ellipsoid(job, block);
-    const Vec3<T> normal = rotation(turn_a).to_world(plane.normal);
-    const Rotation<T> axes = rotation(turn_b);
-    const Reach<T> reach = reach_of(shape.radius, axes.to_local(-normal));
-    const Lanes<T> height = dot(normal, c) - plane.offset - reach.height;
-    const Lanes<T> scale = taxicab(c) + abs(plane.offset) + taxicab(shape.radius) + shape.rounding +
-                           doubt(turn_a) + doubt(turn_b);
-    return {height - shape.rounding, scale * Lanes<T>(T(kRoundings) * kEpsilon<T>), scale, normal,
-            c + axes.to_world(reach.point) - normal * height};
+    const Rotation<T> axes = rotation(turn);
+    const Reach<T> reach = reach_of(shape.radius, axes.to_local(-plane.normal));
+    const Lanes<T> height = plane.height - reach.height;
+    const Lanes<T> scale = plane.scale + taxicab(shape.radius) + shape.rounding + doubt(turn);
+    return {height - shape.rounding, scale * Lanes<T>(T(kRoundings) * kEpsilon<T>), scale,
+            plane.normal, plane.to_b + axes.to_world(reach.point) - plane.normal * height};
   }
 
   template <typename T, int L>
@@ -175,8 +171,7 @@ struct HalfSpaceEllipsoid {
       return answer_sign(job, block, r.distance, r.bound, r.scale);
     } else {
       const Lanes<T> zero(T(0));
-      const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
-                                     certified_lanes(r.distance, r.bound, r.scale, r.scale > zero)};
+      const CertifiedLanes<T> answer = answer_along(r.normal, r.distance, r.bound, r.scale);
       return write_touch<L>(job, block, answer, r.foot, zero, zero);
     }
   }

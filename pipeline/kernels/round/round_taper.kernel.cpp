@@ -2,7 +2,7 @@
 // of two balls, or from the side between them.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/kernels/round/over_plane.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -28,22 +28,11 @@ template <typename T>
 inline constexpr T kBallNames[2] = {T(2), T(1)};
 
 struct SphereTaper {
-  template <typename T>
-  struct Solution {
-    Lanes<T> distance;
-    Lanes<T> bound;
-    Lanes<T> scale;
-    Vec3<T> normal;
-    LaneMask<T> unique;
-    Lanes<T> radius;
-    Lanes<T> feature;
-  };
-
   /// In the plane of the point and the axis, the line that touches both balls leaves each of them
   /// at the same angle, of which `sine` is the slope: what is beyond it sees a ball. Not inlined:
   /// all levels share it.
   template <typename T>
-  [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static BallSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
     const Lanes<T> one(T(1));
     const Vec3<T> c = load_offset(job, block);
@@ -85,14 +74,7 @@ struct SphereTaper {
 
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const Solution<T> r = solve(job, block);
-    if constexpr (L == kBoolean) {
-      return answer_sign(job, block, r.distance, r.bound, r.scale);
-    } else {
-      const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
-                                     certified_lanes(r.distance, r.bound, r.scale, r.unique)};
-      return write_ball<L>(job, block, answer, r.radius, r.feature);
-    }
+    return answer_ball<L>(job, block, solve(job, block));
   }
 };
 
@@ -115,22 +97,21 @@ struct HalfSpaceTaper {
   /// Not inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
-    const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn_a = load_turn<SideA>(job, block);
-    const Turn<T> turn_b = load_turn<SideB>(job, block);
-    const HalfSpaceLanes<T> plane = load_half_space<SideA>(job, block);
+    const Plane<T> plane = load_plane<SideA>(job, block);
+    const Turn<T> turn = load_turn<SideB>(job, block);
     const TaperLanes<T> shape = load_taper(job, block);
-    const Vec3<T> normal = rotation(turn_a).to_world(plane.normal);
-    const Vec3<T> half = axis_z(turn_b) * shape.half_length;
-    const Lanes<T> height = dot(normal, c) - plane.offset;
+    const Vec3<T>& c = plane.to_b;
+    const Vec3<T>& normal = plane.normal;
+    const Vec3<T> half = axis_z(turn) * shape.half_length;
+    const Lanes<T>& height = plane.height;
     const Lanes<T> up = dot(normal, half);
     const Lanes<T> distance[2] = {height - up - shape.radius[0], height + up - shape.radius[1]};
     const LaneMask<T> low = distance[0] <= distance[1];
     const Vec3<T> foot[2] = {c - half - normal * (height - up), c + half - normal * (height + up)};
     const Lanes<T> name[2] = {Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])};
     const Lanes<T> rise = abs(shape.radius[0] - shape.radius[1]);
-    const Lanes<T> scale = taxicab(c) + abs(plane.offset) + shape.half_length +
-                           max(shape.radius[0], shape.radius[1]) + doubt(turn_a) + doubt(turn_b);
+    const Lanes<T> scale =
+        plane.scale + shape.half_length + max(shape.radius[0], shape.radius[1]) + doubt(turn);
     return {{min(distance[0], distance[1]), max(distance[0], distance[1])},
             {select(low, foot[0], foot[1]), select(low, foot[1], foot[0])},
             {select(low, name[0], name[1]), select(low, name[1], name[0])},
@@ -143,14 +124,11 @@ struct HalfSpaceTaper {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Solution<T> r = solve(job, block);
-    const Lanes<T> zero(T(0));
     if constexpr (L == kBoolean) {
       return answer_sign(job, block, r.distance[0], r.bound, r.scale);
     } else {
-      const CertifiedLanes<T> answer{
-          r.distance[0], r.bound, r.normal,
-          certified_lanes(r.distance[0], r.bound, r.scale, r.scale > zero)};
-      write_certified<L>(job, block, answer, r.foot[0], zero);
+      const CertifiedLanes<T> answer = answer_along(r.normal, r.distance[0], r.bound, r.scale);
+      write_certified<L>(job, block, answer, r.foot[0], Lanes<T>(T(0)));
       if constexpr (L == kManifold) write_touches(job, block, r, answer);
       return ~answer.certified;
     }

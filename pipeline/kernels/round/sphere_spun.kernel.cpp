@@ -84,23 +84,11 @@ struct ConeMeridian {
   }
 };
 
-template <typename T>
-struct SphereSpunSolution {
-  Lanes<T> distance;
-  Lanes<T> bound;
-  Lanes<T> scale;
-  /// In the axes of the world, where `unique` holds.
-  Vec3<T> normal;
-  LaneMask<T> unique;
-  Lanes<T> radius;
-};
-
 template <typename Meridian>
 struct SphereSpun {
   /// Not inlined: all levels share it.
   template <typename T>
-  [[gnu::noinline]] static SphereSpunSolution<T> solve(const NarrowJob& job,
-                                                       const PairBlock<T>& block) {
+  [[gnu::noinline]] static BallSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
     const Vec3<T> c = load_offset(job, block);
     const Turn<T> turn = load_turn<SideB>(job, block);
@@ -119,19 +107,13 @@ struct SphereSpun {
             scale,
             axes.to_world(Vec3<T>{p.x * over, p.y * over, view.axial}),
             view.lead > scale * Lanes<T>(kShortest<T>),
-            ra};
+            ra,
+            zero};
   }
 
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    const SphereSpunSolution<T> r = solve(job, block);
-    if constexpr (L == kBoolean) {
-      return answer_sign(job, block, r.distance, r.bound, r.scale);
-    } else {
-      const CertifiedLanes<T> answer{r.distance, r.bound, r.normal,
-                                     certified_lanes(r.distance, r.bound, r.scale, r.unique)};
-      return write_ball<L>(job, block, answer, r.radius, Lanes<T>(T(0)));
-    }
+    return answer_ball<L>(job, block, solve(job, block));
   }
 };
 

@@ -34,7 +34,7 @@ template <typename T, typename Shape>
                                                           const Shape* table) {
   const Lanes<T> zero(T(0));
   SpunOverPlane<T> r;
-  r.plane = load_plane(job, block);
+  r.plane = load_plane<SideB>(job, block);
   const Turn<T> turn = load_turn<SideA>(job, block);
   r.shape = load_spun<SideA, T>(job, block, table);
   r.axes = rotation(turn);
