@@ -548,7 +548,7 @@ class Impacts final : public RowsCommand {
   void add_options(CLI::App& app) {
     what_.add_to(app, "--what", {kPairs, kFeatures, kScene}, "What moves");
     std::vector<std::string> kinds;
-    for (const PairKind& kind : main_pair_kinds()) kinds.emplace_back(kind.name);
+    for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
     kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
     turns_.add_to(app, "--turn", {kPairTurnNames.begin(), kPairTurnNames.end()},
                   "How far bodies of pairs turn");
@@ -586,7 +586,7 @@ class Impacts final : public RowsCommand {
     print("swept_scenes");
   }
   void measure_pairs() {
-    const auto kinds = kinds_.of(main_pair_kinds(), [](const PairKind& kind) { return kind.name; });
+    const auto kinds = kinds_.of(pair_kinds(), [](const PairKind& kind) { return kind.name; });
     const auto turns = turns_.of(std::span<const PairTurn>(kPairTurns),
                                  [](PairTurn turn) { return to_text(turn); });
     for (const PairKind& kind : kinds) {

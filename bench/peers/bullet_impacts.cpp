@@ -24,7 +24,11 @@ class BulletImpacts final : public ImpactEngine {
   [[nodiscard]] std::string name() const override {
     return kTurns ? "Bullet continuous" : "Bullet sub-simplex";
   }
-  [[nodiscard]] bool takes(const PairKind&, PairTurn turn) const override {
+  [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
+    // It casts convex shapes, of which ellipsoids are none.
+    for (const ShapeKind missing : {ShapeKind::ellipsoid, ShapeKind::half_space}) {
+      if (kind.a == missing || kind.b == missing) return false;
+    }
     return turn == PairTurn::none || (kTurns && turn == PairTurn::little);
   }
 
@@ -34,7 +38,9 @@ class BulletImpacts final : public ImpactEngine {
       const ShapeId id = middle.shapes[i];
       Body body{make_shape(middle.pool.tables(), id, 0.0), transform_of(set.motions[i].at(0.0)),
                 transform_of(set.motions[i].at(1.0))};
-      if (id.kind() == ShapeKind::box || id.kind() == ShapeKind::triangle) body.shape->setMargin(0);
+      const bool round = id.kind() == ShapeKind::sphere || id.kind() == ShapeKind::capsule ||
+                         id.kind() == ShapeKind::tapered_capsule;
+      if (!round) body.shape->setMargin(0);
       bodies_.push_back(std::move(body));
     }
   }

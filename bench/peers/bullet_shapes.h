@@ -1,11 +1,13 @@
 #pragma once
 
 #include "bench/peers/narrow_adapter.h"
+#include "bench/scenes/lens.h"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btConvexInternalShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
@@ -25,6 +27,35 @@ inline btTransform transform_of(const Pose& pose) {
   const Eigen::Quaternionf q = orientation_of(pose).cast<float>();
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(pose.position));
 }
+
+/// A convex shape of a program's own, as Bullet takes it.
+class LensShape final : public btConvexInternalShape {
+ public:
+  explicit LensShape(const Lens& lens) : lens_(lens) {
+    m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
+    setMargin(0);
+  }
+
+  btVector3 localGetSupportingVertexWithoutMargin(const btVector3& along) const override {
+    const double length = static_cast<double>(along.length());
+    const double direction[3] = {static_cast<double>(along.x()), static_cast<double>(along.y()),
+                                 length > 0.0 ? static_cast<double>(along.z()) : 1.0};
+    double point[3];
+    farthest_of_lens(lens_, direction, point);
+    return to_bullet(point);
+  }
+  void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* along, btVector3* points,
+                                                         int count) const override {
+    for (int i = 0; i < count; ++i) points[i] = localGetSupportingVertexWithoutMargin(along[i]);
+  }
+  void calculateLocalInertia(btScalar, btVector3& inertia) const override {
+    inertia.setValue(0, 0, 0);
+  }
+  const char* getName() const override { return "Lens"; }
+
+ private:
+  const Lens& lens_;
+};
 
 /// Hulls are made smaller by the margin that they then have. That of two balls is the smaller one's
 /// radius, which Bullet takes off both.
@@ -59,6 +90,8 @@ inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, Shap
       balls->setMargin(std::min(radius[0], radius[1]));
       return balls;
     }
+    case ShapeKind::support:
+      return std::make_unique<LensShape>(*static_cast<const Lens*>(tables.supports[i].context));
     case ShapeKind::triangle: {
       const auto& v = tables.triangles[i].vertex;
       return std::make_unique<btTriangleShape>(to_bullet(v[0]), to_bullet(v[1]), to_bullet(v[2]));

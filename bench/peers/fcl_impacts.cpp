@@ -24,7 +24,11 @@ class FclImpacts final : public ImpactEngine {
 
   [[nodiscard]] std::string name() const override { return "FCL continuous"; }
   [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
-    return kind.b != ShapeKind::triangle && turn != PairTurn::whirl;
+    using enum ShapeKind;
+    for (const ShapeKind missing : {triangle, half_space, tapered_capsule, support}) {
+      if (kind.a == missing || kind.b == missing) return false;
+    }
+    return turn != PairTurn::whirl;
   }
 
   void start(const MovingPairSet& set) override {

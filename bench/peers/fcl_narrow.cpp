@@ -38,8 +38,10 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
-    // FCL has no tapered capsules.
-    if (kind.a == tapered_capsule || kind.b == tapered_capsule) return nullptr;
+    // FCL has no tapered capsules, and takes no shapes of a program's own.
+    for (const ShapeKind missing : {tapered_capsule, support}) {
+      if (kind.a == missing || kind.b == missing) return nullptr;
+    }
     if (kind.a == triangle && kind.b == triangle) {
       return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
     }

@@ -1,5 +1,6 @@
 #include "bench/peers/adapters.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/scenes/lens.h"
 
 #include <ccd/ccd.h>
 
@@ -14,7 +15,8 @@ namespace {
 struct CcdBody {
   double turn[9];  // rotation, by columns
   double position[3];
-  double size[3];           // half lengths of a box; radii and half length of the round ones
+  double size[3];  // half lengths of a box; radii and half length of the round ones
+  const Lens* lens;
   const double* vertex[3];  // columns of coordinates
   std::uint32_t vertices;
 };
@@ -112,6 +114,15 @@ void of_ellipsoid(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* p
   to_world(body, local, *point);
 }
 
+void of_lens(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = *static_cast<const CcdBody*>(object);
+  double local[3];
+  double at[3];
+  to_local(body, *direction, local);
+  farthest_of_lens(*body.lens, local, at);
+  to_world(body, at, *point);
+}
+
 void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const CcdBody& body = *static_cast<const CcdBody*>(object);
   double local[3];
@@ -151,6 +162,8 @@ ccd_support_fn support_of(ShapeKind kind) {
       return of_ellipsoid;
     case ShapeKind::tapered_capsule:
       return of_taper;
+    case ShapeKind::support:
+      return of_lens;
     default:
       return of_points;
   }
@@ -182,6 +195,9 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
       body.size[2] = taper.half_length;
       break;
     }
+    case ShapeKind::support:
+      body.lens = static_cast<const Lens*>(tables.supports[id.index()].context);
+      break;
     case ShapeKind::cylinder:
       body.size[0] = tables.cylinders[id.index()].radius;
       body.size[1] = tables.cylinders[id.index()].half_length;

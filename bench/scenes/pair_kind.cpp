@@ -7,7 +7,7 @@ using enum ShapeKind;
 
 constexpr std::size_t kMainKinds = 11;
 
-constexpr std::array<PairKind, 55> kKinds{{{"sphere-sphere", sphere, sphere},
+constexpr std::array<PairKind, 66> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"sphere-capsule", sphere, capsule},
                                            {"capsule-capsule", capsule, capsule},
                                            {"sphere-box", sphere, box},
@@ -61,7 +61,18 @@ constexpr std::array<PairKind, 55> kKinds{{{"sphere-sphere", sphere, sphere},
                                            {"ellipsoid-taper", ellipsoid, tapered_capsule},
                                            {"taper-taper", tapered_capsule, tapered_capsule},
                                            {"taper-triangle", tapered_capsule, triangle},
-                                           {"taper-half_space", tapered_capsule, half_space}}};
+                                           {"taper-half_space", tapered_capsule, half_space},
+                                           {"sphere-own", sphere, support},
+                                           {"capsule-own", capsule, support},
+                                           {"box-own", box, support},
+                                           {"cylinder-own", cylinder, support},
+                                           {"cone-own", cone, support},
+                                           {"hull16-own", hull, support, 16},
+                                           {"ellipsoid-own", ellipsoid, support},
+                                           {"taper-own", tapered_capsule, support},
+                                           {"own-own", support, support},
+                                           {"own-triangle", support, triangle},
+                                           {"own-half_space", support, half_space}}};
 
 }  // namespace
 

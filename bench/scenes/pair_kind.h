@@ -23,7 +23,8 @@ struct PairKind {
 /// Those that everything is measured on, cheapest first.
 [[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
 /// All kinds: the main ones, then every other pair of a sphere, capsule, box, cylinder, cone, hull,
-/// ellipsoid, tapered capsule (in names taper), triangle and half-space.
+/// ellipsoid, tapered capsule (in names taper), lens (in names own: a set of a program's own),
+/// triangle and half-space.
 [[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
 /// Null if there is none of the name.
 [[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;

@@ -83,7 +83,8 @@ class PairDrawing {
                      .hull_vertices = set_.kind.hull_vertices,
                      .hulls = hulls,
                      .thinness = options_.thinness,
-                     .upright = options_.upright};
+                     .upright = options_.upright,
+                     .lenses = &set_.lenses};
     ShapeSource a(set_.pool, style, random_);
     style.kind = set_.kind.b;
     style.scale = options_.ratio;

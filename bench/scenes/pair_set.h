@@ -3,10 +3,12 @@
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "bench/scenes/lens.h"
 #include "bench/scenes/pair_kind.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,6 +19,8 @@ namespace winnow::bench {
 /// every second pair overlaps.
 struct PairSet {
   PairKind kind;
+  /// What shapes of the pool read.
+  std::deque<Lens> lenses;
   ShapePool pool;
   std::vector<ShapeId> shapes;  ///< by body
   std::vector<Pose> poses;      ///< by body

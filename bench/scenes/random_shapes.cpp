@@ -89,6 +89,14 @@ DrawnShape ShapeSource::draw_triangle() {
   return put(triangle, corners.colwise().norm().maxCoeff());
 }
 
+DrawnShape ShapeSource::draw_lens() {
+  const double rim = length(0.25, 1.0);
+  const double half = rim * random_.in(0.25, 0.75);
+  const double radius = 0.5 * (rim * (rim / half) + half);
+  const Lens& lens = style_.lenses->emplace_back(Lens{radius, radius - half});
+  return put(shape_of(lens), rim_of(lens));
+}
+
 std::vector<Eigen::Vector3d> ShapeSource::draw_corners() {
   const Eigen::Array3d axes(length(0.5, 1.0), length(0.5, 1.0), length(0.5, 1.0));
   std::vector<Eigen::Vector3d> points;
@@ -154,6 +162,8 @@ DrawnShape ShapeSource::draw() {
     }
     case ShapeKind::triangle:
       return draw_triangle();
+    case ShapeKind::support:
+      return draw_lens();
     case ShapeKind::hull:
       return hulls_[random_.below(static_cast<std::uint32_t>(hulls_.size()))];
     default:

@@ -3,9 +3,11 @@
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shape_pool.h>
 #include "bench/common/random.h"
+#include "bench/scenes/lens.h"
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 namespace winnow::bench {
@@ -26,6 +28,8 @@ struct ShapeStyle {
   double thinness = 1.0;  ///< of triangles: at most 1, of their height
   /// Hulls are prisms with a vertical axis, and an edge of triangles is vertical.
   bool upright = false;
+  /// Where lenses are kept, which are drawn as sets of a program's own.
+  std::deque<Lens>* lenses = nullptr;
 };
 
 /// Draws shapes of one kind into a pool. Hulls are made when it is made.
@@ -42,6 +46,7 @@ class ShapeSource {
   [[nodiscard]] DrawnShape draw_hull();
   [[nodiscard]] std::vector<Eigen::Vector3d> draw_corners();
   [[nodiscard]] DrawnShape draw_triangle();
+  [[nodiscard]] DrawnShape draw_lens();
   [[nodiscard]] double length(double least, double most) {
     return style_.scale * random_.in(least, most);
   }

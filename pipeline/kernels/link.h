@@ -5,7 +5,7 @@
 // it in that order, and nothing else names them.
 //
 // The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone, ellipsoid,
-// tapered_capsule.
+// tapered_capsule, support.
 
 #include "pipeline/kernels/kernels.h"
 

@@ -1,8 +1,25 @@
+#include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
 #include <Eigen/Core>
 
 namespace winnow {
+
+#define WINNOW_PAIRS(WINNOW_X)       \
+  WINNOW_X(sphere, support)          \
+  WINNOW_X(box, support)             \
+  WINNOW_X(half_space, support)      \
+  WINNOW_X(capsule, support)         \
+  WINNOW_X(triangle, support)        \
+  WINNOW_X(hull, support)            \
+  WINNOW_X(cylinder, support)        \
+  WINNOW_X(cone, support)            \
+  WINNOW_X(ellipsoid, support)       \
+  WINNOW_X(tapered_capsule, support) \
+  WINNOW_X(support, support)
+WINNOW_DEFINE_LINK(support, WINNOW_PAIRS)
+#undef WINNOW_PAIRS
+
 namespace {
 
 using Eigen::Vector3d;
@@ -48,6 +65,7 @@ Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
       !SupportProbe(shape).is_convex(shape.radius)) {
     return Status::invalid_shape;
   }
+  link_kernels_of_support();
   return put(supports_, ShapeKind::support, shape, id);
 }
 

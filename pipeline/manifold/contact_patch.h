@@ -32,6 +32,11 @@ inline constexpr std::uint32_t kFeatureKindShift = 30;
 /// Directions whose sine with the axis is less are along it.
 inline constexpr double kAlongAxis = 1e-9;
 
+/// Of sets that are known by their farthest points: those in directions that are off by less than
+/// this tangent lie across a normal, if they are in one plane but for this share of their distance.
+inline constexpr double kSampleTilt = 0.04;
+inline constexpr double kSampleLevel = 1e-6;
+
 /// A capsule lies beside another if the square of the sine of the angle between them is less than
 /// the first, the stretch over which it does is longer than the second, as a share of both half
 /// lengths, and an end of it is hardly less deep than the pair, by the third, as a share of the

@@ -185,18 +185,40 @@ void SupportingPatch::add_taper(const Core& core, const Vec& outward) noexcept {
   if (more > 0.0 || less < 2.0 * half) add(core.center - axis + outward * more, 1, 0);
 }
 
+namespace {
+
+/// Of points that are not in one plane: three that span most, and those in their plane. Returns how
+/// many.
+std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
+  if (count < 4) return count;
+  const Vec far = *std::max_element(x + 1, x + count, [&](const Vec& p, const Vec& q) {
+    return (p - x[0]).norm() < (q - x[0]).norm();
+  });
+  Vec normal = Vec::Zero();
+  for (std::uint32_t i = 1; i < count; ++i) {
+    const Vec n = (far - x[0]).cross(x[i] - x[0]);
+    if (n.squaredNorm() > normal.squaredNorm()) normal = n;
+  }
+  const double level = kSampleLevel * (far - x[0]).norm() * normal.norm();
+  const double base = normal.dot(x[0]);
+  const Vec* const kept = std::remove_if(
+      x, x + count, [&](const Vec& p) { return std::abs(normal.dot(p) - base) > level; });
+  return static_cast<std::uint32_t>(kept - x);
+}
+
+}  // namespace
+
 // Directions a little off, as bodies rock: corners of what is flat stay far from each other; the
 // points of what is round come together, and count as the one of them that is farthest out.
 void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
   constexpr std::uint32_t kSamples = 8;
-  constexpr double kTilt = 0.04;
   int least = 0;
   (core.rotation.transpose() * outward).cwiseAbs().minCoeff(&least);
   const Vec u = without(core.rotation.col(least), outward);
   const Vec v = outward.cross(u);
   const Range width[2] = {project(core, u), project(core, v)};
   const double apart =
-      1.5 * kTilt * std::max(width[0].high - width[0].low, width[1].high - width[1].low);
+      1.5 * kSampleTilt * std::max(width[0].high - width[0].low, width[1].high - width[1].low);
   Vec kept[kSamples];
   std::uint32_t count = 0;
   const auto take = [&](const Vec& x) {
@@ -209,9 +231,10 @@ void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept
   };
   for (std::uint32_t i = 0; i < kSamples; ++i) {
     const auto [c, s] = kSixteenthsOfTurn[2 * i];
-    take(support(core, outward + (u * c + v * s) * kTilt));
+    take(support(core, outward + (u * c + v * s) * kSampleTilt));
   }
   if (count == 1) kept[0] = support(core, outward);
+  count = keep_level(kept, count);
   for (std::uint32_t i = 0; i < count; ++i) add(kept[i], i, i);
 }
 
@@ -333,10 +356,10 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
   // Where the features miss the point of least distance, as caps with 16 corners do by a little,
   // meet nowhere within the margin or in one point alone, it takes the place of their deepest;
-  // where they miss it by much, it is put in front of them.
+  // where they miss it by much, it is put in front of them. None is deeper.
   const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
-  if (near && miss > 1e-2 * problem.size) {
+  if (near && count > 1 && miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
     contacts[0] = own;
@@ -348,6 +371,7 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   }
   answer.contact_count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
+    contacts[i].depth = std::min(contacts[i].depth, own.depth);
     for (float& x : contacts[i].position) {
       x = as_float(problem, static_cast<double>(x));
     }

@@ -1,6 +1,6 @@
-// Kernels of cylinders, cones, ellipsoids and of hulls on half-spaces: small cases derived on
-// paper, then against the solver, on every instruction set, far from the origin and at other places
-// of a batch.
+// Kernels of cylinders, cones, ellipsoids, tapered capsules and a program's own sets, and of hulls
+// on half-spaces: small cases derived on paper, then against the solver, on every instruction set,
+// far from the origin and at other places of a batch.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -391,7 +391,18 @@ constexpr CurvedKind kCurvedKinds[] = {{sphere, cylinder},
                                        {hull, tapered_capsule},
                                        {triangle, tapered_capsule},
                                        {ellipsoid, tapered_capsule},
-                                       {tapered_capsule, tapered_capsule}};
+                                       {tapered_capsule, tapered_capsule},
+                                       {sphere, support},
+                                       {capsule, support},
+                                       {box, support},
+                                       {cylinder, support},
+                                       {cone, support},
+                                       {hull, support},
+                                       {triangle, support},
+                                       {half_space, support},
+                                       {ellipsoid, support},
+                                       {tapered_capsule, support},
+                                       {support, support}};
 
 class CurvedPairs : public testing::TestWithParam<CurvedKind> {
  protected:
@@ -420,7 +431,8 @@ TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
     for (std::size_t i = 0; i < solved.size(); ++i) {
       const double d = solved[i].distance;
       const double doubt = solved[i].error_bound + found[i].error_bound;
-      // What touches an ellipsoid or a tapered capsule is decided by no exact arithmetic.
+      // What touches a shape that is known by its farthest points is decided by no exact
+      // arithmetic.
       if (GetParam().b < ellipsoid || std::abs(d) > solved[i].error_bound) {
         ASSERT_EQ(verdict[i].overlap, solved[i].overlap) << i << " " << d;
         ASSERT_EQ(found[i].overlap, solved[i].overlap) << i << " " << d;

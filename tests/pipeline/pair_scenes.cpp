@@ -104,6 +104,19 @@ class Maker {
     return points;
   }
 
+  /// Of any form.
+  const OwnSet& own_set(double size, const double (&half)[3]) {
+    OwnSet& set = scene_.own.emplace_back();
+    set.form = static_cast<OwnSet::Form>(random_.below(4));
+    std::copy_n(half, 3, set.size);
+    if (set.form == OwnSet::corners) {
+      for (const Eigen::Vector3d& x : hull_points(size)) {
+        set.corner.insert(set.corner.end(), x.begin(), x.end());
+      }
+    }
+    return set;
+  }
+
   ShapeId shape(ShapeKind kind, double size, double& reach) {
     ShapeId id;
     Status status = Status::ok;
@@ -142,6 +155,9 @@ class Maker {
         break;
       case ShapeKind::tapered_capsule:
         status = scene_.pool.add(TaperedCapsuleShape{{half[0], half[1]}, half[2]}, id);
+        break;
+      case ShapeKind::support:
+        status = scene_.pool.add(shape_of(own_set(size, half), round), id);
         break;
       default:
         status = Status::unsupported;
@@ -234,6 +250,8 @@ double extent_of(const ShapeTables& tables, ShapeId id) {
       const TaperedCapsuleShape& taper = tables.tapered_capsules[i];
       return taper.half_length + std::max(taper.radius[0], taper.radius[1]);
     }
+    case ShapeKind::support:
+      return tables.supports[i].radius + tables.supports[i].rounding;
     default:
       break;
   }

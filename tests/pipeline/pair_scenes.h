@@ -5,10 +5,12 @@
 #include <winnow/pipeline/shape_pool.h>
 
 #include <cstddef>
+#include <deque>
 #include <memory_resource>
 #include <ostream>
 #include <vector>
 
+#include "tests/pipeline/own_sets.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -18,6 +20,8 @@ struct PairScene {
   explicit PairScene(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : pool(memory) {}
 
+  /// What shapes of the pool read; their places do not change.
+  std::deque<OwnSet> own;
   ShapePool pool;
   std::vector<ShapeId> shapes;
   std::vector<Pose> poses;

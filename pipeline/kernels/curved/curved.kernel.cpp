@@ -1,4 +1,5 @@
-// Cylinders, cones, ellipsoids and tapered capsules against everything but spheres and half-spaces.
+// Cylinders, cones, ellipsoids and tapered capsules against everything but spheres and half-spaces,
+// and a program's own convex sets against everything but half-spaces.
 // The code is one for all kinds of pairs, which a job tells: a branch that goes the same way for
 // all of its pairs.
 
@@ -35,6 +36,16 @@ WINNOW_CURVED(hull_tapered_capsule)
 WINNOW_CURVED(triangle_tapered_capsule)
 WINNOW_CURVED(ellipsoid_tapered_capsule)
 WINNOW_CURVED(tapered_capsule_tapered_capsule)
+WINNOW_CURVED(sphere_support)
+WINNOW_CURVED(capsule_support)
+WINNOW_CURVED(box_support)
+WINNOW_CURVED(cylinder_support)
+WINNOW_CURVED(cone_support)
+WINNOW_CURVED(hull_support)
+WINNOW_CURVED(triangle_support)
+WINNOW_CURVED(ellipsoid_support)
+WINNOW_CURVED(tapered_capsule_support)
+WINNOW_CURVED(support_support)
 #undef WINNOW_CURVED
 
 }  // namespace winnow

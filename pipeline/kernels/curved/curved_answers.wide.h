@@ -97,8 +97,9 @@ class CurvedAnswers {
   static constexpr double kFarthest = 1e10;
   /// What bounds of a distance may differ by, over it, before they are looked at again.
   static constexpr double kLoose = 1e-10;
-  /// The widest bound of an answer, over the sizes.
+  /// The widest bound of an answer, over the sizes, and that of a program's own sets.
   static constexpr double kCertified = 1e-9;
+  static constexpr double kCertifiedOwn = 4e-7;
 
   explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
 
@@ -144,6 +145,11 @@ class CurvedAnswers {
     return kept;
   }
 
+  /// Rounding, and points of a program's own set that contradict each other, may exchange bounds.
+  static double doubt_between(double lower, double upper) {
+    return upper > lower ? upper - lower : 0.0;
+  }
+
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
   bool answer(CurvedPair& pair) {
@@ -169,7 +175,8 @@ class CurvedAnswers {
       write_normal(pair, normal, world);
       job_.distance[pair.index] = (pair.lower - pair.rounding) * pair.unit;
       job_.error_bound[pair.index] =
-          (pair.upper - pair.lower + kRoundingError * (pair.size + pair.rounding)) * pair.unit;
+          (doubt_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding)) *
+          pair.unit;
       job_.contact_first[pair.index] = job_.contacts.size;
       job_.contact_count[pair.index] = 0;
     }
@@ -178,8 +185,8 @@ class CurvedAnswers {
 
   bool write_apart(CurvedPair& pair) {
     if (pair.upper - pair.lower > kLoose * pair.upper) end_in_triangle(pair);
-    const double doubt = pair.upper > pair.lower ? pair.upper - pair.lower : 0.0;
-    const double error = doubt + kRoundingError * (pair.size + pair.rounding);
+    const double error =
+        doubt_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding);
     // An error of the length is one of the direction: this keeps it below 0.01 degrees.
     if (!(error <= 1e-8 * pair.upper)) return false;
     double normal[3];
@@ -209,8 +216,8 @@ class CurvedAnswers {
       double normal[3];
       double point[3];
       if (!depth_.answer(normal, point)) return false;
-      const double error =
-          depth_.upper() - depth_.lower() + 2.0 * kRoundingError * (pair.size + pair.rounding);
+      const double error = doubt_between(depth_.lower(), depth_.upper()) +
+                           2.0 * kRoundingError * (pair.size + pair.rounding);
       // The cores' sign is that of the polytope.
       if (!(error < depth_.upper())) return false;
       return write(pair, -depth_.upper(), error, normal, point);
@@ -222,7 +229,8 @@ class CurvedAnswers {
              const double* point) {
     const double distance = apart - pair.rounding;
     if (!(error < __builtin_fabs(distance))) return false;
-    if (!(error <= kCertified * (pair.size + pair.rounding))) return false;
+    const double widest = has_own(pair) ? kCertifiedOwn : kCertified;
+    if (!(error <= widest * (pair.size + pair.rounding))) return false;
     if constexpr (Level == 0) {
       job_.overlap[pair.index] = distance <= 0.0;
       return true;

@@ -7,7 +7,7 @@
 // are found that are sure for some way around, and faces near which only such directions are left
 // are closed. The search ends when no open face is nearer than the least of the minima.
 
-#include "pipeline/kernels/curved/curved_minimum.wide.h"
+#include "pipeline/kernels/curved/curved_tangent.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
@@ -17,11 +17,16 @@ class CurvedDepth {
   /// when its room is full.
   static constexpr double kTolerance = 4e-10;
   static constexpr double kMostDoubt = 8e-10;
+  /// Of a program's own sets, of whose curvature nothing is known.
+  static constexpr double kOwnTolerance = 1.5e-7;
+  static constexpr double kOwnDoubt = 3e-7;
 
   /// From the four points around the origin that the search found; false if the polytope outgrows
   /// its room or is too flat.
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
+    const bool own = has_own(pair);
+    const double tolerance = own ? kOwnTolerance : kTolerance;
     points_ = 0;
     faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
@@ -29,35 +34,36 @@ class CurvedDepth {
     minima_ = 0;
     best_height_ = __builtin_inf();
     sure_ = __builtin_inf();
+    is_minimum_ = false;
     double next = kFirstLook;
     for (;;) {
       face_ = nearest_face();
       lower_ = open_[face_];
-      is_minimum_ = lower_ >= best_height_ - kTolerance;
-      if (is_minimum_) return end_in_minimum();
+      if (lower_ >= best_height_ - tolerance) return end_in_minimum();
       if (is_closed(face_)) {
         open_[face_] = __builtin_inf();
         continue;
       }
-      double w[3];
-      double mine[3];
-      measure(w, mine);
-      // Of faces in one plane, the one that the foot of the origin is in tells the point.
-      if (upper_ - lower_ <= kTolerance) {
-        turn_to_foot();
-        measure(w, mine);
-        if (upper_ - lower_ <= kTolerance) {
-          if (has_foot()) return true;
-          if (!look_for_minimum()) return false;
-          continue;
+      if (!own || !measure_nearer_to_best()) {
+        measure();
+        // Of faces in one plane, the one that the foot of the origin is in tells the point.
+        if (upper_ - lower_ <= tolerance) {
+          turn_to_foot();
+          measure();
+          if (upper_ - lower_ <= tolerance) {
+            if (has_foot()) return true;
+            if (!look_for_minimum()) return false;
+            continue;
+          }
+        }
+        if (upper_ - lower_ <= next * upper_) {
+          if (look_for_minimum() && is_closed(face_)) continue;
+          if (own) look_for_tangent();
+          next *= kNextLook;
         }
       }
-      if (upper_ - lower_ <= next * upper_) {
-        if (look_for_minimum() && is_closed(face_)) continue;
-        next *= kNextLook;
-      }
-      if (points_ == kMostPoints) return upper_ - lower_ <= kMostDoubt;
-      if (!grow(add_point(w, mine))) return false;
+      if (points_ == kMostPoints) return upper_ - lower_ <= (own ? kOwnDoubt : kMostDoubt);
+      if (!grow(add_point(found_.w, found_.mine))) return false;
     }
   }
 
@@ -69,8 +75,10 @@ class CurvedDepth {
   /// is on both once the second has been moved out; false if rounding hides where that is.
   bool answer(double* direction, double* point) const {
     if (is_minimum_) {
-      for (int k = 0; k < 3; ++k) direction[k] = best_.normal()[k];
-      best_.write_point(point);
+      for (int k = 0; k < 3; ++k) {
+        direction[k] = best_normal_[k];
+        point[k] = best_point_[k];
+      }
       return true;
     }
     double weight[3];
@@ -96,8 +104,14 @@ class CurvedDepth {
   static constexpr double kCosineRounding = 1e-12;
   /// Below all cosines.
   static constexpr double kAllAround = -2.0;
+  /// Directions of which the cosine is larger lead to the same minimum, as a rule.
+  static constexpr double kSameMinimum = 0.9;
+  /// How far from there to the nearest face's own direction the polytope grows next, and by how
+  /// much at least.
+  static constexpr double kNearerShare = 0.7;
+  static constexpr double kNearerRise = 0.1 * kOwnTolerance;
   static constexpr std::uint32_t kMostMinima = 8;
-  static constexpr std::uint32_t kMostPoints = 64;
+  static constexpr std::uint32_t kMostPoints = 128;
   /// A polytope of p points has 2 p - 4 faces.
   static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
   /// Faces that a point sees; of their sides more are looked at than are kept.
@@ -107,6 +121,12 @@ class CurvedDepth {
   static constexpr double kLevel = 1e-15;
   /// The foot of the origin is in a face if no weight of a corner is below this.
   static constexpr double kInside = -1e-7;
+
+  /// Of the difference, and the first's point in it.
+  struct Point {
+    double w[3];
+    double mine[3];
+  };
 
   std::uint32_t add_point(const double* w, const double* mine) {
     for (int k = 0; k < 3; ++k) {
@@ -121,10 +141,25 @@ class CurvedDepth {
   }
 
   /// Sets the upper bound to that of the face, and finds its point of the difference.
-  void measure(double* w, double* mine) {
+  void measure() {
     const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
-    difference_point(*pair_, n, w, mine);
-    upper_ = dot_normal(face_, w);
+    difference_point(*pair_, n, found_.w, found_.mine);
+    upper_ = dot_normal(face_, found_.w);
+  }
+
+  /// Finds a point nearer to the best minimum than the face's own: near that the polytope needs
+  /// fewer of them. False if the face is elsewhere, or the point is not above it.
+  bool measure_nearer_to_best() {
+    if (!(best_height_ < __builtin_inf())) return false;
+    const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
+    if (!(dot3(n, best_normal_) > kSameMinimum)) return false;
+    double m[3];
+    for (int k = 0; k < 3; ++k) {
+      m[k] = best_normal_[k] + kNearerShare * (n[k] - best_normal_[k]);
+    }
+    difference_point(*pair_, m, found_.w, found_.mine);
+    upper_ = best_height_;
+    return dot3(n, found_.w) - lower_ > kNearerRise;
   }
 
   /// An edge of a face: the face's number times four and the edge's.
@@ -216,17 +251,20 @@ class CurvedDepth {
   /// Makes the new faces neighbours of each other and of those across; false unless the sides are
   /// rings: at each corner one ends and one begins.
   bool join(const Side* side, std::uint32_t count) {
-    std::uint64_t begins = 0;
-    std::uint64_t ends = 0;
+    std::uint64_t begins[kMostPoints / 64] = {};
+    std::uint64_t ends[kMostPoints / 64] = {};
     for (std::uint32_t i = 0; i < count; ++i) {
-      begins |= std::uint64_t{1} << side[i].p;
-      ends |= std::uint64_t{1} << side[i].q;
+      begins[side[i].p / 64] |= std::uint64_t{1} << side[i].p % 64;
+      ends[side[i].q / 64] |= std::uint64_t{1} << side[i].q % 64;
       from_[side[i].p] = side[i].face;
       into_[side[i].q] = side[i].face;
     }
-    if (begins != ends || static_cast<std::uint32_t>(__builtin_popcountll(begins)) != count) {
-      return false;
+    int corners = 0;
+    for (std::uint32_t word = 0; word < kMostPoints / 64; ++word) {
+      if (begins[word] != ends[word]) return false;
+      corners += __builtin_popcountll(begins[word]);
     }
+    if (static_cast<std::uint32_t>(corners) != count) return false;
     for (std::uint32_t i = 0; i < count; ++i) {
       const Side& s = side[i];
       across_[s.face][0] = s.across;
@@ -238,6 +276,7 @@ class CurvedDepth {
   }
 
   bool end_in_minimum() {
+    is_minimum_ = true;
     upper_ = best_height_;
     lower_ = lower_ < sure_ ? lower_ : sure_;
     return true;
@@ -281,9 +320,34 @@ class CurvedDepth {
     sure_cosine_[minima_] = cosine;
     ++minima_;
     sure_ = sure < sure_ ? sure : sure_;
+    double point[3];
+    found.write_point(point);
+    offer(found.normal(), point, height);
+  }
+
+  void offer(const double* normal, const double* point, double height) {
     if (!(height < best_height_)) return;
     best_height_ = height;
-    best_ = found;
+    for (int k = 0; k < 3; ++k) {
+      best_normal_[k] = normal[k];
+      best_point_[k] = point[k];
+    }
+  }
+
+  /// A minimum near the nearest face, less than the best so far, around which nothing is sure. Its
+  /// point takes the place of the one that the polytope was to grow by if it is above the face as
+  /// well.
+  void look_for_tangent() {
+    const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
+    if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return;
+    TangentMinimum found;
+    if (!found.find(*pair_, near) || !(found.height() < best_height_ - kOwnTolerance)) return;
+    offer(found.normal(), found.point(), found.height());
+    if (!(dot_normal(face_, found.difference()) > distance_[face_] + kLevel)) return;
+    for (int k = 0; k < 3; ++k) {
+      found_.w[k] = found.difference()[k];
+      found_.mine[k] = found.point()[k];
+    }
   }
 
   /// Whether all points on a face that are nearer than the least minimum are in directions in which
@@ -395,15 +459,18 @@ class CurvedDepth {
   }
 
   const CurvedPair* pair_ = nullptr;
-  /// Of the minima: the least, its height, a lower bound of all, and around which directions, up to
-  /// the angle of which cosine, each is sure.
-  LocalMinimum best_;
+  /// Of the minima: the least and the first's point in it, its height, a lower bound of all, and
+  /// around which directions, up to the angle of which cosine, each is sure.
+  double best_normal_[3];
+  double best_point_[3];
   double best_height_;
   double sure_;
   std::uint32_t minima_ = 0;
   double sure_around_[kMostMinima][3];
   double sure_cosine_[kMostMinima];
   bool is_minimum_ = false;
+  /// What the polytope grows by next.
+  Point found_;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
   double upper_ = 0.0;

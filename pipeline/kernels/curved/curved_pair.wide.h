@@ -5,6 +5,7 @@
 // are multiplied by a power of two that brings the largest into [1, 2).
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/own_support.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
@@ -24,7 +25,9 @@ struct Form {
   /// larger, z of its middle, z of the smaller one's; the same twice, and no radius, where it holds
   /// the smaller one.
   double number[kNumbers];
+  /// Of a hull, and of a program's own set.
   const HullShape* hull;
+  const SupportShape* own;
   double rounding;
   /// A point of it.
   double center[3];
@@ -74,6 +77,11 @@ struct CurvedPair {
   double lower;
 };
 
+/// Nothing is known of the surface of a program's own set but its points.
+static inline bool has_own(const CurvedPair& pair) {
+  return pair.second.kind == ShapeKind::support;
+}
+
 /// A bound of the rounding errors of lengths, over size: some forty operations of half a unit each.
 inline constexpr double kRoundingError = 40.0 * 0x1p-53;
 
@@ -89,10 +97,14 @@ static inline double largest_of(double a, double b) {
 static inline double describe(const ShapeTables& tables, ShapeId id, Form& form) {
   form.kind = id.kind();
   form.hull = nullptr;
+  form.own = nullptr;
   for (double& x : form.number) x = 0.0;
   for (double& x : form.center) x = 0.0;
   const std::uint32_t i = id.index();
   switch (form.kind) {
+    case ShapeKind::sphere:
+      form.rounding = tables.spheres[i].radius;
+      break;
     case ShapeKind::capsule:
       form.number[2] = tables.capsules[i].half_length;
       form.rounding = tables.capsules[i].radius;
@@ -146,6 +158,10 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
       form.rounding = tables.triangles[i].rounding;
       return most;
     }
+    case ShapeKind::support:
+      form.own = &tables.supports[i];
+      form.rounding = form.own->rounding;
+      return form.own->radius;
     default:
       form.hull = &tables.hulls[i];
       form.rounding = form.hull->rounding;
@@ -255,16 +271,19 @@ template <typename T>
                 Vec3<T>{d.x * over, d.y * over, n[1] + d.z * over});
 }
 
-/// The farthest point of a core along d, in its frame; `of_hull` finds that of hulls.
-template <typename T, typename OfHull>
+/// The farthest point of a core along d, in its frame; `one_by_one` finds that of hulls and of a
+/// program's own sets.
+template <typename T, typename OneByOne>
 [[gnu::always_inline]] static inline Vec3<T> support(const FormLanes<T>& form, const Vec3<T>& d,
-                                                     OfHull&& of_hull) {
+                                                     OneByOne&& one_by_one) {
   const Lanes<T> zero(T(0));
   const Lanes<T>* n = form.number;
   const auto towards = [&](const Lanes<T>& x, const Lanes<T>& h) {
     return select(x < zero, -h, h);
   };
   switch (form.kind) {
+    case ShapeKind::sphere:
+      return {zero, zero, zero};
     case ShapeKind::capsule:
       return {zero, zero, towards(d.z, n[2])};
     case ShapeKind::box:
@@ -290,7 +309,7 @@ template <typename T, typename OfHull>
     case ShapeKind::tapered_capsule:
       return taper_point(n, d);
     default:
-      return of_hull(d);
+      return one_by_one(d);
   }
 }
 
@@ -312,6 +331,16 @@ static inline void hull_support(const HullShape& shape, const T* d, T scale, T* 
   const std::uint32_t vertex = hull::highest_vertex(shape, Vec3<T>{d[0], d[1], d[2]});
   const T* const* column = hull::columns_of(shape, T());
   for (int k = 0; k < 3; ++k) x[k] = column[k][vertex] * scale;
+}
+
+/// That of a core of which no lanes are made.
+template <typename T>
+static inline void single_support(const Form& form, const T* d, T scale, T* x) {
+  if (form.kind == ShapeKind::support) {
+    own_support(*form.own, d, scale, x);
+  } else {
+    hull_support(*form.hull, d, scale, x);
+  }
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

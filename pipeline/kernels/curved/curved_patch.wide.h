@@ -3,7 +3,7 @@
 // The features of two cores that meet along a normal, as patches for contact_patch; numbered as the
 // solver numbers them.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/curved/farthest_points.wide.h"
 #include "pipeline/kernels/hull/hull_features.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
@@ -59,6 +59,9 @@ class CurvedPatch {
         break;
       case ShapeKind::hull:
         add_hull(d, at);
+        break;
+      case ShapeKind::support:
+        add_samples(d);
         break;
       case ShapeKind::tapered_capsule:
         add_taper(d);
@@ -201,6 +204,93 @@ class CurvedPatch {
     if (tip != ball) add({0.0, 0.0, tip}, tip < 0.0 ? 1 : 0, 0);
   }
 
+  /// Directions a little off, as bodies rock: corners of what is flat stay far from each other; the
+  /// points of what is round come together, and count as the one of them that is farthest out.
+  void add_samples(const double* d) {
+    constexpr std::uint32_t kSamples = 8;
+    double across[2][3];
+    directions_across(d, across);
+    const double apart =
+        1.5 * kSampleTilt * largest_of(width_along(across[0]), width_along(across[1]));
+    double kept[kSamples][3];
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+      const double c = kSampleTilt * kRimCosine[2 * i];
+      const double s = kSampleTilt * kRimCosine[(2 * i + 3 * kRimCorners / 4) % kRimCorners];
+      double tilted[3];
+      for (int k = 0; k < 3; ++k) tilted[k] = d[k] + across[0][k] * c + across[1][k] * s;
+      double x[3];
+      farthest(form_, tilted, pair_.scale, x);
+      std::uint32_t at = 0;
+      while (at < count && !(distance_of(x, kept[at]) <= apart)) ++at;
+      if (at < count && !(dot3(d, x) > dot3(d, kept[at]))) continue;
+      for (int k = 0; k < 3; ++k) kept[at][k] = x[k];
+      count = at < count ? count : count + 1;
+    }
+    if (count == 1) farthest(form_, d, pair_.scale, kept[0]);
+    count = keep_level(kept, count);
+    for (std::uint32_t i = 0; i < count; ++i) add({kept[i][0], kept[i][1], kept[i][2]}, i, i);
+  }
+
+  /// Of points that are not in one plane: three that span most, and those in their plane. Returns
+  /// how many.
+  static std::uint32_t keep_level(double (*x)[3], std::uint32_t count) {
+    if (count < 4) return count;
+    std::uint32_t far = 1;
+    for (std::uint32_t i = 2; i < count; ++i) {
+      if (distance_of(x[i], x[0]) > distance_of(x[far], x[0])) far = i;
+    }
+    double normal[3] = {};
+    for (std::uint32_t i = 1; i < count; ++i) {
+      double e[3];
+      double f[3];
+      double n[3];
+      for (int k = 0; k < 3; ++k) {
+        e[k] = x[far][k] - x[0][k];
+        f[k] = x[i][k] - x[0][k];
+      }
+      cross3(e, f, n);
+      if (!(dot3(n, n) > dot3(normal, normal))) continue;
+      for (int k = 0; k < 3; ++k) normal[k] = n[k];
+    }
+    const double level =
+        kSampleLevel * distance_of(x[far], x[0]) * __builtin_sqrt(dot3(normal, normal));
+    const double base = dot3(normal, x[0]);
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (__builtin_fabs(dot3(normal, x[i]) - base) > level) continue;
+      for (int k = 0; k < 3; ++k) x[kept][k] = x[i][k];
+      ++kept;
+    }
+    return kept;
+  }
+
+  /// Unit, across d and each other: the first as near as can be to the axis farthest from d.
+  static void directions_across(const double* d, double (*across)[3]) {
+    int least = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (__builtin_fabs(d[k]) < __builtin_fabs(d[least])) least = k;
+    }
+    for (int k = 0; k < 3; ++k) across[0][k] = (k == least ? 1.0 : 0.0) - d[least] * d[k];
+    const double length = __builtin_sqrt(dot3(across[0], across[0]));
+    for (double& x : across[0]) x /= length;
+    cross3(d, across[0], across[1]);
+  }
+
+  [[nodiscard]] double width_along(const double* d) const {
+    const double back[3] = {-d[0], -d[1], -d[2]};
+    double high[3];
+    double low[3];
+    farthest(form_, d, pair_.scale, high);
+    farthest(form_, back, pair_.scale, low);
+    return dot3(d, high) - dot3(d, low);
+  }
+
+  static double distance_of(const double* x, const double* y) {
+    const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+    return __builtin_sqrt(dot3(d, d));
+  }
+
   const CurvedPair& pair_;
   const Form& form_;
   bool of_first_;
@@ -223,12 +313,17 @@ static inline std::uint32_t point_feature(const Form& form, const double* at, do
   return static_cast<std::uint32_t>(13 + side(0) + 3 * side(1) + 9 * side(2));
 }
 
+static inline bool touches_in_a_point(const Form& form) {
+  return form.kind == ShapeKind::sphere || form.kind == ShapeKind::ellipsoid;
+}
+
 /// The points of contact of a pair no farther apart than the margin. `normal` is in the first's
 /// frame; `world`, from body a to body b, and `point`, on the surface of a relative to it, in the
 /// axes of the world; `core` is the point of the first's core, `apart` the distance of the cores,
 /// both scaled. The deepest point is as deep as the distance says: where the features miss that by
 /// a little, as polygons for rims do, meet nowhere within the margin or in one point alone, it
-/// takes the place of their deepest; where they miss it by much, it is put in front of them.
+/// takes the place of their deepest; where they miss it by much, it is put in front of them. None
+/// is deeper.
 static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,
@@ -237,9 +332,8 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
   double local[3];
   for (int k = 0; k < 3; ++k) theirs[k] = core[k] + apart * normal[k] - pair.shift[k];
   turn_back3(pair.turn, theirs, local);
-  // Ellipsoids touch in a point.
   std::uint32_t count = 0;
-  if (pair.first.kind != ShapeKind::ellipsoid && pair.second.kind != ShapeKind::ellipsoid) {
+  if (!touches_in_a_point(pair.first) && !touches_in_a_point(pair.second)) {
     const CurvedPatch first(pair, true, normal, core);
     const CurvedPatch second(pair, false, normal, local);
     count = contact_patch(pair.swapped ? second.view() : first.view(),
@@ -257,7 +351,7 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
   const double miss =
       __builtin_fabs(static_cast<double>(out[0].depth) - static_cast<double>(own.depth));
   const bool near = count > 0 && static_cast<double>(out[0].depth) >= -margin;
-  if (near && miss > 1e-2 * size) {
+  if (near && count > 1 && miss > 1e-2 * size) {
     count = count < kManifoldPoints ? count + 1 : count;
     for (std::uint32_t i = count - 1; i > 0; --i) out[i] = out[i - 1];
     out[0] = own;
@@ -265,6 +359,9 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
     if (near) own.feature = out[0].feature;
     out[0] = own;
     count = count == 0 ? 1 : count;
+  }
+  for (std::uint32_t i = 1; i < count; ++i) {
+    out[i].depth = out[i].depth < own.depth ? out[i].depth : own.depth;
   }
   return count;
 }

@@ -72,9 +72,9 @@ class CurvedSearch {
     pair_[lane] = &pair;
     const Form* const forms[2] = {&pair.first, &pair.second};
     for (int side = 0; side < 2; ++side) {
-      for (int i = 0; i < Form::kNumbers; ++i)
+      for (int i = 0; i < Form::kNumbers; ++i) {
         number_[side][i][lane] = static_cast<T>(forms[side]->number[i]);
-      hull_[side][lane] = forms[side]->hull;
+      }
     }
     for (int i = 0; i < 9; ++i) turn_[i][lane] = static_cast<T>(pair.turn[i]);
     for (int i = 0; i < 3; ++i) shift_[i][lane] = static_cast<T>(pair.shift[i]);
@@ -143,10 +143,10 @@ class CurvedSearch {
     FormLanes<T> form;
     form.kind = kind_[side];
     for (int i = 0; i < Form::kNumbers; ++i) form.number[i] = Lanes<T>::load(number_[side][i]);
-    return support(form, d, [&](const Vec3<T>& along) { return hull_supports(side, along); });
+    return support(form, d, [&](const Vec3<T>& along) { return one_by_one(side, along); });
   }
 
-  [[gnu::noinline]] Vec3<T> hull_supports(int side, const Vec3<T>& along) {
+  [[gnu::noinline]] Vec3<T> one_by_one(int side, const Vec3<T>& along) {
     alignas(64) T d[3][kWidth];
     alignas(64) T x[3][kWidth] = {};
     store3(along, d);
@@ -154,7 +154,9 @@ class CurvedSearch {
       const unsigned lane = first(rest);
       const T direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
       T point[3];
-      hull_support(*hull_[side][lane], direction, static_cast<T>(pair_[lane]->scale), point);
+      const CurvedPair& pair = *pair_[lane];
+      single_support(side == 0 ? pair.first : pair.second, direction, static_cast<T>(pair.scale),
+                     point);
       for (int k = 0; k < 3; ++k) x[k][lane] = point[k];
     }
     return load3(x);
@@ -280,7 +282,6 @@ class CurvedSearch {
   Mask16 active_ = 0;
   ShapeKind kind_[2];
   CurvedPair* pair_[kWidth] = {};
-  const HullShape* hull_[2][kWidth] = {};
   std::uint32_t steps_[kWidth] = {};
   bool is_askew_[kWidth] = {};
   alignas(64) T number_[2][Form::kNumbers][kWidth] = {};

@@ -11,6 +11,9 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
   const double* n = form.number;
   const auto towards = [](double along, double half) { return along < 0.0 ? -half : half; };
   switch (form.kind) {
+    case ShapeKind::sphere:
+      for (int k = 0; k < 3; ++k) x[k] = 0.0;
+      return;
     case ShapeKind::capsule:
       x[0] = 0.0;
       x[1] = 0.0;
@@ -56,7 +59,7 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
       return;
     }
     default:
-      hull_support(*form.hull, d, scale, x);
+      single_support(form, d, scale, x);
   }
 }
 

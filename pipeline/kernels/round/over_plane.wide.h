@@ -57,9 +57,12 @@ template <typename T, int Count>
   exchange(f.feature[first], f.feature[second]);
 }
 
-/// From feet to answers with up to so many contacts; returns the uncertified lanes.
-template <int Contacts>
+/// From feet to answers with up to so many contacts; returns the uncertified lanes. `PlaneSide` is
+/// the half-space's.
+template <int Contacts, typename PlaneSide = SideB>
 struct FeetAnswers {
+  static constexpr bool kPlaneFirst = __is_same(PlaneSide, SideA);
+
   template <int L, typename T, int Count>
   [[gnu::always_inline]] static Mask16 write(NarrowJob& job, const PairBlock<T>& block,
                                              const Feet<T, Count>& feet) {
@@ -68,8 +71,14 @@ struct FeetAnswers {
     if constexpr (L == kBoolean) {
       return answer_sign(job, block, distance, bound, feet.scale);
     } else {
-      const CertifiedLanes<T> answer = answer_along(-feet.normal, distance, bound, feet.scale);
-      write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
+      const Vec3<T> normal = kPlaneFirst ? feet.normal : -feet.normal;
+      const CertifiedLanes<T> answer = answer_along(normal, distance, bound, feet.scale);
+      if constexpr (kPlaneFirst) {
+        const Vec3<T> under = feet.foot[0] - feet.normal * feet.height[0];
+        write_certified<L>(job, block, answer, under, Lanes<T>(T(0)));
+      } else {
+        write_certified<L>(job, block, answer, feet.foot[0], feet.rounding);
+      }
       if constexpr (L == kManifold) write_touches(job, block, feet, answer.certified);
       return ~answer.certified;
     }
@@ -78,6 +87,7 @@ struct FeetAnswers {
   template <typename T, int Count>
   [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                    const Feet<T, Count>& feet, Mask16 known) {
+    const Lanes<T> zero(T(0));
     ContactLanes<T> contacts[Contacts];
     Mask16 lanes = known & block.lanes();
     for (int i = 0; i < Contacts; ++i) {
@@ -85,7 +95,8 @@ struct FeetAnswers {
       const Lanes<T> d = feet.height[k] - feet.rounding;
       lanes &= i < Count ? bits(d <= Lanes<T>(static_cast<T>(job.margin))) : 0U;
       contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Lanes<T>(T(0.5))), -d,
-                     feet.feature[k], Lanes<T>(T(0)), lanes};
+                     kPlaneFirst ? zero : feet.feature[k], kPlaneFirst ? feet.feature[k] : zero,
+                     lanes};
     }
     write_contacts(job, block, contacts);
   }

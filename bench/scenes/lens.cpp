@@ -1,0 +1,34 @@
+#include "bench/scenes/lens.h"
+
+#include <cmath>
+
+namespace winnow::bench {
+
+double rim_of(const Lens& lens) noexcept {
+  return std::sqrt((lens.radius - lens.middle) * (lens.radius + lens.middle));
+}
+
+void farthest_of_lens(const Lens& lens, const double direction[3], double point[3]) noexcept {
+  const double square = direction[0] * direction[0] + direction[1] * direction[1];
+  const double length = std::sqrt(square + direction[2] * direction[2]);
+  const bool on_rim = lens.radius * std::abs(direction[2]) < lens.middle * length;
+  const double across = std::sqrt(square);
+  const double reach = on_rim ? (across > 0.0 ? rim_of(lens) / across : 0.0) : lens.radius / length;
+  point[0] = direction[0] * reach;
+  point[1] = direction[1] * reach;
+  // The upper side is of the lower ball.
+  point[2] = on_rim ? 0.0 : direction[2] * reach - std::copysign(lens.middle, direction[2]);
+}
+
+SupportShape shape_of(const Lens& lens) noexcept {
+  SupportShape shape;
+  shape.function = [](const void* context, const double direction[3], double point[3]) {
+    farthest_of_lens(*static_cast<const Lens*>(context), direction, point);
+  };
+  shape.context = &lens;
+  // What the function rounds is not to count as beyond.
+  shape.radius = rim_of(lens) * (1.0 + 1e-15);
+  return shape;
+}
+
+}  // namespace winnow::bench

@@ -1,0 +1,182 @@
+// Half-spaces against a program's own convex sets: the lowest point over the plane and, for
+// contacts, the points that the set has in directions a little off.
+
+#include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/own_support.wide.h"
+#include "pipeline/kernels/round/over_plane.wide.h"
+
+namespace winnow {
+namespace WINNOW_ISA_NAME::round {
+namespace {
+
+using hull::dot3;
+
+/// Points of a set over a plane, the lowest first: as bodies rock, corners of what is flat stay far
+/// from each other, and the points of what is round come together, and count as one.
+class RockingPoints {
+ public:
+  static constexpr std::uint32_t kMost = 4;
+
+  /// `up`: unit. Only points no higher than `limit` along it are taken, but for the lowest.
+  RockingPoints(const SupportShape& shape, const double* up, const double* lowest, double limit)
+      : shape_(shape) {
+    add(lowest);
+    span_across(up);
+    const double widest =
+        width(across_[0]) > width(across_[1]) ? width(across_[0]) : width(across_[1]);
+    const double apart = kMerged * kTilt * widest;
+    constexpr int kCorners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (const int(&corner)[2] : kCorners) {
+      double down[3];
+      double x[3];
+      for (int k = 0; k < 3; ++k) {
+        down[k] = kTilt * (corner[0] * across_[0][k] + corner[1] * across_[1][k]) - up[k];
+      }
+      own_support(shape_, down, 1.0, x);
+      if (dot3(up, x) <= limit && is_alone(x, apart)) add(x);
+    }
+    if (count_ > kMost) leave_out_lowest(up);
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] const double* point(std::uint32_t i) const { return point_[i]; }
+
+ private:
+  /// Tangents of angles: how far directions are off, each way.
+  static constexpr double kTilt = 0.03;
+  /// Points of a ball come closer than this share of the tilt and its width.
+  static constexpr double kMerged = 2.0;
+
+  void add(const double* x) {
+    for (int k = 0; k < 3; ++k) point_[count_][k] = x[k];
+    ++count_;
+  }
+
+  /// Unit, in the directions of the axes of the set as far as can be.
+  void span_across(const double* up) {
+    int least = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (__builtin_fabs(up[k]) < __builtin_fabs(up[least])) least = k;
+    }
+    for (int k = 0; k < 3; ++k) across_[0][k] = (k == least ? 1.0 : 0.0) - up[least] * up[k];
+    const double over = 1.0 / __builtin_sqrt(dot3(across_[0], across_[0]));
+    for (double& x : across_[0]) x *= over;
+    hull::cross3(up, across_[0], across_[1]);
+  }
+
+  [[nodiscard]] double width(const double* d) const {
+    const double back[3] = {-d[0], -d[1], -d[2]};
+    double high[3];
+    double low[3];
+    own_support(shape_, d, 1.0, high);
+    own_support(shape_, back, 1.0, low);
+    return dot3(d, high) - dot3(d, low);
+  }
+
+  [[nodiscard]] bool is_alone(const double* x, double apart) const {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const double d[3] = {x[0] - point_[i][0], x[1] - point_[i][1], x[2] - point_[i][2]};
+      if (dot3(d, d) <= apart * apart) return false;
+    }
+    return true;
+  }
+
+  /// It is amid the others, on a face: the lowest of these takes its height.
+  void leave_out_lowest(const double* up) {
+    std::uint32_t best = 1;
+    for (std::uint32_t i = 2; i < count_; ++i) {
+      if (dot3(up, point_[i]) < dot3(up, point_[best])) best = i;
+    }
+    const double rise = dot3(up, point_[best]) - dot3(up, point_[0]);
+    --count_;
+    for (int k = 0; k < 3; ++k) {
+      point_[0][k] = point_[best][k] - rise * up[k];
+      point_[best][k] = point_[count_][k];
+    }
+  }
+
+  const SupportShape& shape_;
+  double across_[2][3];
+  std::uint32_t count_ = 0;
+  double point_[kMost + 1][3];
+};
+
+struct HalfSpaceOwn {
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
+    if constexpr (L == kManifold) {
+      return FeetAnswers<4, SideA>::write<L>(job, block, feet<T, 4>(job, block));
+    } else {
+      return FeetAnswers<1, SideA>::write<L>(job, block, feet<T, 1>(job, block));
+    }
+  }
+
+  template <typename T, int Count>
+  [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    constexpr std::uint32_t kWidth = Lanes<T>::kCount;
+    const Plane<T> plane = load_plane<SideA>(job, block);
+    const Turn<T> turn = load_turn<SideB>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> up = axes.to_local(plane.normal);
+    alignas(64) T normal[3][kWidth];
+    alignas(64) T height[kWidth];
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+    plane.height.store(height);
+    alignas(64) T point[Count][3][kWidth] = {};
+    alignas(64) T missing[Count][kWidth] = {};
+    alignas(64) T rounding[kWidth] = {};
+    alignas(64) T radius[kWidth] = {};
+    for (std::uint32_t lane = 0; lane < block.count; ++lane) {
+      const SupportShape& shape =
+          job.tables.supports[shape_index<SideB>(job, block, static_cast<int>(lane))];
+      rounding[lane] = static_cast<T>(shape.rounding);
+      radius[lane] = static_cast<T>(shape.radius);
+      double d[3];
+      double down[3];
+      for (int k = 0; k < 3; ++k) {
+        d[k] = static_cast<double>(normal[k][lane]);
+        down[k] = -d[k];
+      }
+      double lowest[3];
+      own_support(shape, down, 1.0, lowest);
+      put(lowest, lane, point[0]);
+      if constexpr (Count == 1) continue;
+      for (int i = 1; i < Count; ++i) missing[i][lane] = kLargest<T>;
+      const double limit = job.margin + shape.rounding - static_cast<double>(height[lane]);
+      if (!(dot3(d, lowest) <= limit)) continue;
+      const RockingPoints print(shape, d, lowest, limit);
+      for (std::uint32_t i = 0; i < print.count(); ++i) {
+        put(print.point(i), lane, point[i]);
+        missing[i][lane] = T(0);
+      }
+    }
+    Feet<T, Count> r;
+    for (int i = 0; i < Count; ++i) {
+      const Vec3<T> local{Lanes<T>::load(point[i][0]), Lanes<T>::load(point[i][1]),
+                          Lanes<T>::load(point[i][2])};
+      const Lanes<T> gone = Lanes<T>::load(missing[i]);
+      r.foot[i] = plane.to_b + axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
+      r.feature[i] = Lanes<T>(static_cast<T>(i));
+    }
+    r.rounding = Lanes<T>::load(rounding);
+    r.normal = plane.normal;
+    r.scale = plane.scale + r.rounding + Lanes<T>::load(radius) * Lanes<T>(T(2)) + doubt(turn);
+    return r;
+  }
+
+  template <typename T, std::size_t Width>
+  [[gnu::always_inline]] static void put(const double* x, std::uint32_t lane, T (&to)[3][Width]) {
+    for (int k = 0; k < 3; ++k) to[k][lane] = static_cast<T>(x[k]);
+  }
+};
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::round
+
+extern const NarrowKernels WINNOW_KERNEL_TABLE(half_space_support_kernels) =
+    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceOwn>();
+
+}  // namespace winnow
