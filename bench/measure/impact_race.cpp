@@ -61,7 +61,9 @@ void ImpactJudge::judge(ImpactEngine& engine, ImpactTiming& timing) {
     ++timing.hits;
     const double size = std::min(size_of(pairs[i].a), size_of(pairs[i].b));
     const double doubt = found.error_bound()[k] + kRounding * size;
-    const bool late = overlap_[i] < answer.time || found.distance()[k] < -doubt;
+    // Those that begin in each other meet at once.
+    const bool late =
+        answer.time > 0.0 && (overlap_[i] < answer.time || found.distance()[k] < -doubt);
     timing.late += late ? 1 : 0;
     if (late) continue;
     gaps.push_back(std::max(0.0, found.distance()[k]) / size);

@@ -14,8 +14,8 @@ WINNOW_DEFINE_KERNELS(ImpactLaneKernels, impact_lane_kernels)
 namespace impact {
 namespace {
 
-/// Numbers of kinds that have lanes are below.
-constexpr std::size_t kLaneKinds = 13;
+/// Numbers of kinds are below.
+constexpr std::size_t kLaneKinds = 14;
 /// Of pairs without lanes.
 constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
 
@@ -29,7 +29,6 @@ constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
 [[nodiscard]] std::uint16_t kinds_of(const ImpactQuery& query) noexcept {
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
-  if (!has_impact_lanes(a) || !has_impact_lanes(b)) return kNoLanes;
   if (a == ShapeKind::half_space) return kNoLanes;
   if (b == ShapeKind::half_space && !is_straight(query, 1)) return kNoLanes;
   const bool straight = is_straight(query, 0) && is_straight(query, 1);

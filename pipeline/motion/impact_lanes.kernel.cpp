@@ -505,6 +505,8 @@ inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& 
   if (!straight) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
   to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
   to.tables.b.hull[lane_to] = tables.b.hull[lane_from];
+  to.tables.a.own[lane_to] = tables.a.own[lane_from];
+  to.tables.b.own[lane_to] = tables.b.own[lane_from];
   to.tables.query[lane_to] = tables.query[lane_from];
 }
 

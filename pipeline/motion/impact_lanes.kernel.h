@@ -45,9 +45,4 @@ struct ImpactLaneKernels {
 
 WINNOW_KERNELS(ImpactLaneKernels, impact_lane_kernels);
 
-/// Kinds that have lanes; half-spaces that do not turn.
-[[nodiscard]] constexpr bool has_impact_lanes(ShapeKind kind) noexcept {
-  return kind != ShapeKind::support;
-}
-
 }  // namespace winnow

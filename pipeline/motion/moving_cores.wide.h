@@ -3,6 +3,7 @@
 // Cores of shapes that move, one per lane, all of one kind: their numbers, how they turn about the
 // middle of their motion's axis, where they are at a time, and their farthest points.
 
+#include "pipeline/kernels/own_support.wide.h"
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/motion/impact_lanes.kernel.h"
 
@@ -135,6 +136,7 @@ struct CoreTable {
   /// Not so those of spheres, of half-spaces, and where nothing does.
   bool turns;
   const HullShape* hull[kWidth];
+  const SupportShape* own[kWidth];
 };
 
 /// A point of each lane's hull that is farthest along a direction, both in the hull's frame.
@@ -201,6 +203,24 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
     for (int k = 0; k < 3; ++k) vertex[k][lane] = hull.vertex[k][i];
   }
   return {Doubles::load(vertex[0]), Doubles::load(vertex[1]), Doubles::load(vertex[2])};
+}
+
+/// A point of each lane's set of a program's own, likewise.
+static inline Vector farthest_of_own(const CoreTable& table, const Vector& direction,
+                                     Mask16 lanes) {
+  alignas(64) double d[3][kWidth];
+  alignas(64) double point[3][kWidth] = {};
+  direction.x.store(d[0]);
+  direction.y.store(d[1]);
+  direction.z.store(d[2]);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const unsigned lane = first(lanes);
+    const double along[3] = {d[0][lane], d[1][lane], d[2][lane]};
+    double x[3];
+    own_support(*table.own[lane], along, 1.0, x);
+    for (int k = 0; k < 3; ++k) point[k][lane] = x[k];
+  }
+  return {Doubles::load(point[0]), Doubles::load(point[1]), Doubles::load(point[2])};
 }
 
 /// A point on the rim of radius half.x about z.
@@ -271,6 +291,8 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
       return farthest_of_ellipsoid(core.half, d);
     case ShapeKind::tapered_capsule:
       return farthest_of_taper(core.half, d);
+    case ShapeKind::support:
+      return farthest_of_own(table, d, lanes);
     default:
       return farthest_of_hulls(table, d, lanes);
   }
@@ -325,6 +347,7 @@ static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, c
       return sqrt(square);
     }
     case ShapeKind::ellipsoid:
+    case ShapeKind::support:
       return core.extent - core.rounding;
     case ShapeKind::tapered_capsule:
       return abs(core.half.z) * sqrt(w.x * w.x + w.y * w.y) + core.half.x;
@@ -464,6 +487,13 @@ template <typename Index>
       core.rounding = min(r[0], r[1]);
       break;
     }
+    case ShapeKind::support: {
+      for (int lane = 0; lane < kWidth; ++lane) {
+        table.own[lane] = &tables.supports[index(lane)];
+      }
+      core.rounding = load_rows1([&](int lane) { return &table.own[lane]->rounding; });
+      break;
+    }
     default: {
       for (int lane = 0; lane < kWidth; ++lane) {
         table.hull[lane] = &tables.hulls[index(lane)];
@@ -499,6 +529,9 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
     core.extent = core.size = most - least_curvature_radius(core.half) + core.rounding;
   } else if (table.kind == ShapeKind::tapered_capsule) {
     core.extent = core.size = abs(core.half.z) + core.half.x + core.rounding;
+  } else if (table.kind == ShapeKind::support) {
+    core.extent = load_rows1([&](int lane) { return &table.own[lane]->radius; }) + core.rounding;
+    core.size = core.extent;
   } else if (table.kind == ShapeKind::half_space) {
     core.size = abs(core.corner[0].x);
     core.extent = Doubles(0.0);
@@ -553,8 +586,8 @@ template <typename Row>
     measure_turning_hulls(table, own, core);
   } else {
     core.reach = reach_of(table, core, own);
-    core.low = dot(own, farthest(table, core, -own, 0));
-    core.high = dot(own, farthest(table, core, own, 0));
+    core.low = dot(own, farthest(table, core, -own, kAllLanes<double>));
+    core.high = dot(own, farthest(table, core, own, kAllLanes<double>));
   }
   core.reach = core.reach * Doubles(1.0 + kAxisDoubt);
   return usable;

@@ -70,6 +70,8 @@ double reach_of(const ShapeTables& tables, ShapeId id) {
     case ShapeKind::tapered_capsule:
       return tables.tapered_capsules[i].half_length +
              std::max(tables.tapered_capsules[i].radius[0], tables.tapered_capsules[i].radius[1]);
+    case ShapeKind::support:
+      return tables.supports[i].radius + tables.supports[i].rounding;
     default:
       return 0.0;
   }
@@ -157,6 +159,7 @@ std::vector<ShapeKind> moving_kinds() {
   std::vector<ShapeKind> kinds = all_kinds();
   kinds.push_back(ShapeKind::ellipsoid);
   kinds.push_back(ShapeKind::tapered_capsule);
+  kinds.push_back(ShapeKind::support);
   return kinds;
 }
 
@@ -210,7 +213,8 @@ double doubt_of(const ShapePool& pool, const MovingShapes& pair) {
   for (const ShapeId shape : pair.shape) {
     sizes += reach_of(pool.tables(), shape);
     curved = curved || shape.kind() == ShapeKind::cylinder || shape.kind() == ShapeKind::cone ||
-             shape.kind() == ShapeKind::ellipsoid || shape.kind() == ShapeKind::tapered_capsule;
+             shape.kind() == ShapeKind::ellipsoid || shape.kind() == ShapeKind::tapered_capsule ||
+             shape.kind() == ShapeKind::support;
   }
   return curved ? 1e-8 * sizes : 0.0;
 }

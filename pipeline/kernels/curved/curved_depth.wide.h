@@ -18,8 +18,8 @@ class CurvedDepth {
   static constexpr double kTolerance = 4e-10;
   static constexpr double kMostDoubt = 8e-10;
   /// Of a program's own sets, of whose curvature nothing is known.
-  static constexpr double kOwnTolerance = 1.5e-7;
-  static constexpr double kOwnDoubt = 3e-7;
+  static constexpr double kOwnTolerance = 3e-7;
+  static constexpr double kOwnDoubt = 3.8e-7;
 
   /// From the four points around the origin that the search found; false if the polytope outgrows
   /// its room or is too flat.
