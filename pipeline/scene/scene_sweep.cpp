@@ -39,8 +39,11 @@ constexpr std::size_t kMoversPerStretch = 64;
 constexpr std::size_t kCandidatesPerStretch = 256;
 /// So many pairs are looked at before what they say spares others.
 constexpr std::size_t kPairsPerRound = 1024;
-/// To so many bits pairs are ordered by when they may meet.
+/// To so many bits pairs are ordered by when they may meet, in steps of time.
 constexpr unsigned kTimeBits = 11;
+constexpr double kTimeSteps = (1U << kTimeBits) - 1U;
+/// Of a candidate whose balls do not meet.
+constexpr std::uint64_t kNoChance = ~std::uint64_t{0};
 /// A frame that moves shortens ways to less than this share, and by more than so many radii.
 constexpr double kShortened = 0.25;
 constexpr double kLongWay = 4.0;
@@ -83,12 +86,12 @@ struct SweepState {
         pairs(memory),
         candidates(memory),
         spare(memory),
-        begins(memory),
         chances(memory),
         round(memory),
         listed(memory),
         answers(memory),
         found(memory),
+        first_time(memory),
         impacts(memory),
         first(memory) {}
 
@@ -134,16 +137,15 @@ struct SweepState {
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
   Column<std::uint64_t> spare;
-  /// By candidate, before when no impact is found.
-  Column<double> begins;
-  /// Candidates whose balls meet, as (when << 32 | candidate), sorted.
+  /// Candidates whose balls meet, as (when << 32 | candidate), sorted; when in time steps.
   Column<std::uint64_t> chances;
   /// By kinds of shapes, and as they were listed.
   Column<SweptPair> round;
   Column<SweptPair> listed;
   Column<impact::BodyImpact> answers;
-  /// By candidate or by mover.
+  /// By candidate or, where there is one, by mover; and when the latter is.
   Column<impact::BodyImpact> found;
+  Column<double> first_time;
   Column<SceneImpact> impacts;
   Column<std::uint32_t> first;
   SweepStatistics statistics;
@@ -264,11 +266,12 @@ Status SweepState::take(std::span<const Key> keys, const PoseView& ends) noexcep
   if (keys.size() != ends.count) return Status::size_mismatch;
   if (!bodies.are_distinct(keys)) return Status::invalid_key;
   if (!motions.resize(keys.size())) return Status::out_of_memory;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    motions[i] = motion_to(i);
-    if (!motions[i].is_valid()) return Status::invalid_pose;
-  }
-  return take_bodies(keys);
+  for_stretches(bodies.options.execution, keys.size(), kMoversPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) motions[i] = motion_to(i);
+                });
+  const auto is_valid = [](const RigidMotion& motion) { return motion.is_valid(); };
+  return std::ranges::all_of(motions, is_valid) ? take_bodies(keys) : Status::invalid_pose;
 }
 
 Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept {
@@ -538,19 +541,17 @@ Status SweepState::find_all(const SweepOptions& options) {
 /// Lists the candidates whose balls meet, the first that do first.
 Status SweepState::list_chances(double tolerance) {
   const std::size_t count = candidates.size();
-  if (!begins.resize(count) || !chances.resize(count)) return Status::out_of_memory;
+  if (!chances.resize(count)) return Status::out_of_memory;
   for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t i = begin; i < end; ++i) {
-                    begins[i] = begin_of(candidates[i], tolerance);
+                    const double meets = begin_of(candidates[i], tolerance);
+                    const auto when = static_cast<std::uint64_t>(meets * kTimeSteps);
+                    chances[i] = meets > 1.0 ? kNoChance : when << 32U | i;
                   }
                 });
-  std::size_t size = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (begins[i] > 1.0) continue;
-    const auto when = static_cast<std::uint64_t>(begins[i] * ((1U << kTimeBits) - 1U));
-    chances[size++] = when << 32U | i;
-  }
+  std::uint64_t* const end = std::remove(chances.begin(), chances.end(), kNoChance);
+  const auto size = static_cast<std::size_t>(end - chances.begin());
   const std::uint64_t* const sorted =
       radix_sort(chances.data(), spare.data(), size, kTimeBits, bodies.options.execution);
   if (sorted != chances.data()) std::copy_n(sorted, size, chances.data());
@@ -567,9 +568,10 @@ bool SweepState::list_round(std::size_t& at) noexcept {
     double latest = 0.0;
     for (const std::uint32_t body : bodies_of(candidate)) {
       const std::uint32_t mover = mover_of[body];
-      if (mover != kNoMover) latest = std::max(latest, found[mover].impact.time);
+      if (mover != kNoMover) latest = std::max(latest, first_time[mover]);
     }
-    if (begins[candidate] > latest) continue;
+    // In whole steps, and one more for what rounding takes.
+    if (static_cast<double>(chances[at] >> 32U) > latest * kTimeSteps + 1.0) continue;
     if (!listed.push_back({candidate, latest})) return false;
   }
   return sort_round() && answers.resize(round.size());
@@ -599,12 +601,12 @@ void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& i
   for (const std::uint32_t body : bodies_of(candidate)) {
     const std::uint32_t mover = mover_of[body];
     if (mover == kNoMover) continue;
-    const double time = found[mover].impact.time;
     if (first[mover] != kNoImpact &&
-        std::tuple(time, first[mover]) <= std::tuple(impact.impact.time, candidate)) {
+        std::tuple(first_time[mover], first[mover]) <= std::tuple(impact.impact.time, candidate)) {
       continue;
     }
     found[mover] = impact;
+    first_time[mover] = impact.impact.time;
     first[mover] = candidate;
   }
 }
@@ -612,8 +614,8 @@ void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& i
 Status SweepState::find_first(const SweepOptions& options) {
   if (const Status status = list_chances(options.tolerance); status != Status::ok) return status;
   const std::size_t count = movers.size();
-  if (!found.resize(count)) return Status::out_of_memory;
-  std::fill(found.begin(), found.end(), impact::BodyImpact{});
+  if (!found.resize(count) || !first_time.resize(count)) return Status::out_of_memory;
+  std::fill(first_time.begin(), first_time.end(), 1.0);
   std::fill(first.begin(), first.end(), kNoImpact);
   for (std::size_t at = 0; at < chances.size();) {
     if (!list_round(at)) return Status::out_of_memory;
@@ -739,8 +741,8 @@ Footprint SceneSweep::footprint() const noexcept {
        {s.ways.footprint().total(), s.motions.bytes(), s.movers.bytes(), s.mover_of.bytes(),
         s.along_axis.bytes(), s.first_piece.bytes(), s.boxes.bytes(), s.pieces.bytes(),
         s.piece_of.bytes(), s.piece_keys.bytes(), s.pairs.footprint().total(), s.candidates.bytes(),
-        s.spare.bytes(), s.begins.bytes(), s.chances.bytes(), s.round.bytes(), s.listed.bytes(),
-        s.answers.bytes(), s.found.bytes()}) {
+        s.spare.bytes(), s.chances.bytes(), s.round.bytes(), s.listed.bytes(), s.answers.bytes(),
+        s.found.bytes(), s.first_time.bytes()}) {
     sum.scratch += bytes;
   }
   sum.results += s.impacts.bytes();
