@@ -350,6 +350,27 @@ TEST(CurvedKernels, drums_in_each_other_have_depths_within_their_bounds) {
   }
 }
 
+TEST(CurvedKernels, sets_of_a_program_are_as_deep_whatever_radius_it_gives) {
+  PairScene scene;
+  Random random(13);
+  add_pairs(scene, support, support, PairStyle::ordinary, 500, random);
+  const NarrowOptions asked{.level = ContactLevel::distance};
+  const auto close = ask(scene, asked);
+  std::vector<double> sizes;
+  for (const BodyPair& pair : scene.pairs) sizes.push_back(extent(scene, pair));
+  for (ShapeId& id : scene.shapes) {
+    SupportShape loose = scene.pool.tables().supports[id.index()];
+    loose.radius *= 1000.0;
+    ASSERT_EQ(scene.pool.add(loose, id), Status::ok);
+  }
+  const auto wide = ask(scene, asked);
+  for (std::size_t i = 0; i < close.size(); ++i) {
+    EXPECT_EQ(close[i].overlap, wide[i].overlap) << i;
+    EXPECT_NEAR(close[i].distance, wide[i].distance, 6e-7 * sizes[i]) << i;
+    EXPECT_LE(wide[i].error_bound, 4e-7 * sizes[i]) << i;
+  }
+}
+
 struct CurvedKind {
   ShapeKind a;
   ShapeKind b;

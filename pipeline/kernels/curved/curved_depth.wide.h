@@ -17,8 +17,9 @@ class CurvedDepth {
   /// when its room is full.
   static constexpr double kTolerance = 4e-10;
   static constexpr double kMostDoubt = 8e-10;
-  /// Of a program's own sets, of whose curvature nothing is known.
-  static constexpr double kOwnTolerance = 3e-7;
+  /// Of a program's own sets, of whose curvature nothing is known: relative to what the difference
+  /// really measures, since the radius that a program gives may be far above that.
+  static constexpr double kOwnTolerance = 3.5e-7;
   static constexpr double kOwnDoubt = 3.8e-7;
 
   /// From the four points around the origin that the search found; false if the polytope outgrows
@@ -26,10 +27,11 @@ class CurvedDepth {
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
     const bool own = has_own(pair);
-    const double tolerance = own ? kOwnTolerance : kTolerance;
     points_ = 0;
     faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
+    reach_ = reach_of_points();
+    tolerance_ = own ? kOwnTolerance * reach_ : kTolerance;
     if (!begin()) return false;
     minima_ = 0;
     best_height_ = __builtin_inf();
@@ -39,7 +41,7 @@ class CurvedDepth {
     for (;;) {
       face_ = nearest_face();
       lower_ = open_[face_];
-      if (lower_ >= best_height_ - tolerance) return end_in_minimum();
+      if (lower_ >= best_height_ - tolerance_) return end_in_minimum();
       if (is_closed(face_)) {
         open_[face_] = __builtin_inf();
         continue;
@@ -47,10 +49,10 @@ class CurvedDepth {
       if (!own || !measure_nearer_to_best()) {
         measure();
         // Of faces in one plane, the one that the foot of the origin is in tells the point.
-        if (upper_ - lower_ <= tolerance) {
+        if (upper_ - lower_ <= tolerance_) {
           turn_to_foot();
           measure();
-          if (upper_ - lower_ <= tolerance) {
+          if (upper_ - lower_ <= tolerance_) {
             if (has_foot()) return true;
             if (!look_for_minimum()) return false;
             continue;
@@ -62,7 +64,9 @@ class CurvedDepth {
           next *= kNextLook;
         }
       }
-      if (points_ == kMostPoints) return upper_ - lower_ <= (own ? kOwnDoubt : kMostDoubt);
+      if (points_ == kMostPoints) {
+        return upper_ - lower_ <= (own ? kOwnDoubt * reach_ : kMostDoubt);
+      }
       if (!grow(add_point(found_.w, found_.mine))) return false;
     }
   }
@@ -107,9 +111,9 @@ class CurvedDepth {
   /// Directions of which the cosine is larger lead to the same minimum, as a rule.
   static constexpr double kSameMinimum = 0.9;
   /// How far from there to the nearest face's own direction the polytope grows next, and by how
-  /// much at least.
+  /// many tolerances at least.
   static constexpr double kNearerShare = 0.7;
-  static constexpr double kNearerRise = 0.1 * kOwnTolerance;
+  static constexpr double kNearerRise = 0.1;
   static constexpr std::uint32_t kMostMinima = 8;
   static constexpr std::uint32_t kMostPoints = 128;
   /// A polytope of p points has 2 p - 4 faces.
@@ -136,6 +140,19 @@ class CurvedDepth {
     return points_++;
   }
 
+  /// Half of how far the first four are apart: of the difference no more than both shapes reach.
+  [[nodiscard]] double reach_of_points() const {
+    double square = 0.0;
+    for (int i = 1; i < 4; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const double e[3] = {point_[i][0] - point_[j][0], point_[i][1] - point_[j][1],
+                             point_[i][2] - point_[j][2]};
+        square = largest_of(square, dot3(e, e));
+      }
+    }
+    return 0.5 * __builtin_sqrt(square);
+  }
+
   [[nodiscard]] double dot_normal(std::uint32_t face, const double* x) const {
     return normal_[0][face] * x[0] + normal_[1][face] * x[1] + normal_[2][face] * x[2];
   }
@@ -159,7 +176,7 @@ class CurvedDepth {
     }
     difference_point(*pair_, m, found_.w, found_.mine);
     upper_ = best_height_;
-    return dot3(n, found_.w) - lower_ > kNearerRise;
+    return dot3(n, found_.w) - lower_ > kNearerRise * tolerance_;
   }
 
   /// An edge of a face: the face's number times four and the edge's.
@@ -299,7 +316,7 @@ class CurvedDepth {
     difference_point(*pair_, found.normal(), w, on_first);
     const double height = dot3(found.normal(), w);
     const double least = found.least_of_ball();
-    if (height - least <= kTolerance) {
+    if (height - least <= tolerance_) {
       keep(found, kAllAround, height, least);
       return true;
     }
@@ -309,7 +326,7 @@ class CurvedDepth {
       if (tangent < kNarrowest) return false;
     }
     const double sure = found.height() - found.miss() * tangent;
-    if (!(height - sure <= kTolerance)) return false;
+    if (!(height - sure <= tolerance_)) return false;
     const double cosine = 1.0 / __builtin_sqrt(1.0 + tangent * tangent) + kCosineRounding;
     keep(found, cosine, height, sure);
     return true;
@@ -341,7 +358,8 @@ class CurvedDepth {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return;
     TangentMinimum found;
-    if (!found.find(*pair_, near) || !(found.height() < best_height_ - kOwnTolerance)) return;
+    if (!found.find(*pair_, near, reach_)) return;
+    if (!(found.height() < best_height_ - tolerance_)) return;
     offer(found.normal(), found.point(), found.height());
     if (!(dot_normal(face_, found.difference()) > distance_[face_] + kLevel)) return;
     for (int k = 0; k < 3; ++k) {
@@ -469,6 +487,9 @@ class CurvedDepth {
   double sure_around_[kMostMinima][3];
   double sure_cosine_[kMostMinima];
   bool is_minimum_ = false;
+  /// How far the difference reaches, at least, and what the depth is to be proved to.
+  double reach_ = 0.0;
+  double tolerance_ = 0.0;
   /// What the polytope grows by next.
   Point found_;
   std::uint32_t points_ = 0;

@@ -12,9 +12,11 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class TangentMinimum {
  public:
-  /// From a unit direction. False if there is none near that is smooth.
-  bool find(const CurvedPair& pair, const double* near) {
+  /// From a unit direction, of a difference that reaches so far. False if there is none near that
+  /// is smooth.
+  bool find(const CurvedPair& pair, const double* near, double reach) {
     pair_ = &pair;
+    const double miss = kMiss * reach;
     for (int k = 0; k < 3; ++k) from_[k] = near[k];
     span_across(from_, across_);
     const double start[2] = {0.0, 0.0};
@@ -27,7 +29,7 @@ class TangentMinimum {
       const double next[2] = {at_[0] + step[0], at_[1] + step[1]};
       if (!(dot2(next, next) <= kWidest * kWidest)) return false;
       look(next);
-      if (dot2(slope_, slope_) <= kMiss * kMiss) return height_ > 0.0;
+      if (dot2(slope_, slope_) <= miss * miss) return height_ > 0.0;
       if (!(dot2(slope_, slope_) < dot2(before, before))) return false;
       learn(step, before);
     }
@@ -43,7 +45,7 @@ class TangentMinimum {
 
  private:
   static constexpr int kMostSteps = 12;
-  /// How far the farthest point may be off its normal, over the sizes.
+  /// How far the farthest point may be off its normal, over what the difference measures.
   static constexpr double kMiss = 1e-9;
   /// Of tangents of angles: the farthest from where the search began, and the first differences.
   static constexpr double kWidest = 0.7;
