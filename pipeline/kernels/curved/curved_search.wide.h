@@ -29,7 +29,8 @@ class CurvedSearch {
       : next_(pairs),
         end_(pairs + count),
         limits_(limits),
-        kind_{pairs->first.kind, pairs->second.kind} {}
+        kind_{pairs->first.kind, pairs->second.kind},
+        enough_(has_own(*pairs) ? kOwnGain : T(0)) {}
 
   void run() {
     for (int lane = 0; lane < Lanes<T>::kCount; ++lane) refill(lane);
@@ -55,6 +56,9 @@ class CurvedSearch {
   /// A difference of the bounds that is as good as none; squares of angles likewise.
   static constexpr T kNoGain = kIsDouble ? T(2e-15) : T(4e-7F);
   static constexpr T kNoTurn = kIsDouble ? T(1e-13) : T(1e-5F);
+  /// Over the distance, what bounds of that of a program's own sets may differ by: their directions
+  /// then by less than 0.003 degrees.
+  static constexpr T kOwnGain = T(1e-9);
   /// Below this the origin counts as on the simplex.
   static constexpr T kTouching = kIsDouble ? T(1e-13) : T(2e-6F);
   static constexpr double kDoubt = kIsDouble ? 1e-14 : 8e-6;
@@ -183,9 +187,9 @@ class CurvedSearch {
     const LaneMask<T> far = (height > zero) & (height * height > Lanes<T>::load(far_) * square);
 
     const Lanes<T> gain = square - height;
-    const LaneMask<T> no_gain =
-        (gain <= zero) | ((gain * gain <= Lanes<T>(kNoGain * kNoGain) * square) &
-                          (gain <= Lanes<T>(kNoTurn) * square));
+    const LaneMask<T> no_gain = (gain <= Lanes<T>(enough_) * square) |
+                                ((gain * gain <= Lanes<T>(kNoGain * kNoGain) * square) &
+                                 (gain <= Lanes<T>(kNoTurn) * square));
     const hull::SimplexNearest<T> nearest = hull::nearest_of(simplex, w);
     const Lanes<T> next_square = dot(nearest.point, nearest.point);
     const LaneMask<T> stuck = (!fresh) & (no_gain | nearest.repeated | (next_square >= square)) &
@@ -281,6 +285,7 @@ class CurvedSearch {
   CurvedLimits limits_;
   Mask16 active_ = 0;
   ShapeKind kind_[2];
+  T enough_;
   CurvedPair* pair_[kWidth] = {};
   std::uint32_t steps_[kWidth] = {};
   bool is_askew_[kWidth] = {};
