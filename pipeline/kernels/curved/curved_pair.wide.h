@@ -93,6 +93,18 @@ static inline double largest_of(double a, double b) {
   return a > b ? a : b;
 }
 
+/// Unit, across d and each other: the first as near as can be to the axis farthest from d.
+static inline void directions_across(const double* d, double (*across)[3]) {
+  int least = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (__builtin_fabs(d[k]) < __builtin_fabs(d[least])) least = k;
+  }
+  for (int k = 0; k < 3; ++k) across[0][k] = (k == least ? 1.0 : 0.0) - d[least] * d[k];
+  const double length = __builtin_sqrt(dot3(across[0], across[0]));
+  for (int k = 0; k < 3; ++k) across[0][k] /= length;
+  cross3(d, across[0], across[1]);
+}
+
 /// Fills the core, unscaled, and returns its reach from its origin.
 static inline double describe(const ShapeTables& tables, ShapeId id, Form& form) {
   form.kind = id.kind();

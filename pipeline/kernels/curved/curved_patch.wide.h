@@ -265,18 +265,6 @@ class CurvedPatch {
     return kept;
   }
 
-  /// Unit, across d and each other: the first as near as can be to the axis farthest from d.
-  static void directions_across(const double* d, double (*across)[3]) {
-    int least = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (__builtin_fabs(d[k]) < __builtin_fabs(d[least])) least = k;
-    }
-    for (int k = 0; k < 3; ++k) across[0][k] = (k == least ? 1.0 : 0.0) - d[least] * d[k];
-    const double length = __builtin_sqrt(dot3(across[0], across[0]));
-    for (double& x : across[0]) x /= length;
-    cross3(d, across[0], across[1]);
-  }
-
   [[nodiscard]] double width_along(const double* d) const {
     const double back[3] = {-d[0], -d[1], -d[2]};
     double high[3];

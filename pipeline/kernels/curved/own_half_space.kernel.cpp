@@ -1,9 +1,8 @@
 // Half-spaces against a program's own convex sets: the lowest point over the plane and, for
 // contacts, the points that the set has in directions a little off.
 
-#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/curved/curved_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/own_support.wide.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
 
 namespace winnow {
@@ -22,7 +21,7 @@ class RockingPoints {
   RockingPoints(const SupportShape& shape, const double* up, const double* lowest, double limit)
       : shape_(shape) {
     add(lowest);
-    span_across(up);
+    curved::directions_across(up, across_);
     const double widest =
         width(across_[0]) > width(across_[1]) ? width(across_[0]) : width(across_[1]);
     const double apart = kMerged * kTilt * widest;
@@ -51,18 +50,6 @@ class RockingPoints {
   void add(const double* x) {
     for (int k = 0; k < 3; ++k) point_[count_][k] = x[k];
     ++count_;
-  }
-
-  /// Unit, in the directions of the axes of the set as far as can be.
-  void span_across(const double* up) {
-    int least = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (__builtin_fabs(up[k]) < __builtin_fabs(up[least])) least = k;
-    }
-    for (int k = 0; k < 3; ++k) across_[0][k] = (k == least ? 1.0 : 0.0) - up[least] * up[k];
-    const double over = 1.0 / __builtin_sqrt(dot3(across_[0], across_[0]));
-    for (double& x : across_[0]) x *= over;
-    hull::cross3(up, across_[0], across_[1]);
   }
 
   [[nodiscard]] double width(const double* d) const {
@@ -115,16 +102,7 @@ struct HalfSpaceOwn {
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const Plane<T> plane = load_plane<SideA>(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
-    const Rotation<T> axes = rotation(turn);
-    const Vec3<T> up = axes.to_local(plane.normal);
-    alignas(64) T normal[3][kWidth];
-    alignas(64) T height[kWidth];
-    up.x.store(normal[0]);
-    up.y.store(normal[1]);
-    up.z.store(normal[2]);
-    plane.height.store(height);
+    const StandingLanes<T> body = stand_over_plane<SideA>(job, block);
     alignas(64) T point[Count][3][kWidth] = {};
     alignas(64) T missing[Count][kWidth] = {};
     alignas(64) T rounding[kWidth] = {};
@@ -137,7 +115,7 @@ struct HalfSpaceOwn {
       double d[3];
       double down[3];
       for (int k = 0; k < 3; ++k) {
-        d[k] = static_cast<double>(normal[k][lane]);
+        d[k] = static_cast<double>(body.normal[k][lane]);
         down[k] = -d[k];
       }
       double lowest[3];
@@ -145,7 +123,7 @@ struct HalfSpaceOwn {
       put(lowest, lane, point[0]);
       if constexpr (Count == 1) continue;
       for (int i = 1; i < Count; ++i) missing[i][lane] = kLargest<T>;
-      const double limit = job.margin + shape.rounding - static_cast<double>(height[lane]);
+      const double limit = job.margin + shape.rounding - static_cast<double>(body.height[lane]);
       if (!(dot3(d, lowest) <= limit)) continue;
       const RockingPoints print(shape, d, lowest, limit);
       for (std::uint32_t i = 0; i < print.count(); ++i) {
@@ -158,13 +136,14 @@ struct HalfSpaceOwn {
       const Vec3<T> local{Lanes<T>::load(point[i][0]), Lanes<T>::load(point[i][1]),
                           Lanes<T>::load(point[i][2])};
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
-      r.foot[i] = plane.to_b + axes.to_world(local);
-      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
+      r.foot[i] = body.plane.to_b + body.axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, body.plane.height + dot(body.up, local));
       r.feature[i] = Lanes<T>(static_cast<T>(i));
     }
     r.rounding = Lanes<T>::load(rounding);
-    r.normal = plane.normal;
-    r.scale = plane.scale + r.rounding + Lanes<T>::load(radius) * Lanes<T>(T(2)) + doubt(turn);
+    r.normal = body.plane.normal;
+    r.scale =
+        body.plane.scale + r.rounding + Lanes<T>::load(radius) * Lanes<T>(T(2)) + doubt(body.turn);
     return r;
   }
 
