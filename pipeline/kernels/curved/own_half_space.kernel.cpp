@@ -102,7 +102,16 @@ struct HalfSpaceOwn {
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const StandingLanes<T> body = stand_over_plane<SideA>(job, block);
+    const Plane<T> plane = load_plane<SideA>(job, block);
+    const Turn<T> turn = load_turn<SideB>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> up = axes.to_local(plane.normal);
+    alignas(64) T normal[3][kWidth];
+    alignas(64) T height[kWidth];
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+    plane.height.store(height);
     alignas(64) T point[Count][3][kWidth] = {};
     alignas(64) T missing[Count][kWidth] = {};
     alignas(64) T rounding[kWidth] = {};
@@ -115,7 +124,7 @@ struct HalfSpaceOwn {
       double d[3];
       double down[3];
       for (int k = 0; k < 3; ++k) {
-        d[k] = static_cast<double>(body.normal[k][lane]);
+        d[k] = static_cast<double>(normal[k][lane]);
         down[k] = -d[k];
       }
       double lowest[3];
@@ -123,7 +132,7 @@ struct HalfSpaceOwn {
       put(lowest, lane, point[0]);
       if constexpr (Count == 1) continue;
       for (int i = 1; i < Count; ++i) missing[i][lane] = kLargest<T>;
-      const double limit = job.margin + shape.rounding - static_cast<double>(body.height[lane]);
+      const double limit = job.margin + shape.rounding - static_cast<double>(height[lane]);
       if (!(dot3(d, lowest) <= limit)) continue;
       const RockingPoints print(shape, d, lowest, limit);
       for (std::uint32_t i = 0; i < print.count(); ++i) {
@@ -136,14 +145,13 @@ struct HalfSpaceOwn {
       const Vec3<T> local{Lanes<T>::load(point[i][0]), Lanes<T>::load(point[i][1]),
                           Lanes<T>::load(point[i][2])};
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
-      r.foot[i] = body.plane.to_b + body.axes.to_world(local);
-      r.height[i] = select(gone > Lanes<T>(T(0)), gone, body.plane.height + dot(body.up, local));
+      r.foot[i] = plane.to_b + axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
       r.feature[i] = Lanes<T>(static_cast<T>(i));
     }
     r.rounding = Lanes<T>::load(rounding);
-    r.normal = body.plane.normal;
-    r.scale =
-        body.plane.scale + r.rounding + Lanes<T>::load(radius) * Lanes<T>(T(2)) + doubt(body.turn);
+    r.normal = plane.normal;
+    r.scale = plane.scale + r.rounding + Lanes<T>::load(radius) * Lanes<T>(T(2)) + doubt(turn);
     return r;
   }
 

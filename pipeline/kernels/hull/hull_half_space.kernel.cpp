@@ -122,7 +122,16 @@ struct HullOverPlane {
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const StandingLanes<T> body = stand_over_plane<SideB>(job, block);
+    const Plane<T> plane = load_plane<SideB>(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const Rotation<T> axes = rotation(turn);
+    const Vec3<T> up = axes.to_local(plane.normal);
+    alignas(64) T normal[3][kWidth];
+    alignas(64) T height[kWidth];
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+    plane.height.store(height);
     alignas(64) T vertex[Count][3][kWidth];
     alignas(64) T name[Count][kWidth];
     alignas(64) T missing[Count][kWidth] = {};
@@ -134,18 +143,18 @@ struct HullOverPlane {
       rounding[lane] = static_cast<T>(shape.rounding);
       // Of what coordinates add up to.
       reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
-      const Vec3<T> down{-body.normal[0][lane], -body.normal[1][lane], -body.normal[2][lane]};
+      const Vec3<T> down{-normal[0][lane], -normal[1][lane], -normal[2][lane]};
       const std::uint32_t lowest = hull::highest_vertex(shape, down);
       if constexpr (Count == 1) {
         hull_vertex(shape, lowest, 0, lane, vertex, name);
       } else {
-        const double d[3] = {static_cast<double>(body.normal[0][lane]),
-                             static_cast<double>(body.normal[1][lane]),
-                             static_cast<double>(body.normal[2][lane])};
+        const double d[3] = {static_cast<double>(normal[0][lane]),
+                             static_cast<double>(normal[1][lane]),
+                             static_cast<double>(normal[2][lane])};
         double x[3];
         hull::vertex_at(shape, lowest, x);
-        const double room = job.margin + shape.rounding -
-                            (hull::dot3(d, x) + static_cast<double>(body.height[lane]));
+        const double room =
+            job.margin + shape.rounding - (hull::dot3(d, x) + static_cast<double>(height[lane]));
         std::uint32_t found = 1;
         hull_vertex(shape, lowest, 0, lane, vertex, name);
         if (room >= 0.0) {
@@ -166,13 +175,13 @@ struct HullOverPlane {
       const Vec3<T> local{Lanes<T>::load(vertex[i][0]), Lanes<T>::load(vertex[i][1]),
                           Lanes<T>::load(vertex[i][2])};
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
-      r.foot[i] = body.axes.to_world(local);
-      r.height[i] = select(gone > Lanes<T>(T(0)), gone, body.plane.height + dot(body.up, local));
+      r.foot[i] = axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
       r.feature[i] = Lanes<T>::load(name[i]);
     }
     r.rounding = Lanes<T>::load(rounding);
-    r.normal = body.plane.normal;
-    r.scale = body.plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(body.turn);
+    r.normal = plane.normal;
+    r.scale = plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(turn);
     return r;
   }
 

@@ -31,38 +31,6 @@ template <typename Side, typename T>
   return {normal, other - plane.offset, taxicab(c) + abs(plane.offset) + doubt(turn), c};
 }
 
-/// A body over a plane: lanes, and the numbers of each for what is found one body at a time.
-template <typename T>
-struct StandingLanes {
-  Plane<T> plane;
-  Turn<T> turn;
-  Rotation<T> axes;
-  /// The plane's normal in the body's frame.
-  Vec3<T> up;
-  alignas(64) T normal[3][Lanes<T>::kCount];
-  alignas(64) T height[Lanes<T>::kCount];
-};
-
-/// `PlaneSide` is that of the half-space.
-template <typename PlaneSide, typename T>
-[[gnu::always_inline]] inline StandingLanes<T> stand_over_plane(const NarrowJob& job,
-                                                                const PairBlock<T>& block) {
-  StandingLanes<T> r;
-  r.plane = load_plane<PlaneSide>(job, block);
-  if constexpr (__is_same(PlaneSide, SideA)) {
-    r.turn = load_turn<SideB>(job, block);
-  } else {
-    r.turn = load_turn<SideA>(job, block);
-  }
-  r.axes = rotation(r.turn);
-  r.up = r.axes.to_local(r.plane.normal);
-  r.up.x.store(r.normal[0]);
-  r.up.y.store(r.normal[1]);
-  r.up.z.store(r.normal[2]);
-  r.plane.height.store(r.height);
-  return r;
-}
-
 /// Points of a shape's core over a plane, relative to body a, in the axes of the world.
 template <typename T, int Count>
 struct Feet {
