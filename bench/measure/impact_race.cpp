@@ -20,7 +20,7 @@ constexpr int kLooks = 64;
 constexpr double kLoose = 1e-6;
 /// What rounding of motions makes of gaps, in radii.
 constexpr double kRounding = 1e-12;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 /// Nanoseconds a pair.
 double timed_ns(std::size_t pairs, const auto& work) {
@@ -32,7 +32,7 @@ double timed_ns(std::size_t pairs, const auto& work) {
 }  // namespace
 
 ImpactJudge::ImpactJudge(const MovingPairSet& set)
-    : set_(set), poses_(set.motions.size()), overlap_(set.middle->pairs.size(), kNever) {
+    : set_(set), poses_(set.motions.size()), overlap_(set.middle->pairs.size(), kEndless) {
   std::vector<double> times(set.middle->pairs.size());
   for (int look = 0; look <= kLooks; ++look) {
     std::fill(times.begin(), times.end(), static_cast<double>(look) / kLooks);
@@ -56,7 +56,7 @@ void ImpactJudge::judge(ImpactEngine& engine, ImpactTiming& timing) {
   for (std::size_t k = 0; k < found.size(); ++k) {
     const std::uint32_t i = found.pair_of(k);
     const ImpactAnswer answer = engine.answer(i);
-    timing.missed += !answer.hit && overlap_[i] < kNever ? 1 : 0;
+    timing.missed += !answer.hit && overlap_[i] < kEndless ? 1 : 0;
     if (!answer.hit) continue;
     ++timing.hits;
     const double size = std::min(size_of(pairs[i].a), size_of(pairs[i].b));
@@ -74,9 +74,10 @@ void ImpactJudge::judge(ImpactEngine& engine, ImpactTiming& timing) {
   for (const double gap : gaps) timing.worst_gap = std::max(timing.worst_gap, gap);
 }
 
-/// Of which tolerances are shares: from the middle of a body.
+/// Of which tolerances are shares: from the middle of a body. Half-spaces have none.
 double ImpactJudge::size_of(std::uint32_t body) const {
   const ShapeId shape = set_.middle->shapes[body];
+  if (shape.kind() == ShapeKind::half_space) return kEndless;
   if (shape.kind() == ShapeKind::hull) {
     return set_.middle->pool.tables().hulls[shape.index()].radius;
   }

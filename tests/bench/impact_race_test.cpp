@@ -35,7 +35,8 @@ ImpactTiming judged(const MovingPairSet& set, ImpactEngine& engine) {
 }
 
 TEST(ImpactRace, finds_winnow_right_on_motions_of_all_sorts) {
-  for (const char* kind : {"sphere-box", "box-box", "triangle-triangle"}) {
+  for (const char* kind :
+       {"sphere-box", "box-box", "triangle-triangle", "own-own", "cylinder-half_space"}) {
     for (const PairTurn turn : kPairTurns) {
       const MovingPairSet set = make_moving_pairs(*find_pair_kind(kind), turn, {.pairs = kPairs});
       WinnowImpacts winnow;
