@@ -5,7 +5,9 @@
 // objects", 2001). Its nearest face bounds the depth from below, the support along the face's
 // normal from above. Where the difference is smooth these come together slowly: there local minima
 // are found that are sure for some way around, and faces near which only such directions are left
-// are closed. The search ends when no open face is nearer than the least of the minima.
+// are closed. The search ends when no open face is nearer than the least of the minima. Of a
+// program's own sets nothing is known but their points: around a minimum that these tell of nothing
+// is sure, and the polytope grows there until it proves the depth.
 
 #include "pipeline/kernels/curved/curved_tangent.wide.h"
 
@@ -64,9 +66,7 @@ class CurvedDepth {
           next *= kNextLook;
         }
       }
-      if (points_ == kMostPoints) {
-        return upper_ - lower_ <= (own ? kOwnDoubt * reach_ : kMostDoubt);
-      }
+      if (points_ == kMostPoints) return end_full(own ? kOwnDoubt * reach_ : kMostDoubt);
       if (!grow(add_point(found_.w, found_.mine))) return false;
     }
   }
@@ -297,6 +297,10 @@ class CurvedDepth {
     upper_ = best_height_;
     lower_ = lower_ < sure_ ? lower_ : sure_;
     return true;
+  }
+
+  bool end_full(double doubt) {
+    return best_height_ - lower_ <= doubt ? end_in_minimum() : upper_ - lower_ <= doubt;
   }
 
   /// True if there is a local minimum near the nearest face, which is kept.
