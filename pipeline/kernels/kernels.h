@@ -76,7 +76,7 @@ struct NarrowKernels {
   NarrowKernel fast[3];
   /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
   /// 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones, ellipsoids and tapered capsules
-  /// meet more than spheres and half-spaces.
+  /// meet more than spheres and half-spaces, or 4e-7 of a program's own sets.
   NarrowKernel robust[3];
 };
 

@@ -1,25 +1,22 @@
 #pragma once
 
-// The points that a program gives of its own convex sets.
+// The points that a program gives of its own convex sets, and which of them count as one.
 
 #include <winnow/pipeline/shapes.h>
-#include "simd/lanes/vectors.h"
+#include "pipeline/kernels/single_vectors.wide.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME {
-
-[[gnu::always_inline]] inline double square_of(const double* x) {
-  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-}
 
 /// As SupportShape says of points that are not finite or beyond the radius.
 static inline void bring_within(double radius, double* point) {
   double most = 0.0;
   for (int k = 0; k < 3; ++k)
     most = most > __builtin_fabs(point[k]) ? most : __builtin_fabs(point[k]);
-  const bool finite = most - most == 0.0 && square_of(point) >= 0.0;
+  const bool finite = most - most == 0.0 && dot3(point, point) >= 0.0;
   double share[3];
   for (int k = 0; k < 3; ++k) share[k] = finite && most > 0.0 ? point[k] / most : 0.0;
-  const double length = __builtin_sqrt(square_of(share));
+  const double length = __builtin_sqrt(dot3(share, share));
   const double reach = radius < most * length ? radius / length : most;
   for (int k = 0; k < 3; ++k) point[k] = share[k] * reach;
 }
@@ -29,12 +26,29 @@ template <typename T>
 static inline void own_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),
                          static_cast<double>(d[2])};
-  const double length = __builtin_sqrt(square_of(direction));
+  const double length = __builtin_sqrt(dot3(direction, direction));
   for (int k = 0; k < 3; ++k) direction[k] = length > 0.0 ? direction[k] / length : k == 0;
   double point[3] = {0.0, 0.0, 0.0};
   if (shape.function != nullptr) shape.function(shape.context, direction, point);
-  if (!(square_of(point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
+  if (!(dot3(point, point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
   for (int k = 0; k < 3; ++k) x[k] = static_cast<T>(point[k]) * scale;
+}
+
+static inline double own_width(const SupportShape& shape, const double* d, double scale) {
+  const double back[3] = {-d[0], -d[1], -d[2]};
+  double high[3];
+  double low[3];
+  own_support(shape, d, scale, high);
+  own_support(shape, back, scale, low);
+  return dot3(d, high) - dot3(d, low);
+}
+
+/// Farthest points in directions off by kSampleTilt that are no farther from each other count as
+/// one, as those of a ball do: by the widths along two directions across. Times `scale`.
+static inline double apart_of_samples(const SupportShape& shape, const double (*across)[3],
+                                      double scale) {
+  const double width[2] = {own_width(shape, across[0], scale), own_width(shape, across[1], scale)};
+  return 1.5 * kSampleTilt * (width[0] > width[1] ? width[0] : width[1]);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

@@ -15,9 +15,9 @@ namespace impact {
 namespace {
 
 /// Numbers of kinds are below.
-constexpr std::size_t kLaneKinds = 14;
+constexpr std::size_t kKinds = 14;
 /// Of pairs without lanes.
-constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
+constexpr std::uint16_t kNoLanes = 2 * kKinds * kKinds;
 
 [[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
   const double(&turn)[3] = query.motion[side]->turn;
@@ -32,7 +32,7 @@ constexpr std::uint16_t kNoLanes = 2 * kLaneKinds * kLaneKinds;
   if (a == ShapeKind::half_space) return kNoLanes;
   if (b == ShapeKind::half_space && !is_straight(query, 1)) return kNoLanes;
   const bool straight = is_straight(query, 0) && is_straight(query, 1);
-  const std::size_t kinds = static_cast<std::size_t>(a) * kLaneKinds + static_cast<std::size_t>(b);
+  const std::size_t kinds = static_cast<std::size_t>(a) * kKinds + static_cast<std::size_t>(b);
   return static_cast<std::uint16_t>(2 * kinds + (straight ? 0 : 1));
 }
 

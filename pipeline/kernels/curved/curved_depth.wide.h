@@ -28,18 +28,18 @@ class CurvedDepth {
   /// its room or is too flat.
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
-    const bool own = has_own(pair);
+    own_ = has_own(pair);
     points_ = 0;
     faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     reach_ = reach_of_points();
-    tolerance_ = own ? kOwnTolerance * reach_ : kTolerance;
+    tolerance_ = own_ ? kOwnTolerance * reach_ : kTolerance;
     if (!begin()) return false;
     minima_ = 0;
     best_height_ = __builtin_inf();
     sure_ = __builtin_inf();
     is_minimum_ = false;
-    double next = kFirstLook;
+    next_look_ = kFirstLook;
     for (;;) {
       face_ = nearest_face();
       lower_ = open_[face_];
@@ -48,26 +48,13 @@ class CurvedDepth {
         open_[face_] = __builtin_inf();
         continue;
       }
-      if (!own || !measure_nearer_to_best()) {
-        measure();
-        // Of faces in one plane, the one that the foot of the origin is in tells the point.
-        if (upper_ - lower_ <= tolerance_) {
-          turn_to_foot();
-          measure();
-          if (upper_ - lower_ <= tolerance_) {
-            if (has_foot()) return true;
-            if (!look_for_minimum()) return false;
-            continue;
-          }
-        }
-        if (upper_ - lower_ <= next * upper_) {
-          if (look_for_minimum() && is_closed(face_)) continue;
-          if (own) look_for_tangent();
-          next *= kNextLook;
-        }
+      if (!own_ || !measure_nearer_to_best()) {
+        const Look look = look_at_face();
+        if (look == Look::again) continue;
+        if (look != Look::grows) return look == Look::proves;
       }
-      if (points_ == kMostPoints) return end_full(own ? kOwnDoubt * reach_ : kMostDoubt);
-      if (!grow(add_point(found_.w, found_.mine))) return false;
+      if (points_ == kMostPoints) return end_full(own_ ? kOwnDoubt * reach_ : kMostDoubt);
+      if (!grow(add_point(growth_.w, growth_.mine))) return false;
     }
   }
 
@@ -126,6 +113,29 @@ class CurvedDepth {
   /// The foot of the origin is in a face if no weight of a corner is below this.
   static constexpr double kInside = -1e-7;
 
+  /// What comes of a look at the nearest face.
+  enum class Look : std::uint8_t { grows, again, proves, fails };
+
+  /// Finds what the polytope grows by there, unless the face proves the depth or is closed.
+  Look look_at_face() {
+    measure();
+    // Of faces in one plane, the one that the foot of the origin is in tells the point.
+    if (upper_ - lower_ <= tolerance_) {
+      turn_to_foot();
+      measure();
+      if (upper_ - lower_ <= tolerance_) {
+        if (has_foot()) return Look::proves;
+        return look_for_minimum() ? Look::again : Look::fails;
+      }
+    }
+    if (upper_ - lower_ <= next_look_ * upper_) {
+      if (look_for_minimum() && is_closed(face_)) return Look::again;
+      if (own_) look_for_tangent();
+      next_look_ *= kNextLook;
+    }
+    return Look::grows;
+  }
+
   /// Of the difference, and the first's point in it.
   struct Point {
     double w[3];
@@ -160,8 +170,8 @@ class CurvedDepth {
   /// Sets the upper bound to that of the face, and finds its point of the difference.
   void measure() {
     const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
-    difference_point(*pair_, n, found_.w, found_.mine);
-    upper_ = dot_normal(face_, found_.w);
+    difference_point(*pair_, n, growth_.w, growth_.mine);
+    upper_ = dot_normal(face_, growth_.w);
   }
 
   /// Finds a point nearer to the best minimum than the face's own: near that the polytope needs
@@ -174,9 +184,9 @@ class CurvedDepth {
     for (int k = 0; k < 3; ++k) {
       m[k] = best_normal_[k] + kNearerShare * (n[k] - best_normal_[k]);
     }
-    difference_point(*pair_, m, found_.w, found_.mine);
+    difference_point(*pair_, m, growth_.w, growth_.mine);
     upper_ = best_height_;
-    return dot3(n, found_.w) - lower_ > kNearerRise * tolerance_;
+    return dot3(n, growth_.w) - lower_ > kNearerRise * tolerance_;
   }
 
   /// An edge of a face: the face's number times four and the edge's.
@@ -367,8 +377,8 @@ class CurvedDepth {
     offer(found.normal(), found.point(), found.height());
     if (!(dot_normal(face_, found.difference()) > distance_[face_] + kLevel)) return;
     for (int k = 0; k < 3; ++k) {
-      found_.w[k] = found.difference()[k];
-      found_.mine[k] = found.point()[k];
+      growth_.w[k] = found.difference()[k];
+      growth_.mine[k] = found.point()[k];
     }
   }
 
@@ -481,6 +491,10 @@ class CurvedDepth {
   }
 
   const CurvedPair* pair_ = nullptr;
+  /// Of the pair.
+  bool own_ = false;
+  /// What the bounds differ by, over the upper one, when a minimum is looked for next.
+  double next_look_ = 0.0;
   /// Of the minima: the least and the first's point in it, its height, a lower bound of all, and
   /// around which directions, up to the angle of which cosine, each is sure.
   double best_normal_[3];
@@ -495,7 +509,7 @@ class CurvedDepth {
   double reach_ = 0.0;
   double tolerance_ = 0.0;
   /// What the polytope grows by next.
-  Point found_;
+  Point growth_;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
   double upper_ = 0.0;

@@ -9,11 +9,6 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-using hull::cross3;
-using hull::dot3;
-using hull::turn3;
-using hull::turn_back3;
-
 /// The core of a shape in its own frame.
 struct Form {
   static constexpr int kNumbers = 9;

@@ -210,8 +210,7 @@ class CurvedPatch {
     constexpr std::uint32_t kSamples = 8;
     double across[2][3];
     directions_across(d, across);
-    const double apart =
-        1.5 * kSampleTilt * largest_of(width_along(across[0]), width_along(across[1]));
+    const double apart = apart_of_samples(*form_.own, across, pair_.scale);
     double kept[kSamples][3];
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < kSamples; ++i) {
@@ -263,15 +262,6 @@ class CurvedPatch {
       ++kept;
     }
     return kept;
-  }
-
-  [[nodiscard]] double width_along(const double* d) const {
-    const double back[3] = {-d[0], -d[1], -d[2]};
-    double high[3];
-    double low[3];
-    farthest(form_, d, pair_.scale, high);
-    farthest(form_, back, pair_.scale, low);
-    return dot3(d, high) - dot3(d, low);
   }
 
   static double distance_of(const double* x, const double* y) {

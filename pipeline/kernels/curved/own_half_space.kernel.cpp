@@ -9,8 +9,6 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-using hull::dot3;
-
 /// Points of a set over a plane, the lowest first: as bodies rock, corners of what is flat stay far
 /// from each other, and the points of what is round come together, and count as one.
 class RockingPoints {
@@ -22,9 +20,7 @@ class RockingPoints {
       : shape_(shape) {
     add(lowest);
     curved::directions_across(up, across_);
-    const double widest =
-        width(across_[0]) > width(across_[1]) ? width(across_[0]) : width(across_[1]);
-    const double apart = kMerged * kTilt * widest;
+    const double apart = apart_of_samples(shape, across_, 1.0);
     constexpr int kCorners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     for (const int(&corner)[2] : kCorners) {
       double down[3];
@@ -44,21 +40,10 @@ class RockingPoints {
  private:
   /// Tangents of angles: how far directions are off, each way.
   static constexpr double kTilt = 0.03;
-  /// Points of a ball come closer than this share of the tilt and its width.
-  static constexpr double kMerged = 2.0;
 
   void add(const double* x) {
     for (int k = 0; k < 3; ++k) point_[count_][k] = x[k];
     ++count_;
-  }
-
-  [[nodiscard]] double width(const double* d) const {
-    const double back[3] = {-d[0], -d[1], -d[2]};
-    double high[3];
-    double low[3];
-    own_support(shape_, d, 1.0, high);
-    own_support(shape_, back, 1.0, low);
-    return dot3(d, high) - dot3(d, low);
   }
 
   [[nodiscard]] bool is_alone(const double* x, double apart) const {

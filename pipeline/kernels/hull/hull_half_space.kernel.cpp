@@ -21,7 +21,7 @@ class StandingPoints {
   StandingPoints(const HullShape& shape, const double* up, std::uint32_t lowest, double reach)
       : shape_(shape), up_(up) {
     add(lowest);
-    limit_ = hull::dot3(up, point_[0]) + reach;
+    limit_ = dot3(up, point_[0]) + reach;
     const double down[3] = {-up[0], -up[1], -up[2]};
     float x[3];
     hull::vertex_at(shape, lowest, x);
@@ -44,7 +44,7 @@ class StandingPoints {
   void add(std::uint32_t vertex) {
     hull::vertex_at(shape_, vertex, point_[count_]);
     vertex_[count_] = vertex;
-    if (count_ == 0 || hull::dot3(up_, point_[count_]) <= limit_) ++count_;
+    if (count_ == 0 || dot3(up_, point_[count_]) <= limit_) ++count_;
   }
 
   /// The vertex of a face within reach for which `value` is largest, if that is above zero.
@@ -55,7 +55,7 @@ class StandingPoints {
     for (std::uint32_t i = 0; i < face.count; ++i) {
       double x[3];
       hull::vertex_at(shape_, shape_.loop[face.first + i], x);
-      const double v = hull::dot3(up_, x) <= limit_ ? value(x) : 0.0;
+      const double v = dot3(up_, x) <= limit_ ? value(x) : 0.0;
       if (!(v > most)) continue;
       most = v;
       best = shape_.loop[face.first + i];
@@ -73,7 +73,7 @@ class StandingPoints {
     }
     add_largest(face, [&](const double* x) {
       const double d[3] = {x[0] - point_[0][0], x[1] - point_[0][1], x[2] - point_[0][2]};
-      return hull::dot3(d, d);
+      return dot3(d, d);
     });
     if (count_ < 2) return;
     add_largest(face, [&](const double* x) { return __builtin_fabs(area(0, 1, x)); });
@@ -97,8 +97,8 @@ class StandingPoints {
       e[c] = point_[k][c] - point_[i][c];
       f[c] = x[c] - point_[i][c];
     }
-    hull::cross3(e, f, n);
-    return hull::dot3(up_, n);
+    cross3(e, f, n);
+    return dot3(up_, n);
   }
 
   const HullShape& shape_;
@@ -154,7 +154,7 @@ struct HullOverPlane {
         double x[3];
         hull::vertex_at(shape, lowest, x);
         const double room =
-            job.margin + shape.rounding - (hull::dot3(d, x) + static_cast<double>(height[lane]));
+            job.margin + shape.rounding - (dot3(d, x) + static_cast<double>(height[lane]));
         std::uint32_t found = 1;
         hull_vertex(shape, lowest, 0, lane, vertex, name);
         if (room >= 0.0) {
