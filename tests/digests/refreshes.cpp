@@ -73,6 +73,14 @@ class Life {
     boxes_.insert(boxes_.end(), boxes.begin(), boxes.end());
   }
 
+  /// One that chance tells.
+  void remove_one() {
+    const auto at = static_cast<std::ptrdiff_t>(numbers_.below(keys_.size()));
+    note(partition_.remove(keys_[static_cast<std::size_t>(at)]));
+    keys_.erase(keys_.begin() + at);
+    boxes_.erase(boxes_.begin() + at);
+  }
+
   /// Every so many-th, from one that chance tells on.
   void remove(std::size_t stride) {
     std::vector<Key> gone;
@@ -167,6 +175,26 @@ class Life {
     note(partition_.update(keys, BoxView({at(0), at(1), at(2)}, {at(3), at(4), at(5)}, count)));
   }
 
+  /// So many that follow each other, from one that chance tells on.
+  void move_some(std::size_t count, int way) {
+    std::vector<Key> keys;
+    std::vector<Aabb> boxes;
+    const std::size_t first = numbers_.below(keys_.size());
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::size_t i = (first + n) % keys_.size();
+      step(boxes_[i], way);
+      keys.push_back(keys_[i]);
+      boxes.push_back(boxes_[i]);
+    }
+    note(partition_.update(keys, boxes));
+  }
+
+  void jump_one() {
+    const std::size_t i = numbers_.below(keys_.size());
+    place(boxes_[i]);
+    note(partition_.update(keys_[i], boxes_[i]));
+  }
+
   void jump(std::size_t stride) {
     for (std::size_t i = numbers_.below(stride); i < keys_.size(); i += stride) place(boxes_[i]);
     note(partition_.update(keys_, boxes_));
@@ -190,9 +218,11 @@ class Life {
     note(partition_.set_filter(keys, std::vector<ObjectFilter>(2)));
   }
 
-  void filter(std::size_t stride, const ObjectFilter& filter) {
+  /// Every so many-th of the first ones.
+  void filter(std::size_t stride, const ObjectFilter& filter, std::size_t first = kMaxObjects) {
     std::vector<Key> keys;
-    for (std::size_t i = 0; i < keys_.size(); i += stride) keys.push_back(keys_[i]);
+    for (std::size_t i = 0; i < std::min(first, keys_.size()); i += stride)
+      keys.push_back(keys_[i]);
     note(partition_.set_filter(keys, std::vector<ObjectFilter>(keys.size(), filter)));
   }
 
@@ -283,6 +313,11 @@ class Life {
     for (const std::uint64_t number : {s.builds, s.planned_builds, s.refits, s.full_queries,
                                        s.incremental_queries, s.last_tests, s.last_pairs}) {
       digest_.add(number);
+    }
+    const Footprint bytes = partition_.footprint();
+    for (const Bytes& part : {bytes.bounds, bytes.keys, bytes.client_data}) {
+      digest_.add(std::uint64_t{part.used});
+      digest_.add(std::uint64_t{part.reserved});
     }
     Aabb box;
     for (const Key key : keys_) {
@@ -390,6 +425,32 @@ void stray(Life& life) {
   }
 }
 
+/// One object jumps, leaves or comes in each frame, so that limits are met and not passed over.
+void trickle(Life& life, std::size_t count) {
+  for (std::size_t i = 0; i < count / 2; ++i) {
+    life.jump_one();
+    life.ask();
+  }
+  for (std::size_t i = 0; i < count / 2; ++i) {
+    life.remove_one();
+    life.ask();
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    life.insert(1);
+    if (i % 4 == 3) life.remove_one();
+    life.ask();
+  }
+}
+
+/// In each frame one object more moves, until all of them do: of every share of them.
+void swell(Life& life, std::size_t count) {
+  for (std::size_t moving = 1; moving <= count; ++moving) {
+    life.move_some(moving, moving % 2 == 0 ? 1 : 8);
+    if (moving % 3 == 0) life.jump_one();
+    life.ask();
+  }
+}
+
 /// Everything leaves, memory goes and comes, another structure takes over.
 void end(Life& life) {
   Partition& partition = life.partition();
@@ -428,6 +489,14 @@ void live(StructureKind structure, PartitionOptions options, const Execution& ex
   Life resting(structure, options, count, digest);
   rest(resting);
   stray(resting);
+  const std::size_t few = structure == n_squared() ? 40 : 256;
+  Life steady(structure, options, few, digest);
+  swell(steady, few);
+  trickle(steady, few);
+  // Those that were there first, and those that came later, are of layers that do not meet.
+  steady.filter(1, {.layers = 2U, .mask = 2U, .environment = 0});
+  steady.filter(1, {.layers = 1U, .mask = 1U, .environment = 0}, few / 2);
+  trickle(steady, few);
 }
 
 }  // namespace
