@@ -88,7 +88,7 @@ struct Bounds {
                                        const ExactVector& direction) noexcept {
   Dyadic height;
   if (!core.has_discs) {
-    farthest_vertex(core, direction, kNoVertex, height);
+    farthest_vertex(core, direction, height);
     return height;
   }
   const Dyadic across =
@@ -157,18 +157,17 @@ void CoreVertices::include_lengths(BitSpan& span) const noexcept {
 }
 
 std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direction,
-                              std::uint32_t skip, Dyadic& height) noexcept {
+                              Dyadic& height) noexcept {
   const RoundedDirection rounded(direction);
-  const auto skipped = [&](std::uint32_t i) { return skip != kNoVertex && core.same(i, skip); };
   double reached = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < core.count; ++i) {
-    if (!skipped(i)) reached = std::max(reached, product_bounds(core, i, rounded).lower);
+    reached = std::max(reached, product_bounds(core, i, rounded).lower);
   }
-  std::uint32_t best = kNoVertex;
+  std::uint32_t best = core.count;
   for (std::uint32_t i = 0; i < core.count; ++i) {
-    if (skipped(i) || product_bounds(core, i, rounded).upper < reached) continue;
+    if (product_bounds(core, i, rounded).upper < reached) continue;
     const Dyadic product = dot(direction, core.at(i));
-    if (best != kNoVertex && compare(product, height) <= 0) continue;
+    if (best != core.count && compare(product, height) <= 0) continue;
     best = i;
     height = product;
   }
@@ -198,33 +197,14 @@ CoreDifference::CoreDifference(const CoreVertices& core_a, const Pose& pose_a,
   heights_in_range_ = fits_dyadic(1, 4 * turns + lengths.bits() + kSums);
 }
 
-void CoreDifference::support(const ExactVector& direction, DifferenceVertex& vertex,
+void CoreDifference::support(const ExactVector& direction, ExactVector& vertex,
                              Dyadic& height) const noexcept {
   Dyadic height_a;
   Dyadic height_b;
-  vertex.a = farthest_vertex(a_, transposed_times(turn_a_, direction), kNoVertex, height_a);
-  vertex.b = farthest_vertex(b_, transposed_times(turn_b_, -direction), kNoVertex, height_b);
+  const std::uint32_t a = farthest_vertex(a_, transposed_times(turn_a_, direction), height_a);
+  const std::uint32_t b = farthest_vertex(b_, transposed_times(turn_b_, -direction), height_b);
   height = height_a + height_b - dot(direction, offset_);
-  vertex.point = turn_a_ * a_.at(vertex.a) - turn_b_ * b_.at(vertex.b) - offset_;
-}
-
-bool CoreDifference::cone_support(std::uint32_t a, std::uint32_t b, const ExactVector& direction,
-                                  DifferenceVertex& vertex, Dyadic& height) const noexcept {
-  const ExactVector local_a = transposed_times(turn_a_, direction);
-  const ExactVector local_b = transposed_times(turn_b_, -direction);
-  Dyadic height_b;
-  vertex.a = farthest_vertex(a_, local_a, a, height);
-  vertex.b = farthest_vertex(b_, local_b, b, height_b);
-  if (vertex.a == kNoVertex && vertex.b == kNoVertex) return false;
-  height = height - dot(local_a, a_.at(a));
-  height_b = height_b - dot(local_b, b_.at(b));
-  if (vertex.a == kNoVertex || (vertex.b != kNoVertex && compare(height_b, height) > 0)) {
-    height = height_b;
-    vertex.point = turn_b_ * (b_.at(b) - b_.at(vertex.b));
-  } else {
-    vertex.point = turn_a_ * (a_.at(vertex.a) - a_.at(a));
-  }
-  return true;
+  vertex = turn_a_ * a_.at(a) - turn_b_ * b_.at(b) - offset_;
 }
 
 Dyadic CoreDifference::height_bound(const ExactVector& direction) const noexcept {

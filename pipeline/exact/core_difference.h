@@ -34,29 +34,15 @@ struct CoreVertices {
   }
   /// Coordinates of the vertices, among which are the places and radii of discs, and the rounding.
   void include_lengths(BitSpan& span) const noexcept;
-  [[nodiscard]] bool same(std::uint32_t i, std::uint32_t k) const noexcept {
-    return column[0][i] == column[0][k] && column[1][i] == column[1][k] &&
-           column[2][i] == column[2][k];
-  }
 };
 
 /// Fills `core`; false for half-spaces and for what is known by a support function.
 bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept;
 
-inline constexpr std::uint32_t kNoVertex = ~0U;
-
-/// The vertex farthest along a direction and how far, exactly. Vertices equal to `skip` are left
-/// out; kNoVertex if none remains. Products in double leave only those near the maximum to exact
-/// arithmetic. O(vertices).
+/// The vertex farthest along a direction and how far, exactly. Products in double leave only those
+/// near the maximum to exact arithmetic. O(vertices).
 std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direction,
-                              std::uint32_t skip, Dyadic& height) noexcept;
-
-/// A vertex of a difference of two cores, and where it comes from.
-struct DifferenceVertex {
-  ExactVector point;
-  std::uint32_t a;
-  std::uint32_t b;
-};
+                              Dyadic& height) noexcept;
 
 /// The points x - y, x in the core of a and y in that of b, times `scale`: the product of the
 /// squares of both quaternions' lengths, which makes them polynomials of the input.
@@ -78,13 +64,7 @@ class CoreDifference {
   [[nodiscard]] ExactVector axis_b(int k) const noexcept { return column(turn_b_, k); }
 
   /// The vertex farthest along `direction` and its height: the product with the direction.
-  void support(const ExactVector& direction, DifferenceVertex& vertex,
-               Dyadic& height) const noexcept;
-
-  /// The same among the points that span the difference's cone at the vertex (a, b): differences
-  /// of a's vertices to a, and of b to b's vertices, zero excluded. False if there is none.
-  bool cone_support(std::uint32_t a, std::uint32_t b, const ExactVector& direction,
-                    DifferenceVertex& vertex, Dyadic& height) const noexcept;
+  void support(const ExactVector& direction, ExactVector& vertex, Dyadic& height) const noexcept;
 
   /// At least the height of every point along `direction`, discs included; more by 2^-50 of what
   /// the discs add, or exact where the roots are.

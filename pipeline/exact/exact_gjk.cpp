@@ -1,7 +1,5 @@
 #include "pipeline/exact/exact_gjk.h"
 
-#include <cstdint>
-
 namespace winnow {
 namespace {
 
@@ -9,9 +7,6 @@ namespace {
 struct ExactSimplex {
   int size = 0;
   ExactVector point[4];
-  /// Where they come from.
-  std::uint32_t a[4];
-  std::uint32_t b[4];
 };
 
 /// True if the origin projects into the interior of the segment; then `toward` leads there.
@@ -76,11 +71,7 @@ void keep(ExactSimplex& s, unsigned mask) noexcept {
   int kept = 0;
   for (int i = 0; i < s.size; ++i) {
     if ((mask >> i & 1U) == 0) continue;
-    if (kept != i) {
-      s.point[kept] = s.point[i];
-      s.a[kept] = s.a[i];
-      s.b[kept] = s.b[i];
-    }
+    if (kept != i) s.point[kept] = s.point[i];
     ++kept;
   }
   s.size = kept;
@@ -120,29 +111,20 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   return compare(height * height, square * dot(normal, normal));
 }
 
-void append(ExactSimplex& simplex, const DifferenceVertex& vertex) noexcept {
-  simplex.point[simplex.size] = vertex.point;
-  simplex.a[simplex.size] = vertex.a;
-  simplex.b[simplex.size] = vertex.b;
-  ++simplex.size;
-}
-
 /// The algorithm of Gilbert, Johnson and Keerthi (1988), exactly: descends towards the origin until
 /// the simplex contains it (true) or `is_outside(direction, height)` says that it never will.
-/// `support` answers false if there are no points. Without rounding each step comes strictly
-/// nearer, so no simplex returns and it ends.
-template <typename Support, typename Outside>
-[[nodiscard]] bool descend(const Support& support, const Outside& is_outside, ExactVector direction,
-                           ExactSimplex& simplex) noexcept {
-  DifferenceVertex vertex;
+/// Without rounding each step comes strictly nearer, so no simplex returns and it ends.
+template <typename Outside>
+[[nodiscard]] bool descend(const CoreDifference& difference, const Outside& is_outside,
+                           ExactVector direction, ExactSimplex& simplex) noexcept {
   Dyadic height;
-  simplex.size = 0;
-  while (support(direction, vertex, height) && !is_outside(direction, height)) {
-    append(simplex, vertex);
+  while (!is_zero(direction)) {
+    difference.support(direction, simplex.point[simplex.size], height);
+    if (is_outside(direction, height)) return false;
+    ++simplex.size;
     keep_nearest_face(simplex, direction);
-    if (is_zero(direction)) return true;
   }
-  return false;
+  return true;
 }
 
 /// Any direction at right angles to `line`, near `hint` if that is not along it.
@@ -155,7 +137,7 @@ template <typename Support, typename Outside>
 
 /// True if no point of the difference lies strictly beyond the plane through the origin.
 [[nodiscard]] bool supports(const CoreDifference& difference, const ExactVector& direction,
-                            DifferenceVertex& vertex) noexcept {
+                            ExactVector& vertex) noexcept {
   Dyadic height;
   difference.support(direction, vertex, height);
   return height.sign() <= 0;
@@ -167,43 +149,30 @@ template <typename Support, typename Outside>
 /// is met twice.
 [[nodiscard]] ExactVerdict turn_about(const CoreDifference& difference, const ExactVector& line,
                                       const ExactVector& hint) noexcept {
-  DifferenceVertex first;
-  DifferenceVertex next;
+  ExactVector first;
   if (supports(difference, across(line, hint), first)) return ExactVerdict::touching;
-  ExactVector last = first.point;
+  ExactVector last = first;
   int turned = 1;
   while (turned > 0) {
-    if (supports(difference, cross(line, last), next)) return ExactVerdict::touching;
-    last = next.point;
-    turned = dot(line, cross(first.point, last)).sign();
+    if (supports(difference, cross(line, last), last)) return ExactVerdict::touching;
+    turned = dot(line, cross(first, last)).sign();
   }
   if (turned < 0) return ExactVerdict::overlapping;
-  return supports(difference, -cross(line, first.point), next) ? ExactVerdict::touching
-                                                               : ExactVerdict::overlapping;
+  return supports(difference, -cross(line, first), last) ? ExactVerdict::touching
+                                                         : ExactVerdict::overlapping;
 }
 
 /// The origin lies in the relative interior of `face`, a simplex of the difference: is it on the
 /// boundary of the whole?
-[[nodiscard]] ExactVerdict boundary_or_inside(const CoreDifference& difference, ExactSimplex& face,
+[[nodiscard]] ExactVerdict boundary_or_inside(const CoreDifference& difference,
+                                              const ExactSimplex& face,
                                               const ExactVector& hint) noexcept {
-  if (face.size == 1) {
-    // A vertex of the difference: its cone is everything or else a plane supports it. A plane that
-    // meets the cone in no other point is one that parts the cone's generators from the origin.
-    const std::uint32_t a = face.a[0];
-    const std::uint32_t b = face.b[0];
-    const auto support = [&](const ExactVector& direction, DifferenceVertex& vertex,
-                             Dyadic& height) {
-      return difference.cone_support(a, b, direction, vertex, height);
-    };
-    const auto is_outside = [](const ExactVector&, const Dyadic& height) {
-      return height.sign() < 0;
-    };
-    if (!descend(support, is_outside, hint, face)) return ExactVerdict::touching;
-  }
+  // The newest point, and so the farthest one along a direction.
+  if (face.size == 1) return ExactVerdict::touching;
   if (face.size == 4) return ExactVerdict::overlapping;
   if (face.size == 2) return turn_about(difference, face.point[1] - face.point[0], hint);
   const ExactVector normal = cross(face.point[1] - face.point[0], face.point[2] - face.point[0]);
-  DifferenceVertex vertex;
+  ExactVector vertex;
   return supports(difference, normal, vertex) || supports(difference, -normal, vertex)
              ? ExactVerdict::touching
              : ExactVerdict::overlapping;
@@ -215,10 +184,6 @@ template <typename Support, typename Outside>
   const Dyadic length = rounding * difference.scale();
   const Dyadic square = length * length;
   ExactSimplex simplex;
-  const auto support = [&](const ExactVector& d, DifferenceVertex& vertex, Dyadic& height) {
-    difference.support(d, vertex, height);
-    return true;
-  };
   bool apart = false;
   const auto is_outside = [&](const ExactVector& d, const Dyadic& height) {
     // The plane of the first direction often settles it; later ones have more digits.
@@ -228,7 +193,7 @@ template <typename Support, typename Outside>
     }
     return compare(height, dot(d, simplex.point[0])) <= 0;
   };
-  if (descend(support, is_outside, direction, simplex)) return ExactVerdict::overlapping;
+  if (descend(difference, is_outside, direction, simplex)) return ExactVerdict::overlapping;
   if (apart) return ExactVerdict::separated;
   const int sign = compare_square_distance(simplex, square);
   return sign > 0   ? ExactVerdict::separated
@@ -242,14 +207,10 @@ ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& round
                            const ExactVector& direction) noexcept {
   if (rounding.sign() > 0) return locate_in_rounded(difference, rounding, direction);
   ExactSimplex simplex;
-  const auto support = [&](const ExactVector& d, DifferenceVertex& vertex, Dyadic& height) {
-    difference.support(d, vertex, height);
-    return true;
-  };
   const auto is_outside = [](const ExactVector&, const Dyadic& height) {
     return height.sign() < 0;
   };
-  if (!descend(support, is_outside, direction, simplex)) return ExactVerdict::separated;
+  if (!descend(difference, is_outside, direction, simplex)) return ExactVerdict::separated;
   return boundary_or_inside(difference, simplex, direction);
 }
 

@@ -55,7 +55,7 @@ namespace {
   const Dyadic square = dot(local, local);
   if (!core.has_discs) {
     Dyadic height;
-    farthest_vertex(core, -local, kNoVertex, height);
+    farthest_vertex(core, -local, height);
     return verdict_of(sign_less_roots(center - height, core.rounding, square, 0.0, 0.0));
   }
   const Dyadic across = local.x[0] * local.x[0] + local.x[1] * local.x[1];

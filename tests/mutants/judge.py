@@ -22,7 +22,7 @@ import sys
 import tempfile
 import time
 
-PROGRAMS = ["core", "partition", "query", "pipeline", "recording"]
+PROGRAMS = ["core", "partition", "query", "pipeline", "recording", "memory"]
 HERE = pathlib.Path(__file__).parent
 DIGESTS = HERE.parent / "digests" / "digests.txt"
 # A process that does nothing for so many seconds waits for ever.

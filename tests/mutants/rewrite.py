@@ -109,6 +109,10 @@ class Source:
         return (place is not None and self.bytes[: place[0]].rstrip().endswith((b"[", b","))
                 and self.bytes[place[1] :].lstrip().startswith((b"]", b">")))
 
+    def is_template_argument(self, start, end):
+        """Computed while compiling, too. What is less than a number has a space before it."""
+        return self.bytes[start - 1 : start] == b"<" and self.bytes[end : end + 1] in (b">", b",")
+
     def is_constant(self, cursor):
         """Computed while compiling, where no mutant is ever switched on: see mutants.h."""
         if cursor.kind is not CursorKind.VAR_DECL:
@@ -141,7 +145,7 @@ class Source:
         if place is None:
             return
         literal = self.text(*place)
-        if not literal[0].isdigit() or "'" in literal[:1]:
+        if not literal[0].isdigit() or self.is_template_argument(*place):
             return
         self.add(*place, f"(winnow_mutants::is(@) ? {literal} + 1 : {literal})",
                  f"{literal} -> {literal} + 1")
