@@ -18,6 +18,13 @@ class Digest {
  public:
   void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }
+  /// Which way pairs were answered: what lanes leave to the solver takes longer.
+  void add(const NarrowStatistics& s) {
+    for (const std::uint64_t number :
+         {s.pairs, s.recomputed, s.without_lanes, s.exact, s.bounded}) {
+      add(number);
+    }
+  }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
 
  private:

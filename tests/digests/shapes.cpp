@@ -225,11 +225,10 @@ void meet(Style style, NarrowTier tier, const Execution& execution, Digest& dige
           {.level = level, .tier = tier, .margin = margin, .execution = execution}, result);
       digest.add(static_cast<std::uint64_t>(status));
       add(digest, result);
+      digest.add(phase.statistics());
       if (level != ContactLevel::manifold) break;
     }
   }
-  const NarrowStatistics& statistics = phase.statistics();
-  digest.add(std::uint64_t{statistics.exact});
 }
 
 void impacts(Style style, const Execution& execution, Digest& digest) {

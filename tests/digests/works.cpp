@@ -132,6 +132,7 @@ void narrow(NarrowTier tier, const Execution& execution, Digest& digest) {
         pool, {bodies, poses}, asked,
         {.level = level, .tier = tier, .margin = 0.125, .execution = execution}, result);
     digest.add(static_cast<std::uint64_t>(status));
+    digest.add(phase.statistics());
     for (std::size_t i = 0; i < result.size(); ++i) {
       digest.add(std::uint64_t{result.pair_of(i)} * 2U + (result.overlaps(i) ? 1U : 0U));
       if (level == ContactLevel::boolean) continue;
@@ -209,6 +210,13 @@ void scene(const Execution& execution, Digest& digest) {
       digest.add(std::uint64_t{contacts.part_a()[m]} << 32U | contacts.part_b()[m]);
       digest.add(contacts.distance()[m]);
     }
+    const SceneStatistics& counts = world.statistics();
+    for (const std::uint64_t number : {counts.boxes_updated, counts.body_pairs, counts.balls_apart,
+                                       counts.carried, counts.primitive_pairs}) {
+      digest.add(number);
+    }
+    digest.add(counts.convex);
+    digest.add(counts.parts);
     for (std::size_t p = 0; p < contacts.points(); ++p) digest.add(contacts.contact(p).feature);
     for (std::size_t i = 0; i < keys.size(); i += 3) {
       digest.add(static_cast<std::uint64_t>(world.move(keys[i], numbers.pose(4))));
