@@ -47,7 +47,7 @@ bool Rows::make_room(std::size_t objects) noexcept {
   const bool grown =
       holes == 0 ? pool_.reserve(needed) : pool_.reserve_exact(room) || pool_.reserve(needed);
   if (!grown || !keys_.reserve(objects)) return false;
-  const std::size_t slots = std::max(keys_.slot_count() + added, objects);
+  const std::size_t slots = keys_.slots_with(added);
   return filters_.reserve(slots) && stale_.reserve(slots) && moved_.reserve(slots);
 }
 

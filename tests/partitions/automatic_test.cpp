@@ -237,6 +237,18 @@ TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
   }
 }
 
+TEST_P(AutomaticChoice, reserve_as_much_as_each_of_those_that_they_may_choose) {
+  const auto reserved_by = [](StructureKind kind) {
+    Partition partition(kind);
+    EXPECT_EQ(partition.reserve(kMany), Status::ok);
+    return partition.footprint().total().reserved;
+  };
+  const std::size_t together = reserved_by(automatic());
+  for (const StructureKind kind : {bounds_n_squared(), hierarchical_grid(), linear_bvh()}) {
+    EXPECT_GE(together, reserved_by(kind)) << kind.name();
+  }
+}
+
 #if WINNOW_TEST_THREADS
 TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
   TurningWorld scene(config());
