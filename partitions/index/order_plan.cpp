@@ -52,9 +52,7 @@ bool OrderPlan::advance(std::size_t work) noexcept {
   // Where nothing is left to the tree there is nothing more to do.
   const auto is_as_good_as_ready = [&] { return part_ == Part::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
-    if (run_stage(work)) continue;
-    drop();
-    return false;
+    if (!run_stage(work)) return false;
   }
   resumed_ = true;
   return true;

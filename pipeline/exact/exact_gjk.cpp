@@ -152,14 +152,11 @@ template <typename Outside>
   ExactVector first;
   if (supports(difference, across(line, hint), first)) return ExactVerdict::touching;
   ExactVector last = first;
-  int turned = 1;
-  while (turned > 0) {
+  // By half a turn in all at most: a point beyond that lies on the other side of the first one.
+  while (dot(line, cross(first, last)).sign() >= 0) {
     if (supports(difference, cross(line, last), last)) return ExactVerdict::touching;
-    turned = dot(line, cross(first, last)).sign();
   }
-  if (turned < 0) return ExactVerdict::overlapping;
-  return supports(difference, -cross(line, first), last) ? ExactVerdict::touching
-                                                         : ExactVerdict::overlapping;
+  return ExactVerdict::overlapping;
 }
 
 /// The origin lies in the relative interior of `face`, a simplex of the difference: is it on the

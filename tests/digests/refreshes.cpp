@@ -240,6 +240,12 @@ class Life {
     count();
   }
 
+  /// As one that was not there before.
+  void ask_anew() {
+    pairs_.clear();
+    ask();
+  }
+
   void look() {
     HitBuffer hits;
     OverlapBuffer objects;
@@ -442,6 +448,16 @@ void trickle(Life& life, std::size_t count) {
   }
 }
 
+/// Of `count` objects a sixth changes from the first environment to the last, so many that rows are
+/// put in order anew, and nothing moves: those between are in other blocks then.
+void regroup(Life& life, std::size_t count) {
+  life.part(3);
+  life.ask();
+  life.filter(3, {.layers = ~0U, .mask = ~0U, .environment = 2}, count / 2);
+  life.ask();
+  life.ask_anew();
+}
+
 /// In each frame one object more moves, until all of them do: of every share of them.
 void swell(Life& life, std::size_t count) {
   for (std::size_t moving = 1; moving <= count; ++moving) {
@@ -489,6 +505,7 @@ void live(StructureKind structure, PartitionOptions options, const Execution& ex
   Life resting(structure, options, count, digest);
   rest(resting);
   stray(resting);
+  regroup(resting, count);
   const std::size_t few = structure == n_squared() ? 40 : 256;
   Life steady(structure, options, few, digest);
   swell(steady, few);

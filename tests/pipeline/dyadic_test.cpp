@@ -58,6 +58,12 @@ TEST(Dyadic, that_needs_more_room_than_there_is_is_zero) {
   EXPECT_EQ((wide * Dyadic(-1.0)).sign(), -1);
 }
 
+TEST(Dyadic, sums_may_take_all_the_room_that_there_is) {
+  const Dyadic most = Dyadic::power_of_two(64 * (kDyadicDigits - 2) + 63);
+  EXPECT_EQ(compare(most + 1.0 - most, 1.0), 0);
+  EXPECT_EQ(compare(most - 1.0 - most, -1.0), 0);
+}
+
 TEST(Dyadic, is_what_it_was_when_it_is_copied_onto_itself) {
   Dyadic number(-2.5);
   const Dyadic& same = number;
