@@ -1,4 +1,4 @@
-// Objects that jump away from the others of their block of a tree.
+// Objects that jump away from the others of their block of a tree, or out of their cells.
 
 #include <winnow/partitions/partition.h>
 
@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
@@ -104,6 +105,30 @@ TEST_P(StrayObjects, are_in_no_missing_pair) {
   }
 }
 
+std::vector<Config> grids() {
+  std::vector<Config> configs = exact_configs();
+  std::erase_if(configs, [](const Config& config) { return !config.partition.ends_with("Grid"); });
+  return configs;
+}
+
+class Leavers : public Conformance {};
+
+// Of so many cells a task looks through several lines, each of which some may have left.
+TEST_P(Leavers, are_in_no_missing_pair_where_cells_are_many) {
+  World world(config());
+  std::vector<Aabb> boxes = uniform_boxes(12000);
+  const std::vector<Key> keys = world.insert(boxes);
+  PairBuffer buffer;
+  ASSERT_TRUE(world.agrees(buffer));
+  Random random(10);
+  for (int frame = 0; frame < 3; ++frame) {
+    move(Motion::little, boxes, random);
+    (void)jump(boxes, 0.02, random);
+    world.update(keys, boxes);
+    ASSERT_TRUE(world.agrees(buffer)) << frame;
+  }
+}
+
 class Newcomers : public Conformance {};
 
 // The tail grows and shrinks by a few blocks, is sorted and is moved from, with filters and
@@ -141,6 +166,7 @@ TEST_P(Newcomers, are_in_no_missing_pair_however_few_come_and_go) {
 
 INSTANTIATE_TEST_SUITE_P(All, Newcomers, testing::ValuesIn(all_configs()));
 INSTANTIATE_TEST_SUITE_P(All, StrayObjects, testing::ValuesIn(all_configs()));
+INSTANTIATE_TEST_SUITE_P(All, Leavers, testing::ValuesIn(grids()));
 
 }  // namespace
 }  // namespace winnow::test
