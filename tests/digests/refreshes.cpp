@@ -221,8 +221,8 @@ class Life {
   /// Every so many-th of the first ones.
   void filter(std::size_t stride, const ObjectFilter& filter, std::size_t first = kMaxObjects) {
     std::vector<Key> keys;
-    for (std::size_t i = 0; i < std::min(first, keys_.size()); i += stride)
-      keys.push_back(keys_[i]);
+    const std::size_t end = std::min(first, keys_.size());
+    for (std::size_t i = 0; i < end; i += stride) keys.push_back(keys_[i]);
     note(partition_.set_filter(keys, std::vector<ObjectFilter>(keys.size(), filter)));
   }
 
