@@ -237,7 +237,7 @@ TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
   }
 }
 
-TEST_P(AutomaticChoice, reserve_as_much_as_each_of_those_that_they_may_choose) {
+TEST(AutomaticReserve, is_as_much_as_each_structure_takes_that_may_be_chosen) {
   const auto reserved_by = [](StructureKind kind) {
     Partition partition(kind);
     EXPECT_EQ(partition.reserve(kMany), Status::ok);
