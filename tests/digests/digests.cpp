@@ -62,6 +62,8 @@ class ModeScope {
 #if defined(__x86_64__)
     // The bits FZ and DAZ.
     if (mode.flushes) _mm_setcsr(_mm_getcsr() | 0x8040U);
+#elif defined(__aarch64__)
+    if (mode.flushes) set_flag_of_flushing();
 #endif
   }
   ~ModeScope() {
@@ -74,6 +76,13 @@ class ModeScope {
   ModeScope& operator=(const ModeScope&) = delete;
 
  private:
+#if defined(__aarch64__)
+  static void set_flag_of_flushing() {
+    std::uint64_t control = 0;
+    asm volatile("mrs %0, fpcr" : "=r"(control));
+    asm volatile("msr fpcr, %0" : : "r"(control | std::uint64_t{1} << 24U));  // the bit FZ
+  }
+#endif
   std::fenv_t before_{};
 #if defined(__x86_64__)
   unsigned register_before_ = _mm_getcsr();

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by tests/run: what a build for AArch64 on another Debian machine needs.
+# Sourced: what a build for AArch64 on another Debian machine needs.
 
 WINNOW_AARCH64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
 
