@@ -7,6 +7,7 @@
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
+#include "pipeline/kernels/hull/verdicts.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
@@ -84,10 +85,16 @@ class CurvedAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
     CurvedAnswers answers(job);
-    for (std::uint32_t i = 0; i < job.count; i += kChunk) {
-      const std::uint32_t left = job.count - i;
-      answers.chunk(i, left < kChunk ? left : kChunk);
+    if constexpr (Level == 0) {
+      // Float is sure about most.
+      hull::Verdicts::run(job, [&](std::uint32_t i) { answers.take(i); });
+    } else {
+      for (std::uint32_t i = 0; i < job.count; ++i) {
+        fetch_ahead(job, i);
+        answers.take(i);
+      }
     }
+    answers.answer_taken();
     return answers.uncertified_;
   }
 
@@ -103,46 +110,23 @@ class CurvedAnswers {
 
   explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
 
-  void chunk(std::uint32_t begin, std::uint32_t count) {
-    std::uint32_t placed = 0;
-    for (std::uint32_t i = begin; i < begin + count; ++i) {
-      CurvedPair& pair = pair_[placed];
-      pair.index = i;
-      fetch_ahead(job_, i);
-      if (place_pair(job_, job_.pairs[i], pair)) {
-        ++placed;
-      } else {
-        give_up(i);
-      }
-    }
-    if (placed == 0) return;
+  void take(std::uint32_t i) {
+    CurvedPair& pair = pair_[taken_];
+    pair.index = i;
+    if (!place_pair(job_, job_.pairs[i], pair)) return give_up(i);
+    if (++taken_ == kChunk) answer_taken();
+  }
+
+  void answer_taken() {
+    if (taken_ == 0) return;
     CurvedLimits limits{0.0, Level == 0};
     if (Level == 1) limits.far = __builtin_inf();
     if (Level == 2) limits.far = job_.margin;
-    if constexpr (Level == 0) {
-      CurvedSearch<float>(pair_, placed, limits).run();
-      placed = keep_doubtful(placed);
-      if (placed == 0) return;
-    }
-    CurvedSearch<double>(pair_, placed, limits).run();
-    for (std::uint32_t i = 0; i < placed; ++i) {
+    CurvedSearch(pair_, taken_, limits).run();
+    for (std::uint32_t i = 0; i < taken_; ++i) {
       if (!answer(pair_[i])) give_up(pair_[i].index);
     }
-  }
-
-  /// Answers what float is sure about; moves the others to the front and returns how many.
-  std::uint32_t keep_doubtful(std::uint32_t count) {
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const CurvedState state = pair_[i].state;
-      if (state == CurvedState::far || state == CurvedState::inside) {
-        job_.overlap[pair_[i].index] = state == CurvedState::inside ? 1 : 0;
-      } else {
-        if (kept != i) pair_[kept] = pair_[i];
-        ++kept;
-      }
-    }
-    return kept;
+    taken_ = 0;
   }
 
   /// Rounding, and points of a program's own set that contradict each other, may exchange bounds.
@@ -291,6 +275,7 @@ class CurvedAnswers {
 
   NarrowJob& job_;
   std::uint32_t uncertified_ = 0;
+  std::uint32_t taken_ = 0;
   CurvedPair pair_[kChunk];
   CurvedDepth depth_;
 };

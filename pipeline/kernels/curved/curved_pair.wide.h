@@ -4,6 +4,7 @@
 // to stage, and the points of its shapes that lie farthest along directions, one per lane. Lengths
 // are multiplied by a power of two that brings the largest into [1, 2).
 
+#include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 #include "pipeline/kernels/own_support.wide.h"
 
@@ -11,15 +12,9 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 /// The core of a shape in its own frame.
 struct Form {
-  static constexpr int kNumbers = 9;
-
   ShapeKind kind;
-  /// Box: half extents. Capsule, cylinder, cone: radius of the core, 0, half length. Triangle:
-  /// three vertices. Ellipsoid: radii, and what is taken off all around, which the rounding has
-  /// instead: the least radius of curvature. Tapered capsule: by how much the larger ball is
-  /// larger, z of its middle, z of the smaller one's; the same twice, and no radius, where it holds
-  /// the smaller one.
-  double number[kNumbers];
+  /// As those of CoreLanes.
+  double number[hull::kCoreNumbers];
   /// Of a hull, and of a program's own set.
   const HullShape* hull;
   const SupportShape* own;
@@ -233,103 +228,6 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
     form->rounding *= scale;
   }
   return true;
-}
-
-/// Cores of one kind, one per lane.
-template <typename T>
-struct FormLanes {
-  Lanes<T> number[Form::kNumbers];
-  ShapeKind kind;
-};
-
-/// Directions whose part across an axis is shorter are along it.
-template <typename T>
-inline constexpr T kLeastAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
-
-/// The point of a rim in the direction of d, at z; where d is along the axis the rim's middle.
-template <typename T>
-[[gnu::always_inline]] static inline Vec3<T> rim_point(const Lanes<T>& radius, const Vec3<T>& d,
-                                                       const Lanes<T>& across, const Lanes<T>& z) {
-  const Lanes<T> over = radius / max(across, Lanes<T>(kLeastAcross<T>));
-  return {d.x * over, d.y * over, z};
-}
-
-/// That of an ellipsoid: n as in Form::number. Relative to the largest product, so that no square
-/// vanishes that counts.
-template <typename T>
-[[gnu::always_inline]] static inline Vec3<T> ellipsoid_point(const Lanes<T>* n, const Vec3<T>& d) {
-  const Vec3<T> stretched{n[0] * d.x, n[1] * d.y, n[2] * d.z};
-  const Lanes<T> most = max(max(abs(stretched.x), abs(stretched.y)), abs(stretched.z));
-  const Vec3<T> share = stretched * (Lanes<T>(T(1)) / max(most, Lanes<T>(kLeastAcross<T>)));
-  const Lanes<T> over = Lanes<T>(T(1)) / max(sqrt(dot(share, share)), Lanes<T>(T(1)));
-  const Lanes<T> off = n[3] / max(sqrt(dot(d, d)), Lanes<T>(kLeastAcross<T>));
-  return {n[0] * share.x * over - off * d.x, n[1] * share.y * over - off * d.y,
-          n[2] * share.z * over - off * d.z};
-}
-
-/// That of a tapered capsule: n as in Form::number.
-template <typename T>
-[[gnu::always_inline]] static inline Vec3<T> taper_point(const Lanes<T>* n, const Vec3<T>& d) {
-  const Lanes<T> zero(T(0));
-  const Lanes<T> length = sqrt(dot(d, d));
-  const LaneMask<T> on_tip = (n[2] - n[1]) * d.z >= n[0] * length;
-  const Lanes<T> over = n[0] / max(length, Lanes<T>(kLeastAcross<T>));
-  return select(on_tip, Vec3<T>{zero, zero, n[2]},
-                Vec3<T>{d.x * over, d.y * over, n[1] + d.z * over});
-}
-
-/// The farthest point of a core along d, in its frame; `one_by_one` finds that of hulls and of a
-/// program's own sets.
-template <typename T, typename OneByOne>
-[[gnu::always_inline]] static inline Vec3<T> support(const FormLanes<T>& form, const Vec3<T>& d,
-                                                     OneByOne&& one_by_one) {
-  const Lanes<T> zero(T(0));
-  const Lanes<T>* n = form.number;
-  const auto towards = [&](const Lanes<T>& x, const Lanes<T>& h) {
-    return select(x < zero, -h, h);
-  };
-  switch (form.kind) {
-    case ShapeKind::sphere:
-      return {zero, zero, zero};
-    case ShapeKind::capsule:
-      return {zero, zero, towards(d.z, n[2])};
-    case ShapeKind::box:
-      return {towards(d.x, n[0]), towards(d.y, n[1]), towards(d.z, n[2])};
-    case ShapeKind::triangle: {
-      const Vec3<T> v[3] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}};
-      const Lanes<T> h[3] = {dot(v[0], d), dot(v[1], d), dot(v[2], d)};
-      const LaneMask<T> second = h[1] > h[0];
-      const LaneMask<T> third = h[2] > max(h[0], h[1]);
-      return select(third, v[2], select(second, v[1], v[0]));
-    }
-    case ShapeKind::cylinder:
-      return rim_point(n[0], d, sqrt(d.x * d.x + d.y * d.y), towards(d.z, n[2]));
-    case ShapeKind::cone: {
-      const Lanes<T> across = sqrt(d.x * d.x + d.y * d.y);
-      const Lanes<T> tip = n[2] * d.z;
-      const LaneMask<T> on_tip = tip >= n[0] * across - tip;
-      const Vec3<T> rim = rim_point(n[0], d, across, -n[2]);
-      return select(on_tip, Vec3<T>{zero, zero, n[2]}, rim);
-    }
-    case ShapeKind::ellipsoid:
-      return ellipsoid_point(n, d);
-    case ShapeKind::tapered_capsule:
-      return taper_point(n, d);
-    default:
-      return one_by_one(d);
-  }
-}
-
-/// A rotation or its inverse, of one matrix per lane.
-template <typename T>
-[[gnu::always_inline]] static inline Vec3<T> turned(const Lanes<T>* m, const Vec3<T>& v) {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-          m[6] * v.x + m[7] * v.y + m[8] * v.z};
-}
-template <typename T>
-[[gnu::always_inline]] static inline Vec3<T> turned_back(const Lanes<T>* m, const Vec3<T>& v) {
-  return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
-          m[2] * v.x + m[5] * v.y + m[8] * v.z};
 }
 
 /// The vertex of a hull that is farthest along d, times `scale`.

@@ -5,6 +5,7 @@
 #include "pipeline/kernels/hull/hull_contacts.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/hull_search.wide.h"
+#include "pipeline/kernels/hull/verdicts.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -19,10 +20,16 @@ class HullAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
     HullAnswers answers(job);
-    for (std::uint32_t i = 0; i < job.count; i += kChunk) {
-      const std::uint32_t left = job.count - i;
-      answers.chunk(i, left < kChunk ? left : kChunk);
+    if constexpr (Level == 0) {
+      // Most need no more.
+      Verdicts::run(job, [&](std::uint32_t i) { answers.take(i); });
+    } else {
+      for (std::uint32_t i = 0; i < job.count; ++i) {
+        fetch_ahead(job, i);
+        answers.take(i);
+      }
     }
+    answers.answer_taken();
     return answers.uncertified_;
   }
 
@@ -32,26 +39,21 @@ class HullAnswers {
 
   explicit HullAnswers(NarrowJob& job) : job_(job) {}
 
-  void chunk(std::uint32_t begin, std::uint32_t count) {
-    std::uint32_t placed = 0;
-    for (std::uint32_t i = begin; i < begin + count; ++i) {
-      HullPair& pair = pair_[placed];
-      fetch_ahead(job_, i);
-      if (!place(i, placed, pair)) {
-        give_up(i);
-      } else if (Level == 0 && balls_meet(pair)) {
-        job_.overlap[i] = 1;
-      } else {
-        ++placed;
-      }
-    }
+  void take(std::uint32_t i) {
+    if (!place(i, taken_, pair_[taken_])) return give_up(i);
+    if (++taken_ == kChunk) answer_taken();
+  }
+
+  void answer_taken() {
+    if (taken_ == 0) return;
     HullLimits limits{0.0, Level == 0};
     if (Level == 1) limits.far = __builtin_inf();
     if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
-    HullSearch<typename Shapes::Seconds>(pair_, placed, limits).run();
-    for (std::uint32_t i = 0; i < placed; ++i) {
+    HullSearch<typename Shapes::Seconds>(pair_, taken_, limits).run();
+    for (std::uint32_t i = 0; i < taken_; ++i) {
       if (!answer(pair_[i], i)) give_up(pair_[i].index);
     }
+    taken_ = 0;
   }
 
   /// Beyond all distances that occur.
@@ -62,19 +64,6 @@ class HullAnswers {
     return shapes_.place(job_, job_.pairs[i], slot, pair) &&
            pair.first->vertex_count <= kMostHullVertices &&
            pair.second->vertex_count <= kMostHullVertices;
-  }
-
-  static bool balls_meet(const HullPair& pair) {
-    double middle[3];
-    turn3(pair.turn, pair.second->center, middle);
-    double square = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double d = pair.first->center[k] - (middle[k] + pair.shift[k]);
-      square += d * d;
-    }
-    const double doubt = kDoubleError * pair.size;
-    const double reach = pair.first->inner_radius + pair.second->inner_radius - doubt;
-    return reach > 0.0 && square < reach * reach;
   }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
@@ -220,6 +209,7 @@ class HullAnswers {
   NarrowJob& job_;
   Shapes shapes_;
   std::uint32_t uncertified_ = 0;
+  std::uint32_t taken_ = 0;
   HullPair pair_[kChunk];
   HullDepth depth_;
 };

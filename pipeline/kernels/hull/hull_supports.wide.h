@@ -18,30 +18,62 @@ constexpr float second_pattern(std::uint32_t number) {
   return number_pattern(number << 16U);
 }
 
-/// Vertices of hulls that are farthest along directions, in float and in the hulls' own frames.
+/// Heights of sixteen vertices, or of the highest in each sixteenth of more, a row for each lane,
+/// and which sixteen they are of.
+struct VertexHeights {
+  alignas(64) float height[kLanes * kLanes];
+  alignas(64) float block[kLanes * kLanes];
+};
+
+/// Calls found(lane, vertex) with the number of the vertex of hull[lane] that is farthest along the
+/// lane's direction, in float and in the hull's own frame, for all lanes `active`.
+template <typename Found>
+[[gnu::always_inline]] static inline void for_farthest_vertices(const HullShape* const* hull,
+                                                                const Vec3<float>& direction,
+                                                                Mask16 active, VertexHeights& rows,
+                                                                Found&& found) {
+  alignas(64) float along[3][kLanes];
+  direction.x.store(along[0]);
+  direction.y.store(along[1]);
+  direction.z.store(along[2]);
+  for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    const float d[3] = {along[0][lane], along[1][lane], along[2][lane]};
+    heights(*hull[lane], d, rows.height + lane * kLanes, rows.block + lane * kLanes);
+  }
+  alignas(64) float highest[kLanes];
+  reduce_max_rows(rows.height).store_unaligned(highest);
+  for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    found(lane, vertex_of(*hull[lane], highest[lane], rows.height + lane * kLanes,
+                          rows.block + lane * kLanes));
+  }
+}
+
+/// Those vertices; 0 in other lanes.
+[[gnu::noinline]] static Vec3<float> farthest_vertices(const HullShape* const* hull,
+                                                       const Vec3<float>& direction, Mask16 active,
+                                                       VertexHeights& rows) {
+  alignas(64) float x[3][kLanes] = {};
+  for_farthest_vertices(hull, direction, active, rows, [&](unsigned lane, std::uint32_t vertex) {
+    for (int i = 0; i < 3; ++i) x[i][lane] = hull[lane]->vertex_float[i][vertex];
+  });
+  return {Floats::load(x[0]), Floats::load(x[1]), Floats::load(x[2])};
+}
+
+/// Vertices of hulls that are farthest along directions, and their numbers.
 class FarthestVertices {
  public:
   void put(int lane, const HullShape& hull) { hull_[lane] = &hull; }
 
   void find(const Vec3<float>& direction, Mask16 active) {
-    direction.x.store(direction_[0]);
-    direction.y.store(direction_[1]);
-    direction.z.store(direction_[2]);
-    for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
-      const int lane = static_cast<int>(first(rest));
-      const float d[3] = {direction_[0][lane], direction_[1][lane], direction_[2][lane]};
-      heights(*hull_[lane], d, height_ + lane * kLanes, block_ + lane * kLanes);
-    }
-    alignas(64) float highest[kLanes];
-    reduce_max_rows(height_).store_unaligned(highest);
-    for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
-      const int lane = static_cast<int>(first(rest));
-      const HullShape& hull = *hull_[lane];
-      const std::uint32_t vertex =
-          vertex_of(hull, highest[lane], height_ + lane * kLanes, block_ + lane * kLanes);
-      number_[lane] = vertex;
-      for (int i = 0; i < 3; ++i) vertex_[i][lane] = hull.vertex_float[i][vertex];
-    }
+    for_farthest_vertices(hull_, direction, active, rows_,
+                          [&](unsigned lane, std::uint32_t vertex) {
+                            number_[lane] = vertex;
+                            for (int i = 0; i < 3; ++i) {
+                              vertex_[i][lane] = hull_[lane]->vertex_float[i][vertex];
+                            }
+                          });
   }
 
   [[nodiscard]] Vec3<float> vertex() const {
@@ -58,10 +90,8 @@ class FarthestVertices {
  private:
   const HullShape* hull_[kLanes] = {};
   std::uint32_t number_[kLanes] = {};
-  alignas(64) float direction_[3][kLanes] = {};
   alignas(64) float vertex_[3][kLanes] = {};
-  alignas(64) float height_[kLanes * kLanes] = {};
-  alignas(64) float block_[kLanes * kLanes] = {};
+  VertexHeights rows_;
 };
 
 /// The second's point that lies farthest along a direction, in the first's frame and scaled, and

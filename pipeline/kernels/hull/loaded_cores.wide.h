@@ -1,0 +1,188 @@
+#pragma once
+
+// Shapes of a block of pairs as cores in float lanes. Of hulls and a program's own sets no lanes
+// are made: all but their points.
+
+#include "pipeline/kernels/hull/core_lanes.wide.h"
+#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/pair_lanes.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::hull {
+
+struct LoadedCores {
+  CoreLanes<float> core;
+  Floats rounding;
+  /// At least the distance of a point of the core from its origin.
+  Floats reach;
+  /// In the middle, and the radius of a ball around it that lies in the core; where no point is
+  /// known to, a negative number.
+  Vec3<float> center;
+  Floats inner;
+};
+
+/// Of no set of a program's own a point is known without asking.
+inline constexpr float kNoInner = -1e30F;
+
+template <typename Side>
+[[gnu::noinline]] static void load_hulls(const NarrowJob& job, const PairBlock<float>& block,
+                                         LoadedCores& to) {
+  alignas(64) float column[6][Floats::kCount];
+  for (int lane = 0; lane < Floats::kCount; ++lane) {
+    const HullShape& hull = job.tables.hulls[shape_index<Side>(job, block, lane)];
+    for (int k = 0; k < 3; ++k) column[k][lane] = static_cast<float>(hull.center[k]);
+    column[3][lane] = static_cast<float>(hull.rounding);
+    column[4][lane] = static_cast<float>(reach_of(hull));
+    column[5][lane] = static_cast<float>(hull.inner_radius);
+  }
+  to.center = {Floats::load(column[0]), Floats::load(column[1]), Floats::load(column[2])};
+  to.rounding = Floats::load(column[3]);
+  to.reach = Floats::load(column[4]);
+  to.inner = Floats::load(column[5]);
+}
+
+template <typename Side>
+[[gnu::noinline]] static void load_own_sets(const NarrowJob& job, const PairBlock<float>& block,
+                                            LoadedCores& to) {
+  alignas(64) float column[2][Floats::kCount];
+  for (int lane = 0; lane < Floats::kCount; ++lane) {
+    const SupportShape& set = job.tables.supports[shape_index<Side>(job, block, lane)];
+    column[0][lane] = static_cast<float>(set.rounding);
+    column[1][lane] = static_cast<float>(set.radius);
+  }
+  to.rounding = Floats::load(column[0]);
+  to.reach = Floats::load(column[1]);
+  to.inner = Floats(kNoInner);
+}
+
+template <typename Side>
+[[gnu::always_inline]] static inline void load_boxes(const NarrowJob& job,
+                                                     const PairBlock<float>& block,
+                                                     LoadedCores& to) {
+  const BoxLanes<float> box = load_box<Side>(job, block);
+  Floats* n = to.core.number;
+  n[0] = box.half.x;
+  n[1] = box.half.y;
+  n[2] = box.half.z;
+  to.rounding = box.rounding;
+  to.inner = min(min(n[0], n[1]), n[2]);
+}
+
+template <typename Side>
+[[gnu::always_inline]] static inline void load_capsules(const NarrowJob& job,
+                                                        const PairBlock<float>& block,
+                                                        LoadedCores& to) {
+  const CapsuleLanes<float> capsule = load_capsule<Side>(job, block);
+  to.core.number[2] = capsule.half_length;
+  to.rounding = capsule.radius;
+}
+
+template <typename Side, typename Shape>
+[[gnu::always_inline]] static inline void load_spun_cores(const NarrowJob& job,
+                                                          const PairBlock<float>& block,
+                                                          const Shape* table, LoadedCores& to) {
+  const SpunLanes<float> spun = load_spun<Side>(job, block, table);
+  Floats* n = to.core.number;
+  n[0] = spun.radius;
+  n[2] = spun.half_length;
+  to.rounding = spun.rounding;
+  to.inner = min(n[0], n[2]);
+  if constexpr (__is_same(Shape, ConeShape)) {
+    // The distance of the side from the middle of the axis.
+    const Floats height = n[2] + n[2];
+    const Floats slant = sqrt(n[0] * n[0] + height * height);
+    to.inner = n[0] * (n[2] / max(slant, Floats(kLeastAcross<float>)));
+  }
+}
+
+template <typename Side>
+[[gnu::always_inline]] static inline void load_ellipsoids(const NarrowJob& job,
+                                                          const PairBlock<float>& block,
+                                                          LoadedCores& to) {
+  Floats r[4];
+  load_shapes<Side>(job, block, job.tables.ellipsoids, r);
+  const Floats most = max(max(r[0], r[1]), r[2]);
+  const Floats least = min(min(r[0], r[1]), r[2]);
+  const Floats zero(0.0F);
+  const Floats off = select(most > zero, least * (least / most), zero);
+  for (int k = 0; k < 3; ++k) to.core.number[k] = r[k];
+  to.core.number[3] = off;
+  to.rounding = r[3] + off;
+  to.inner = least - off;
+}
+
+template <typename Side>
+[[gnu::always_inline]] static inline void load_tapers(const NarrowJob& job,
+                                                      const PairBlock<float>& block,
+                                                      LoadedCores& to) {
+  Floats r[3];
+  load_shapes<Side>(job, block, job.tables.tapered_capsules, r);
+  const Floats zero(0.0F);
+  const Floats more = abs(r[1] - r[0]);
+  const LaneMask<float> is_ball = more >= r[2] + r[2];
+  Floats* n = to.core.number;
+  n[0] = select(is_ball, zero, more);
+  n[1] = select(r[1] > r[0], r[2], -r[2]);
+  n[2] = select(is_ball, n[1], -n[1]);
+  to.rounding = select(is_ball, max(r[0], r[1]), min(r[0], r[1]));
+  to.center = {zero, zero, select(is_ball, n[1], zero)};
+  to.reach = n[0] + r[2];
+}
+
+template <typename Side>
+[[gnu::always_inline]] static inline void load_triangles(const NarrowJob& job,
+                                                         const PairBlock<float>& block,
+                                                         LoadedCores& to) {
+  const TriangleLanes<float> triangle = load_triangle<Side>(job, block);
+  const Vec3<float>* v = triangle.vertex;
+  for (int i = 0; i < 3; ++i) {
+    to.core.number[3 * i] = v[i].x;
+    to.core.number[3 * i + 1] = v[i].y;
+    to.core.number[3 * i + 2] = v[i].z;
+  }
+  to.rounding = triangle.rounding;
+  to.center = (v[0] + v[1] + v[2]) * Floats(1.0F / 3.0F);
+  to.reach = max(max(taxicab(v[0]), taxicab(v[1])), taxicab(v[2]));
+}
+
+/// All are of one kind.
+template <typename Side>
+[[gnu::noinline]] static void load_cores(const NarrowJob& job, const PairBlock<float>& block,
+                                         ShapeKind kind, LoadedCores& to) {
+  const Floats zero(0.0F);
+  Floats* n = to.core.number;
+  for (int i = 0; i < kCoreNumbers; ++i) n[i] = zero;
+  to.core.kind = kind;
+  to.center = {zero, zero, zero};
+  to.inner = zero;
+  switch (kind) {
+    case ShapeKind::sphere:
+      to.rounding = load_sphere<Side>(job, block);
+      break;
+    case ShapeKind::capsule:
+      load_capsules<Side>(job, block, to);
+      break;
+    case ShapeKind::box:
+      load_boxes<Side>(job, block, to);
+      break;
+    case ShapeKind::cylinder:
+      load_spun_cores<Side>(job, block, job.tables.cylinders, to);
+      break;
+    case ShapeKind::cone:
+      load_spun_cores<Side>(job, block, job.tables.cones, to);
+      break;
+    case ShapeKind::ellipsoid:
+      load_ellipsoids<Side>(job, block, to);
+      break;
+    case ShapeKind::tapered_capsule:
+      return load_tapers<Side>(job, block, to);
+    case ShapeKind::triangle:
+      return load_triangles<Side>(job, block, to);
+    case ShapeKind::support:
+      return load_own_sets<Side>(job, block, to);
+    default:
+      return load_hulls<Side>(job, block, to);
+  }
+  to.reach = n[0] + n[1] + n[2];
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::hull
