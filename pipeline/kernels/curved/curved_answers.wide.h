@@ -129,10 +129,9 @@ class CurvedAnswers {
     taken_ = 0;
   }
 
-  /// Rounding, and points of a program's own set that contradict each other, may exchange bounds.
-  static double doubt_between(double lower, double upper) {
-    return upper > lower ? upper - lower : 0.0;
-  }
+  /// Rounding, and points of a program's own set that contradict each other, may exchange bounds:
+  /// by how much says how far either is wrong.
+  static double doubt_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 

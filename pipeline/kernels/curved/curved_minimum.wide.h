@@ -43,11 +43,13 @@ static inline void span_across(const double* n, double (*e)[3]) {
 
 class LocalMinimum {
  public:
-  /// Finds the minimum near a unit direction: of the corners of a face of the polytope and the
-  /// points of the first in them. False if there is none.
-  bool find(const CurvedPair& pair, const double* const* corner, const double* const* mine,
-            const double* near) {
+  /// Finds the minimum near a unit direction: of three points of the difference around it and the
+  /// points of the first in them. Where the cores are `apart` it is below zero, and there is but
+  /// one. False if there is none.
+  bool find(const CurvedPair& pair, const double (*corner)[3], const double (*mine)[3],
+            const double* near, bool apart = false) {
     pair_ = &pair;
+    sign_ = apart ? -1.0 : 1.0;
     for (int k = 0; k < 3; ++k) normal_[k] = near[k];
     take_points(corner, mine);
     is_flat_ = lie_flat(0) || lie_flat(1);
@@ -109,6 +111,18 @@ class LocalMinimum {
   /// How far the origin's foot is from where the simple part is met.
   [[nodiscard]] double miss() const { return miss_; }
 
+  /// The point of the difference that is met.
+  void write_difference(double* x) const {
+    if (is_flat_) {
+      for (int k = 0; k < 3; ++k) x[k] = height_ * normal_[k];
+      return;
+    }
+    met(x);
+    for (std::uint32_t i = 0; i < sum_.segments; ++i) {
+      for (int k = 0; k < 3; ++k) x[k] += at_[i] * sum_.segment[i].along[k];
+    }
+  }
+
   /// The point of the first that is met.
   void write_point(double* point) const {
     if (is_flat_) {
@@ -140,12 +154,15 @@ class LocalMinimum {
   /// second.
   static constexpr double kLeastSine = 1e-3;
   static constexpr double kFlatSine = 0.4;
+  /// Above this a direction across loses no digits.
+  static constexpr double kSteepSine = 0.25;
   /// Of curvatures, over the height, for what rounding takes.
   static constexpr double kMargin = 1e-6;
   /// Heights that are the same but for rounding.
   static constexpr double kLevel = 1e-13;
+  static constexpr double kLevelFace = 2e-15;
 
-  void take_points(const double* const* corner, const double* const* mine) {
+  void take_points(const double (*corner)[3], const double (*mine)[3]) {
     side_[0].form = &pair_->first;
     side_[1].form = &pair_->second;
     for (int i = 0; i < 3; ++i) {
@@ -203,6 +220,10 @@ class LocalMinimum {
     if (!(area > kLeastSine * __builtin_sqrt(dot3(e[0], e[0]) * dot3(e[1], e[1])))) return false;
     const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
     for (double& x : n) x *= sign / area;
+    // Cores that are apart are as far as a point of the face is, which has to be level.
+    for (int i = 0; i < 2 && sign_ < 0.0; ++i) {
+      if (!(__builtin_fabs(dot3(n, e[i])) <= kLevelFace)) return false;
+    }
     return meet_flat(n, side, at[0], [&](const double* foot) {
       double least = __builtin_inf();
       for (int i = 0; i < 3; ++i) {
@@ -245,7 +266,7 @@ class LocalMinimum {
     double foot[3];
     for (int k = 0; k < 3; ++k) foot[k] = height_ * n[k] - other[k];
     inside_[0] = inside(foot);
-    if (!(height_ > 0.0) || !(inside_[0] > 0.0)) return false;
+    if (!(sign_ * height_ > 0.0) || !(inside_[0] > 0.0)) return false;
     for (int k = 0; k < 3; ++k) {
       normal_[k] = n[k];
       flat_point_[k] = side == 0 ? foot[k] : other[k];
@@ -353,6 +374,7 @@ class LocalMinimum {
     place.direction(unit, s.axis);
     for (int k = 0; k < 3; ++k) s.along[k] = s.axis[k];
     s.cosine = 0.0;
+    s.sine = 1.0;
     s.length = length;
     s.radius = 0.0;
     return true;
@@ -364,6 +386,7 @@ class LocalMinimum {
     place.direction(axis, s.axis);
     s.length = __builtin_sqrt(radius * radius + height * height);
     s.cosine = radius / s.length;
+    s.sine = height / s.length;
     s.radius = radius;
     return radius > 0.0 && height > 0.0;
   }
@@ -377,12 +400,25 @@ class LocalMinimum {
     return sine;
   }
 
+  /// Across an axis towards the normal, unit. What rounding leaves along the axis grows as both
+  /// become parallel: then it is taken off once more.
+  void out_of(const double* axis, double* out) const {
+    double along = dot3(axis, normal_);
+    for (int k = 0; k < 3; ++k) out[k] = normal_[k] - along * axis[k];
+    double square = dot3(out, out);
+    if (square < kSteepSine * kSteepSine) {
+      along = dot3(axis, out);
+      for (int k = 0; k < 3; ++k) out[k] -= along * axis[k];
+      square = dot3(out, out);
+    }
+    const double over = 1.0 / __builtin_sqrt(square);
+    for (int k = 0; k < 3; ++k) out[k] *= over;
+  }
+
   /// From the middle of a disc to its point farthest along the normal.
   void rim_of(const SimpleSum::Disc& disc, double* rim) const {
-    const double along = dot3(disc.axis, normal_);
-    for (int k = 0; k < 3; ++k) rim[k] = normal_[k] - along * disc.axis[k];
-    const double scale = disc.radius / __builtin_sqrt(dot3(rim, rim));
-    for (int k = 0; k < 3; ++k) rim[k] *= scale;
+    out_of(disc.axis, rim);
+    for (int k = 0; k < 3; ++k) rim[k] *= disc.radius;
   }
 
   /// From the middle of an ellipsoid to its point farthest along the normal.
@@ -519,7 +555,7 @@ class LocalMinimum {
     for (int k = 0; k < 3; ++k) across[k] = to[k] - along * s.axis[k];
     const double length = __builtin_sqrt(dot3(across, across));
     if (!(length > kLeastSine)) return false;
-    const double scale = __builtin_sqrt(1.0 - s.cosine * s.cosine) / length;
+    const double scale = s.sine / length;
     for (int k = 0; k < 3; ++k) normal_[k] = s.cosine * s.axis[k] + scale * across[k];
     return true;
   }
@@ -555,7 +591,7 @@ class LocalMinimum {
       // Along the circle, which bends towards its own middle.
       const SimpleSum::Segment& s = sum_.segment[0];
       sine_of(s.axis, e[0]);
-      q[0] = -(height - s.cosine * dot3(w, s.axis)) / (1.0 - s.cosine * s.cosine);
+      q[0] = -(height - s.cosine * dot3(w, s.axis)) / (s.sine * s.sine);
     }
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double across[3];
@@ -584,11 +620,9 @@ class LocalMinimum {
 
   /// The line of a cone's side that is met, from the tip on.
   void turn_to_normal(SimpleSum::Segment& s) const {
-    const double sine = __builtin_sqrt(1.0 - s.cosine * s.cosine);
-    for (int k = 0; k < 3; ++k) {
-      const double out = (normal_[k] - s.cosine * s.axis[k]) / sine;
-      s.along[k] = s.cosine * out - sine * s.axis[k];
-    }
+    double out[3];
+    out_of(s.axis, out);
+    for (int k = 0; k < 3; ++k) s.along[k] = s.cosine * out[k] - s.sine * s.axis[k];
   }
 
   /// Where along the segments the foot of the origin is; false if it is beyond an end.
@@ -600,7 +634,7 @@ class LocalMinimum {
     double w[3];
     met(w);
     height_ = dot3(w, normal_);
-    if (!(height_ > 0.0)) return false;
+    if (!(sign_ * height_ > 0.0)) return false;
     double across[3];
     for (int k = 0; k < 3; ++k) across[k] = w[k] - height_ * normal_[k];
     const double slope[2] = {count > 0 ? dot3(across, sum_.segment[0].along) : 0.0,
@@ -623,6 +657,7 @@ class LocalMinimum {
   const CurvedPair* pair_;
   NearPoints side_[2];
   SimpleSum sum_;
+  double sign_;
   double normal_[3];
   double height_;
   double miss_;

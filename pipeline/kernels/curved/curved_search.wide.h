@@ -3,7 +3,7 @@
 // Closest points of pairs of cores in double, one pair per lane, a lane that is done taking the
 // next pair.
 
-#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/curved/curved_tangent.wide.h"
 #include "pipeline/kernels/hull/search_lanes.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
@@ -25,6 +25,7 @@ class CurvedSearch {
         end_(pairs + count),
         limits_(limits),
         kind_{pairs->first.kind, pairs->second.kind},
+        looks_(may_have_features(*pairs)),
         lanes_(has_own(*pairs)) {}
 
   void run() {
@@ -41,6 +42,10 @@ class CurvedSearch {
           refill(lane);
         }
       }
+      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+        const int lane = static_cast<int>(first(rest));
+        if (looks_ && is_near(lane) && ends_on_features(lane)) refill(lane);
+      }
     }
   }
 
@@ -48,6 +53,10 @@ class CurvedSearch {
   using Search = hull::SearchLanes<double, true>;
   static constexpr int kWidth = Search::kWidth;
   static constexpr double kDoubt = 1e-14;
+  /// The lower bound of a distance over the upper.
+  static constexpr double kNear = 0.75;
+  /// Bounds of a distance that features end in differ by no more.
+  static constexpr double kClosed = 1e-14;
 
   static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
   static constexpr double kBeside[3] = {-0.21875, 0.15625, 0.40625};
@@ -154,6 +163,84 @@ class CurvedSearch {
     for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
   }
 
+  /// Nothing is known of a program's own set, but that it is round more often than not.
+  static bool may_have_features(const CurvedPair& pair) {
+    if (!has_own(pair)) return true;
+    const ShapeKind kind = pair.first.kind;
+    return kind == ShapeKind::sphere || kind == ShapeKind::ellipsoid || kind == ShapeKind::support;
+  }
+
+  /// Whether the features that are closest are likely to be known.
+  [[nodiscard]] bool is_near(int lane) const {
+    const std::uint32_t steps = lanes_.steps[lane];
+    if (steps != 4 && steps != 7 && steps != 12) return false;
+    return lanes_.height_along[lane] > kNear * lanes_.square[lane];
+  }
+
+  /// Whether the closest points are where the features that the simplex tells of are closest: where
+  /// a side is curved, steps go ever slower towards them.
+  bool ends_on_features(int lane) {
+    CurvedPair& pair = *pair_[lane];
+    const double length = __builtin_sqrt(lanes_.square[lane]);
+    double near[3];
+    for (int k = 0; k < 3; ++k) near[k] = -lanes_.gap[k][lane] / length;
+    const bool ends = has_own(pair) ? ends_on_tangent(pair, near) : ends_on_sum(lane, pair, near);
+    if (!ends) return false;
+    for (int k = 0; k < 3; ++k) pair.gap[k] = pair.difference[0][k];
+    pair.count = 1;
+    pair.state = CurvedState::apart;
+    return true;
+  }
+
+  bool ends_on_sum(int lane, CurvedPair& pair, const double* near) {
+    double corner[3][3];
+    double mine[3][3];
+    take_simplex(lane, corner, mine);
+    LocalMinimum found;
+    if (!found.find(pair, corner, mine, near, true)) return false;
+    double w[3];
+    double on_first[3];
+    difference_point(pair, found.normal(), w, on_first);
+    found.write_difference(pair.difference[0]);
+    found.write_point(pair.on_first[0]);
+    pair.upper = __builtin_sqrt(dot3(pair.difference[0], pair.difference[0]));
+    pair.lower = -dot3(found.normal(), w);
+    const double open = pair.upper - pair.lower;
+    return open <= kClosed && open >= -Search::kNoGain;
+  }
+
+  static bool ends_on_tangent(CurvedPair& pair, const double* near) {
+    TangentMinimum found;
+    if (!found.find(pair, near, pair.size, true)) return false;
+    for (int k = 0; k < 3; ++k) {
+      pair.difference[0][k] = found.difference()[k];
+      pair.on_first[0][k] = found.point()[k];
+    }
+    pair.upper = __builtin_sqrt(dot3(pair.difference[0], pair.difference[0]));
+    pair.lower = -found.height();
+    return pair.upper - pair.lower <= Search::kOwnGain * pair.upper;
+  }
+
+  /// The points of the simplex; the last again where there are fewer than three.
+  void take_simplex(int lane, double (*corner)[3], double (*mine)[3]) const {
+    int count = 0;
+    for (int s = 0; s < hull::kSlots; ++s) {
+      if (lanes_.present[s][lane] > 0.0) {
+        for (int k = 0; k < 3; ++k) {
+          corner[count][k] = lanes_.slot[s][k][lane];
+          mine[count][k] = lanes_.slot_mine[s][k][lane];
+        }
+        ++count;
+      }
+    }
+    for (; count < 3; ++count) {
+      for (int k = 0; k < 3; ++k) {
+        corner[count][k] = corner[count - 1][k];
+        mine[count][k] = mine[count - 1][k];
+      }
+    }
+  }
+
   void hand_back(int lane) {
     CurvedPair& pair = *pair_[lane];
     pair.count = 0;
@@ -179,6 +266,7 @@ class CurvedSearch {
   CurvedLimits limits_;
   Mask16 active_ = 0;
   ShapeKind kind_[2];
+  bool looks_;
   CurvedPair* pair_[kWidth] = {};
   bool is_askew_[kWidth] = {};
   alignas(64) double number_[2][hull::kCoreNumbers][kWidth] = {};

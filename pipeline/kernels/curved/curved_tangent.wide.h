@@ -12,9 +12,9 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class TangentMinimum {
  public:
-  /// From a unit direction, of a difference that reaches so far. False if there is none near that
-  /// is smooth.
-  bool find(const CurvedPair& pair, const double* near, double reach) {
+  /// From a unit direction, of a difference that reaches so far. Where the cores are `apart` the
+  /// depth is below zero. False if there is none near that is smooth.
+  bool find(const CurvedPair& pair, const double* near, double reach, bool apart = false) {
     pair_ = &pair;
     const double miss = kMiss * reach;
     for (int k = 0; k < 3; ++k) from_[k] = near[k];
@@ -29,7 +29,7 @@ class TangentMinimum {
       const double next[2] = {at_[0] + step[0], at_[1] + step[1]};
       if (!(dot2(next, next) <= kWidest * kWidest)) return false;
       look(next);
-      if (dot2(slope_, slope_) <= miss * miss) return height_ > 0.0;
+      if (dot2(slope_, slope_) <= miss * miss) return apart ? height_ < 0.0 : height_ > 0.0;
       if (!(dot2(slope_, slope_) < dot2(before, before))) return false;
       learn(step, before);
     }

@@ -19,6 +19,7 @@ struct SimpleSum {
     /// edge or a cylinder's side the axis is its direction, and the cosine 0.
     double axis[3];
     double cosine;
+    double sine;
     double length;
     /// Of a cone's disc, else 0.
     double radius;
