@@ -1,4 +1,6 @@
 // What runs a target: libFuzzer, or a plain program that replays files and the target's own seeds.
+// A file whose name ends in .inputs holds many inputs, one after the other: of each first its size,
+// in four bytes, the lowest first.
 
 #include "tests/fuzz/target.h"
 
@@ -20,31 +22,65 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Of all files of a folder, by name, of a file of many, or one file.
+std::vector<std::string> inputs_of(const std::filesystem::path& path) {
+  std::vector<std::string> inputs;
+  if (std::filesystem::is_directory(path)) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) files.push_back(entry);
+    std::sort(files.begin(), files.end());
+    for (const std::filesystem::path& file : files) inputs.push_back(content_of(file));
+    return inputs;
+  }
+  const std::string content = content_of(path);
+  if (path.extension() != ".inputs") return {content};
+  for (std::size_t at = 0; at + 4 <= content.size();) {
+    std::size_t size = 0;
+    for (std::size_t i = 4; i-- > 0;) size = size << 8U | bytes_of(content)[at + i];
+    inputs.push_back(content.substr(at + 4, size));
+    at += 4 + size;
+  }
+  return inputs;
+}
+
 /// One file each, named by number.
-void write_seeds(const std::filesystem::path& folder) {
+void write_each(const std::vector<std::string>& inputs, const std::filesystem::path& folder,
+                const std::string& name) {
   std::filesystem::create_directories(folder);
   std::size_t number = 0;
-  for (const std::string& seed : fuzz_seeds()) {
-    std::ofstream(folder / ("seed_" + std::to_string(number++)), std::ios::binary) << seed;
+  for (const std::string& input : inputs) {
+    std::ofstream(folder / (name + std::to_string(number++)), std::ios::binary) << input;
   }
 }
 
-[[maybe_unused]] void replay_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  fuzz(bytes_of({std::istreambuf_iterator<char>(file), {}}));
+void write_together(const std::vector<std::string>& inputs, const std::filesystem::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  for (const std::string& input : inputs) {
+    for (unsigned byte = 0; byte < 4; ++byte) {
+      file.put(static_cast<char>(input.size() >> 8 * byte & 0xFFU));
+    }
+    file << input;
+  }
 }
 
-/// Every file of a folder, by name, or one file.
-[[maybe_unused]] std::size_t replay(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) {
-    replay_file(path);
-    return 1;
+/// What a target does with inputs but to run them; false if nothing of it was asked for.
+bool handle_files(int argc, char** argv) {
+  const std::string option = argc > 1 ? argv[1] : "";
+  if (option == "--write-seeds" && argc == 3) {
+    write_each(fuzz_seeds(), argv[2], "seed_");
+  } else if (option == "--unpack" && argc == 4) {
+    write_each(inputs_of(argv[2]), argv[3], "kept_");
+  } else if (option == "--pack" && argc == 4) {
+    write_together(inputs_of(argv[2]), argv[3]);
+  } else {
+    return false;
   }
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(path)) files.push_back(entry);
-  std::sort(files.begin(), files.end());
-  for (const std::filesystem::path& file : files) replay_file(file);
-  return files.size();
+  return true;
 }
 
 }  // namespace
@@ -84,10 +120,7 @@ void does_not_hold(const char* file, int line, const std::string& what) {
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   testing::GTEST_FLAG(break_on_failure) = true;
-  if (*argc == 3 && std::string((*argv)[1]) == "--write-seeds") {
-    winnow::test::write_seeds((*argv)[2]);
-    std::exit(0);
-  }
+  if (winnow::test::handle_files(*argc, *argv)) std::exit(0);
   return 0;
 }
 
@@ -100,17 +133,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 int main(int argc, char** argv) {
   testing::GTEST_FLAG(break_on_failure) = true;
-  if (argc == 3 && std::string(argv[1]) == "--write-seeds") {
-    winnow::test::write_seeds(argv[2]);
-    return 0;
+  if (winnow::test::handle_files(argc, argv)) return 0;
+  std::vector<std::string> inputs = winnow::test::fuzz_seeds();
+  for (int i = 1; i < argc; ++i) {
+    for (std::string& input : winnow::test::inputs_of(argv[i])) inputs.push_back(std::move(input));
   }
-  std::size_t inputs = 0;
-  for (int i = 1; i < argc; ++i) inputs += winnow::test::replay(argv[i]);
-  for (const std::string& seed : winnow::test::fuzz_seeds()) {
-    winnow::test::fuzz(winnow::test::bytes_of(seed));
-    ++inputs;
-  }
-  std::printf("%zu inputs hold\n", inputs);
+  for (const std::string& input : inputs) winnow::test::fuzz(winnow::test::bytes_of(input));
+  std::printf("%zu inputs hold\n", inputs.size());
 }
 
 #endif
