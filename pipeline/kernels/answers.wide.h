@@ -44,6 +44,12 @@ template <typename T>
          (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
+/// Whether a kernel leaves pairs that it cannot be sure about to one in double.
+template <typename T>
+[[gnu::always_inline]] inline bool leaves_doubt(const NarrowJob& job) {
+  return sizeof(T) == sizeof(float) && job.beyond_doubt;
+}
+
 /// Eight bits as the lowest bits of eight bytes.
 [[gnu::always_inline]] inline std::uint64_t bytes_of_bits(Mask16 bits) {
   const std::uint64_t low = (bits & 0x7FU) * 0x02040810204081ULL & 0x0101010101010101ULL;
@@ -237,11 +243,38 @@ std::uint32_t answer_job(NarrowJob& job) {
   return uncertified;
 }
 
+/// Level boolean of tier robust: what float is sure about, and then the rest in double.
+template <typename Kind>
+std::uint32_t answer_sure_first(NarrowJob& job) {
+  NarrowJob part = job;
+  part.beyond_doubt = true;
+  const std::uint32_t doubtful = answer_job<Kind, float, kBoolean>(part);
+  constexpr std::uint32_t kRoom = 64;
+  BodyPair pairs[kRoom];
+  std::uint8_t overlap[kRoom];
+  std::uint32_t left[kRoom];
+  part.pairs = pairs;
+  part.overlap = overlap;
+  part.uncertified = left;
+  std::uint32_t uncertified = 0;
+  for (std::uint32_t from = 0; from < doubtful; from += kRoom) {
+    const std::uint32_t* const index = job.uncertified + from;
+    part.count = doubtful - from < kRoom ? doubtful - from : kRoom;
+    for (std::uint32_t i = 0; i < part.count; ++i) pairs[i] = job.pairs[index[i]];
+    const std::uint32_t count = answer_job<Kind, double, kBoolean>(part);
+    for (std::uint32_t i = 0; i < part.count; ++i) job.overlap[index[i]] = overlap[i];
+    // No more are left than were read, so what is still to be read is not written over.
+    for (std::uint32_t i = 0; i < count; ++i) left[i] = index[left[i]];
+    for (std::uint32_t i = 0; i < count; ++i) job.uncertified[uncertified++] = left[i];
+  }
+  return uncertified;
+}
+
 template <typename Kind>
 constexpr NarrowKernels narrow_kernels_of() {
   return {{answer_job<Kind, float, kBoolean>, answer_job<Kind, float, kDistance>,
            answer_job<Kind, float, kManifold>},
-          {answer_job<Kind, double, kBoolean>, answer_job<Kind, double, kDistance>,
+          {answer_sure_first<Kind>, answer_job<Kind, double, kDistance>,
            answer_job<Kind, double, kManifold>}};
 }
 

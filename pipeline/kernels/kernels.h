@@ -44,6 +44,8 @@ struct NarrowJob {
 
   /// Level boolean: 1 where the shapes share a point.
   std::uint8_t* overlap;
+  /// Level boolean: kernels in float certify nothing that those in double might answer otherwise.
+  bool beyond_doubt;
   /// Levels distance and manifold. Distance is negative by the penetration depth, and <= 0 exactly
   /// where the shapes share a point. At level manifold a pair farther apart than the margin may
   /// have any lower bound of its distance that is above the margin.

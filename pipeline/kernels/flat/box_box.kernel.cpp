@@ -196,11 +196,11 @@ struct BoxBox {
   // The lanes of boxes that overlap although edges are parallel, whose products have no sign. Out
   // of line: boxes that are turned any way do not come here.
   template <typename T>
-  [[gnu::noinline]] static Mask16 overlap_of_parallel(const BoxPair<T>& pair,
-                                                      const Lanes<T>& face) {
+  [[gnu::noinline]] static Mask16 overlap_of_parallel(const BoxPair<T>& pair, const Lanes<T>& face,
+                                                      const Lanes<T>& slack) {
     Lanes<T> left_out;
     const Lanes<T> s = max(face, largest_crossed_separation(pair, left_out));
-    return bits(s + left_out < -(pair.scale * Lanes<T>(kFlatSlack<T>)));
+    return bits(s + left_out < -slack);
   }
 
   // The lanes that what is measured tells apart or together, and those of boxes that overlap: for
@@ -216,9 +216,9 @@ struct BoxBox {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxPair<T> pair = box_pair(job, block);
-    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
+    const Lanes<T> slack = verdict_slack(job, pair.scale);
     const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
-    const Mask16 valid = bits(in_range(pair.scale * pair.scale));
+    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
     const Lanes<T> face = largest_face_separation(pair);
     Mask16 known = bits(face > reach);
     Mask16 over = 0;
@@ -229,12 +229,12 @@ struct BoxBox {
     }
     Mask16 unknown = ~known & valid & block.lanes();
     if (unknown != 0) {
-      const Mask16 inside = overlap_of_parallel(pair, face) & unknown;
+      const Mask16 inside = overlap_of_parallel(pair, face, slack) & unknown;
       known |= inside;
       over |= inside;
       unknown &= ~inside;
     }
-    if (unknown != 0) {
+    if (unknown != 0 && !leaves_doubt<T>(job)) {
       Mask16 settled_over = 0;
       known |= settle(pair, settled_over) & unknown;
       over |= settled_over & unknown;

@@ -351,9 +351,10 @@ struct BoxTriangle {
   // separate more than the other axes is as in `offer_product`. Out of line: where no edges are
   // parallel it is not called.
   template <typename T>
-  [[gnu::noinline]] static LaneMask<T> overlap_of_parallel(const BoxTrianglePair<T>& pair) {
+  [[gnu::noinline]] static LaneMask<T> overlap_of_parallel(const BoxTrianglePair<T>& pair,
+                                                           const Lanes<T>& slack) {
     const Lanes<T> zero(T(0));
-    Lanes<T> least = pair.scale * Lanes<T>(kFlatSlack<T>);
+    Lanes<T> least = slack;
     const auto is_parallel = [&](int j, const Lanes<T>& length2) __attribute__((always_inline)) {
       return length2 <= pair.b.length[j] * pair.b.length[j] * Lanes<T>(kParallelSquare<T>);
     };
@@ -375,8 +376,8 @@ struct BoxTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
-    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-    const Mask16 valid = bits(in_range(pair.scale * pair.scale));
+    const Lanes<T> slack = verdict_slack(job, pair.scale);
+    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
     const Lanes<T> reach = slack + pair.box_rounding + pair.b.rounding;
     const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
     const Lanes<T> above = pair.over_triangle();
@@ -388,7 +389,9 @@ struct BoxTriangle {
             apart = apart | (s > reach * pair.b.length[j]);
             over = over & (s < -(slack * pair.b.length[j]));
           });
-      if ((bits(apart | over) & valid) != valid) over = over | (overlap_of_parallel(pair) & !apart);
+      if ((bits(apart | over) & valid) != valid) {
+        over = over | (overlap_of_parallel(pair, slack) & !apart);
+      }
     }
     return answer_overlaps<BoxTriangleStage<T>>(job, block, pair, apart, over);
   }

@@ -542,16 +542,32 @@ template <typename Staged, typename T, typename Pair>
   return measure<kManifold, Staged>(pair, axis, pair.scale == pair.scale);
 }
 
+/// Of level boolean, over the scale. What float has read of a pair was rounded before: twice as
+/// much where it is to be sure.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> verdict_slack(const NarrowJob& job, const Lanes<T>& scale) {
+  return scale * Lanes<T>(leaves_doubt<T>(job) ? T(2) * kFlatSlack<T> : kFlatSlack<T>);
+}
+
+/// Lanes of sizes of which level boolean compares products of three lengths, and shares of them.
+template <typename T>
+[[gnu::always_inline]] inline LaneMask<T> in_verdict_range(const NarrowJob& job,
+                                                           const Lanes<T>& scale) {
+  const LaneMask<T> valid = in_range(scale * scale);
+  if (!leaves_doubt<T>(job)) return valid;
+  return valid & (scale > Lanes<T>(T(1e-8F))) & (scale < Lanes<T>(T(1e8F)));
+}
+
 /// Level boolean: the pairs that `apart` and `over` leave open are measured.
 template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
                                                      const Pair& pair, const LaneMask<T>& apart,
                                                      const LaneMask<T>& over) {
-  const Mask16 valid = bits(in_range(pair.scale * pair.scale));
+  const Mask16 valid = bits(in_verdict_range(job, pair.scale));
   Mask16 hit = bits(over);
   Mask16 known = hit | bits(apart);
   const Mask16 unknown = ~known & valid & block.lanes();
-  if (unknown != 0) {
+  if (unknown != 0 && !leaves_doubt<T>(job)) {
     CoreAnswer<T> core = measured<Staged, T>(pair);
     known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
     hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;

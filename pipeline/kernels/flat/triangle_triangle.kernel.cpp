@@ -312,8 +312,8 @@ struct TriangleTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const TrianglePair<T> pair(job, block);
-    const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-    const Mask16 valid = bits(in_range(pair.scale * pair.scale));
+    const Lanes<T> slack = verdict_slack(job, pair.scale);
+    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
     // An axis is at most as long as the edges' product: what is above the slack and the roundings
     // times that is separated by more.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;

@@ -42,13 +42,20 @@ struct WitnessLanes {
   Lanes<T> scale;
 };
 
-/// Tier fast answers whatever is a number: its bound says how sure the sign is.
+/// Whether only signs count that bounds prove. Tier fast answers whatever is a number: its bound
+/// says how sure the sign is.
+template <typename T>
+[[gnu::always_inline]] inline bool is_strict(const NarrowJob& job) {
+  return sizeof(T) == sizeof(double) || leaves_doubt<T>(job);
+}
+
 template <typename T>
 [[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
                                                      const Lanes<T>& bound, const Lanes<T>& scale,
-                                                     const LaneMask<T>& normal) {
+                                                     const LaneMask<T>& normal,
+                                                     bool strict = sizeof(T) == sizeof(double)) {
   const LaneMask<T> valid = in_range(scale * scale) & normal;
-  if constexpr (sizeof(T) == sizeof(double)) return bits(valid & (abs(distance) > bound));
+  if (strict) return bits(valid & (abs(distance) > bound));
   return bits(valid & (abs(distance) < Lanes<T>(kNoDistance<T>)));
 }
 
@@ -61,7 +68,7 @@ template <typename T>
   const Lanes<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
   const Lanes<T> error = square * Lanes<T>(T(4 * kRoundings) * kEpsilon<T>);
   write_overlap(job, block, bits(excess <= Lanes<T>(T(0))));
-  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)));
+  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)), is_strict<T>(job));
 }
 
 /// A distance along a normal, and whether it may be written.
@@ -79,7 +86,7 @@ template <typename T>
                                                  const Lanes<T>& distance, const Lanes<T>& bound,
                                                  const Lanes<T>& scale) {
   write_overlap(job, block, bits(distance <= Lanes<T>(T(0))));
-  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
+  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)), is_strict<T>(job));
 }
 
 /// Levels distance and manifold. `shortest` is the least |w| that has a direction.
@@ -205,7 +212,7 @@ template <typename T>
   write_overlap(job, block, bits(proof.high <= Lanes<T>(T(0))));
   const Lanes<T> error = proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const LaneMask<T> valid = in_narrow_range(proof.scale);
-  if constexpr (sizeof(T) == sizeof(double)) {
+  if (is_strict<T>(job)) {
     return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
   }
   return ~bits(valid & (abs(proof.high) < Lanes<T>(kNoDistance<T>)));
