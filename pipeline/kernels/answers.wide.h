@@ -243,9 +243,11 @@ std::uint32_t answer_job(NarrowJob& job) {
   return uncertified;
 }
 
-/// Level boolean of tier robust: what float is sure about, and then the rest in double.
+/// Level boolean of tier robust: what float is sure about, and then the rest in double. A block of
+/// float lanes takes as long as one of double, for twice as many pairs.
 template <typename Kind>
 std::uint32_t answer_sure_first(NarrowJob& job) {
+  if (job.count <= Doubles::kCount) return answer_job<Kind, double, kBoolean>(job);
   NarrowJob part = job;
   part.beyond_doubt = true;
   const std::uint32_t doubtful = answer_job<Kind, float, kBoolean>(part);
@@ -270,12 +272,13 @@ std::uint32_t answer_sure_first(NarrowJob& job) {
   return uncertified;
 }
 
+/// `sure_first`: not where loading pairs takes longer than the answer.
 template <typename Kind>
-constexpr NarrowKernels narrow_kernels_of() {
+constexpr NarrowKernels narrow_kernels_of(bool sure_first = true) {
   return {{answer_job<Kind, float, kBoolean>, answer_job<Kind, float, kDistance>,
            answer_job<Kind, float, kManifold>},
-          {answer_sure_first<Kind>, answer_job<Kind, double, kDistance>,
-           answer_job<Kind, double, kManifold>}};
+          {sure_first ? answer_sure_first<Kind> : answer_job<Kind, double, kBoolean>,
+           answer_job<Kind, double, kDistance>, answer_job<Kind, double, kManifold>}};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME
