@@ -316,14 +316,11 @@ class CurvedDepth {
   /// True if there is a local minimum near the nearest face, which is kept.
   bool look_for_minimum() {
     if (minima_ == kMostMinima) return false;
-    double corner[3][3];
-    double mine[3][3];
+    const double* corner[3];
+    const double* mine[3];
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t vertex = vertex_[face_][i];
-      for (int k = 0; k < 3; ++k) {
-        corner[i][k] = point_[vertex][k];
-        mine[i][k] = mine_[vertex][k];
-      }
+      corner[i] = point_[vertex_[face_][i]];
+      mine[i] = mine_[vertex_[face_][i]];
     }
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     LocalMinimum found;

@@ -46,7 +46,7 @@ class LocalMinimum {
   /// Finds the minimum near a unit direction: of three points of the difference around it and the
   /// points of the first in them. Where the cores are `apart` it is below zero, and there is but
   /// one. False if there is none.
-  bool find(const CurvedPair& pair, const double (*corner)[3], const double (*mine)[3],
+  bool find(const CurvedPair& pair, const double* const* corner, const double* const* mine,
             const double* near, bool apart = false) {
     pair_ = &pair;
     sign_ = apart ? -1.0 : 1.0;
@@ -162,7 +162,7 @@ class LocalMinimum {
   static constexpr double kLevel = 1e-13;
   static constexpr double kLevelFace = 2e-15;
 
-  void take_points(const double (*corner)[3], const double (*mine)[3]) {
+  void take_points(const double* const* corner, const double* const* mine) {
     side_[0].form = &pair_->first;
     side_[1].form = &pair_->second;
     for (int i = 0; i < 3; ++i) {

@@ -193,9 +193,16 @@ class CurvedSearch {
   }
 
   bool ends_on_sum(int lane, CurvedPair& pair, const double* near) {
-    double corner[3][3];
-    double mine[3][3];
-    take_simplex(lane, corner, mine);
+    double point[3][3];
+    double on_first_core[3][3];
+    const std::uint32_t count = take_simplex(lane, point, on_first_core);
+    const double* corner[3];
+    const double* mine[3];
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t at = i < count ? i : count - 1;
+      corner[i] = point[at];
+      mine[i] = on_first_core[at];
+    }
     LocalMinimum found;
     if (!found.find(pair, corner, mine, near, true)) return false;
     double w[3];
@@ -221,37 +228,23 @@ class CurvedSearch {
     return pair.upper - pair.lower <= Search::kOwnGain * pair.upper;
   }
 
-  /// The points of the simplex; the last again where there are fewer than three.
-  void take_simplex(int lane, double (*corner)[3], double (*mine)[3]) const {
-    int count = 0;
+  /// The points of the simplex and those of the first in them; returns how many.
+  std::uint32_t take_simplex(int lane, double (*point)[3], double (*mine)[3]) const {
+    std::uint32_t count = 0;
     for (int s = 0; s < hull::kSlots; ++s) {
-      if (lanes_.present[s][lane] > 0.0) {
-        for (int k = 0; k < 3; ++k) {
-          corner[count][k] = lanes_.slot[s][k][lane];
-          mine[count][k] = lanes_.slot_mine[s][k][lane];
-        }
-        ++count;
-      }
-    }
-    for (; count < 3; ++count) {
+      if (!(lanes_.present[s][lane] > 0.0)) continue;
       for (int k = 0; k < 3; ++k) {
-        corner[count][k] = corner[count - 1][k];
-        mine[count][k] = mine[count - 1][k];
+        point[count][k] = lanes_.slot[s][k][lane];
+        mine[count][k] = lanes_.slot_mine[s][k][lane];
       }
+      ++count;
     }
+    return count;
   }
 
   void hand_back(int lane) {
     CurvedPair& pair = *pair_[lane];
-    pair.count = 0;
-    for (int s = 0; s < hull::kSlots; ++s) {
-      if (!(lanes_.present[s][lane] > 0.0)) continue;
-      for (int k = 0; k < 3; ++k) {
-        pair.difference[pair.count][k] = lanes_.slot[s][k][lane];
-        pair.on_first[pair.count][k] = lanes_.slot_mine[s][k][lane];
-      }
-      ++pair.count;
-    }
+    pair.count = take_simplex(lane, pair.difference, pair.on_first);
     for (int k = 0; k < 3; ++k) {
       pair.difference[3][k] = lanes_.latest[k][lane];
       pair.on_first[3][k] = lanes_.latest_mine[k][lane];
