@@ -4,6 +4,7 @@
 #include "pipeline/kernels/hull/hull_features.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -114,9 +115,44 @@ struct HullOverPlane {
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     if constexpr (L == kManifold) {
       return FeetAnswers<4>::write<L>(job, block, feet<T, 4>(job, block));
+    } else if constexpr (L == kBoolean && sizeof(T) == sizeof(float)) {
+      return FeetAnswers<1>::write<L>(job, block, heights(job, block));
     } else {
       return FeetAnswers<1>::write<L>(job, block, feet<T, 1>(job, block));
     }
+  }
+
+  /// How high the lowest vertices are, whichever these are.
+  [[gnu::noinline]] static Feet<float, 1> heights(const NarrowJob& job,
+                                                  const PairBlock<float>& block) {
+    const Plane<float> plane = load_plane<SideB>(job, block);
+    const Turn<float> turn = load_turn<SideA>(job, block);
+    const Vec3<float> up = rotation(turn).to_local(plane.normal);
+    alignas(64) float normal[3][kLanes];
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+    alignas(64) float low[kLanes][kLanes];
+    alignas(64) float rounding[kLanes];
+    alignas(64) float reach[kLanes];
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      const HullShape& shape =
+          job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
+      rounding[lane] = static_cast<float>(shape.rounding);
+      reach[lane] = 2.0F * static_cast<float>(hull::reach_of(shape));
+      const Vec3<float> n{normal[0][lane], normal[1][lane], normal[2][lane]};
+      Floats least = hull::along(shape.vertex_float, 0, n);
+      for (std::uint32_t row = kLanes; row < shape.vertex_count; row += kLanes) {
+        least = min(least, hull::along(shape.vertex_float, row, n));
+      }
+      least.store(low[lane]);
+    }
+    Feet<float, 1> r;
+    r.height[0] = plane.height + reduce_min_rows(low[0]);
+    r.rounding = Floats::load(rounding);
+    r.normal = plane.normal;
+    r.scale = plane.scale + r.rounding + Floats::load(reach) + doubt(turn);
+    return r;
   }
 
   template <typename T, int Count>

@@ -62,30 +62,57 @@ struct TriangleFeet {
   }
 };
 
-struct BoxFeet {
-  /// The four vertices of the face that looks most towards the plane, lowest first, the one
-  /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
-  template <typename T>
-  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Lanes<T> zero(T(0));
-    const Plane<T> plane = load_plane<SideB>(job, block);
+/// A box over a plane, by its half axes.
+template <typename T>
+struct BoxOverPlane {
+  Plane<T> plane;
+  Lanes<T> cosine[3];       // of axes and normal
+  LaneMask<T> negative[3];  // half axes that are turned round, so that they point down
+  Vec3<T> down[3];
+  Lanes<T> rise[3];  // of an axis from its lower end to the middle
+  Lanes<T> rounding;
+  Lanes<T> scale;
+
+  [[gnu::always_inline]] BoxOverPlane(const NarrowJob& job, const PairBlock<T>& block) {
+    plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const BoxLanes<T> a = load_box<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
     const Vec3<T> arm[3] = {axes.x * a.half.x, axes.y * a.half.y, axes.z * a.half.z};
     const Vec3<T> local = axes.to_local(plane.normal);
-    const Lanes<T> cosine[3] = {local.x, local.y, local.z};
-    Vec3<T> down[3];
-    Lanes<T> rise[3];
-    Lanes<T> name[3];
-    Lanes<T> flip[3];
+    cosine[0] = local.x;
+    cosine[1] = local.y;
+    cosine[2] = local.z;
     for (int i = 0; i < 3; ++i) {
       const Lanes<T> rises = dot(plane.normal, arm[i]);
-      const LaneMask<T> negative = rises > zero;
-      down[i] = select(negative, -arm[i], arm[i]);
+      negative[i] = rises > Lanes<T>(T(0));
+      down[i] = select(negative[i], -arm[i], arm[i]);
       rise[i] = abs(rises);
-      name[i] = select(negative, Lanes<T>(T(1 << i)), zero);
-      flip[i] = select(negative, Lanes<T>(T(-(1 << i))), Lanes<T>(T(1 << i)));
+    }
+    rounding = a.rounding;
+    scale = plane.scale + a.rounding + taxicab(a.half) + doubt(turn);
+  }
+
+  [[gnu::always_inline]] Vec3<T> lowest() const { return down[0] + down[1] + down[2]; }
+  [[gnu::always_inline]] Lanes<T> height() const {
+    return plane.height - (rise[0] + rise[1] + rise[2]);
+  }
+};
+
+struct BoxFeet {
+  /// The four vertices of the face that looks most towards the plane, lowest first, the one
+  /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    BoxOverPlane<T> box(job, block);
+    const Vec3<T> corner = box.lowest();
+    const Lanes<T> height = box.height();
+    Lanes<T> lowest(T(0));
+    Lanes<T> flip[3];
+    for (int i = 0; i < 3; ++i) {
+      const Lanes<T> bit(T(1 << i));
+      lowest = lowest + select(box.negative[i], bit, Lanes<T>(T(0)));
+      flip[i] = select(box.negative[i], -bit, bit);
     }
     // Arms 0 and 1 span the face, arm 2 is the one nearest to the normal.
     const auto exchange = [&](const LaneMask<T>& mask, int i) {
@@ -94,28 +121,36 @@ struct BoxFeet {
         y = select(mask, x, y);
         x = t;
       };
-      swap(down[i], down[2]);
-      swap(rise[i], rise[2]);
+      swap(box.down[i], box.down[2]);
+      swap(box.rise[i], box.rise[2]);
       swap(flip[i], flip[2]);
     };
-    const LaneMask<T> is_x = (abs(cosine[0]) > abs(cosine[1])) & (abs(cosine[0]) > abs(cosine[2]));
-    const LaneMask<T> is_y = (!is_x) & (abs(cosine[1]) > abs(cosine[2]));
+    const Lanes<T> x = abs(box.cosine[0]);
+    const Lanes<T> y = abs(box.cosine[1]);
+    const Lanes<T> z = abs(box.cosine[2]);
+    const LaneMask<T> is_x = (x > y) & (x > z);
+    const LaneMask<T> is_y = (!is_x) & (y > z);
     exchange(is_x, 0);
     exchange(is_y, 1);
-    const Vec3<T> corner = down[0] + down[1] + down[2];
-    const Lanes<T> height = plane.height - (rise[0] + rise[1] + rise[2]);
-    const Lanes<T> lowest = name[0] + name[1] + name[2];
+    const Vec3<T>* const down = box.down;
+    const Lanes<T>* const rise = box.rise;
     const Lanes<T> two(T(2));
     Feet<T, 4> feet{{corner, corner - down[0] * two, corner - down[1] * two,
                      corner - (down[0] + down[1]) * two},
                     {height, height + rise[0] * two, height + rise[1] * two,
                      height + (rise[0] + rise[1]) * two},
                     {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]},
-                    a.rounding,
-                    plane.normal,
-                    plane.scale + a.rounding + taxicab(a.half) + doubt(turn)};
+                    box.rounding,
+                    box.plane.normal,
+                    box.scale};
     sort_two(feet, 1, 2);
     return feet;
+  }
+
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
+    const BoxOverPlane<T> box(job, block);
+    return {{box.lowest()}, {box.height()}, {}, box.rounding, box.plane.normal, box.scale};
   }
 };
 

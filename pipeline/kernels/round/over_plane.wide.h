@@ -102,14 +102,18 @@ struct FeetAnswers {
   }
 };
 
-/// The kernels of a class that finds the feet; all levels share that part, not inlined, as it takes
-/// long to compile.
+/// The kernels of a class that finds the feet, and maybe the lowest alone, which is all that levels
+/// but manifold ask for; levels share these parts, not inlined, as they take long to compile.
 template <typename Source, int Contacts>
 struct OverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
-    return FeetAnswers<Contacts>::template write<L>(job, block,
-                                                    Source::template feet<T>(job, block));
+    using Answers = FeetAnswers<Contacts>;
+    if constexpr (L != kManifold && requires { Source::template lowest<T>(job, block); }) {
+      return Answers::template write<L>(job, block, Source::template lowest<T>(job, block));
+    } else {
+      return Answers::template write<L>(job, block, Source::template feet<T>(job, block));
+    }
   }
 };
 
