@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 
 #include <cstddef>
@@ -42,7 +43,7 @@ struct HitColumns {
 class WINNOW_API HitBuffer {
  public:
   /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
-  explicit HitBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit HitBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
       : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
 
   /// All hits; of a batch those of its questions one after the other.
@@ -93,8 +94,7 @@ class WINNOW_API HitBuffer {
 class WINNOW_API OverlapBuffer {
  public:
   /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
-  explicit OverlapBuffer(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit OverlapBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
       : ids_(memory), crossing_(memory) {}
   /// `other` is left empty.
   OverlapBuffer(OverlapBuffer&& other) noexcept

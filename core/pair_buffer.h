@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 
 #include <compare>
 #include <cstddef>
@@ -41,7 +42,7 @@ class WINNOW_API PairBuffer {
   };
 
   /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
-  explicit PairBuffer(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit PairBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
       : pairs_(memory),
         pages_(memory),
         page_table_(memory),

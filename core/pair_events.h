@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 
 #include <compare>
@@ -37,7 +38,7 @@ struct ClientDataPair {
 /// How PairEvents are kept.
 struct PairEventsOptions {
   /// Every allocation comes from here. It must outlive them.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// Give client data with the pairs. Takes 8 bytes an object and 16 a pair that begins or ends; a
   /// frame then costs O(pairs that begin or end + objects that moved) more.
   bool client_data = false;
@@ -64,7 +65,7 @@ class WINNOW_API PairEvents {
         pairs_(options.memory),
         with_client_data_(options.client_data) {}
   /// The same without client data. Every allocation comes from `memory`, which must outlive it.
-  explicit PairEvents(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit PairEvents(std::pmr::memory_resource* memory = default_memory()) noexcept
       : PairEvents(PairEventsOptions{memory, false}) {}
   /// `other` is left empty and starts anew, with client data if it had them.
   PairEvents(PairEvents&& other) noexcept

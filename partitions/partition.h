@@ -13,6 +13,7 @@
 #include <winnow/core/hits.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/margin.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
@@ -36,7 +37,7 @@ namespace winnow {
 struct PartitionOptions {
   /// Every allocation comes from here. It must outlive the partition. Where a parallel partition
   /// runs, only the calling thread allocates.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// On whose threads builds, refits and queries run; results are the same on all.
   Execution execution = Execution::parallel();
   /// What bounds an object. Every partition prunes by boxes; of spheres and k-DOPs it drops the

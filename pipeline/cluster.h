@@ -5,6 +5,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
@@ -120,7 +121,7 @@ struct ClusterDigest {
 /// What a cluster is made with.
 struct ClusterOptions {
   /// Partitions and bodies of hosted ranks are allocated here. It must outlive the cluster.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// On whose threads each rank's partition works.
   Execution execution = Execution::parallel();
   /// Of each rank's partition.

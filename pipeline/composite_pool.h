@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/point_view.h>
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/mid_phase.h>
@@ -39,8 +40,8 @@ struct CompoundPart {
 class WINNOW_API CompositePool final : public MidPhase {
  public:
   /// `shapes` holds the convex children of compounds and must outlive this.
-  explicit CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory =
-                                                      std::pmr::get_default_resource()) noexcept;
+  explicit CompositePool(const ShapePool& shapes,
+                         std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~CompositePool() override;
 
   /// See TriangleMesh::build.

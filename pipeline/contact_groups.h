@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +25,7 @@ class WINNOW_API ContactGroups {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// use.
-  explicit ContactGroups(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit ContactGroups(std::pmr::memory_resource* memory = default_memory()) noexcept
       : group_(memory), first_(memory), order_(memory), of_body_(memory), colours_(memory) {}
 
   /// Groups, none of them empty.

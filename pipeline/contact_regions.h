@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
@@ -38,8 +39,7 @@ class WINNOW_API ContactRegions {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// use.
-  explicit ContactRegions(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit ContactRegions(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// Pairs of bodies.
   [[nodiscard]] std::size_t size() const noexcept { return count.size(); }

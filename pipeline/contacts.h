@@ -4,6 +4,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/looked_up.h>
 #include <winnow/pipeline/contact_types.h>
 
@@ -77,7 +78,7 @@ using PartColumn = LookedUp<PartLookup>;
 class WINNOW_API Contacts {
  public:
   /// Every allocation comes from `memory`, which must outlive the object.
-  explicit Contacts(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit Contacts(std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;

@@ -4,6 +4,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/status.h>
@@ -23,7 +24,7 @@ namespace winnow {
 /// What a deformable mesh is made with.
 struct DeformableMeshOptions {
   /// Every allocation comes from here. It must outlive the mesh.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// On whose threads boxes are made, and candidates looked at; results are the same on all.
   Execution execution = Execution::serial();
   /// Finite. Boxes are of floats, measured from here: a point near the mesh keeps them tight in a

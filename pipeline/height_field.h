@@ -4,6 +4,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/shapes.h>
 
@@ -35,8 +36,7 @@ struct HeightSamples {
 class WINNOW_API HeightField {
  public:
   /// A field without samples. Every allocation comes from `memory`, which must outlive the field.
-  explicit HeightField(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit HeightField(std::pmr::memory_resource* memory = default_memory()) noexcept
       : memory_(memory) {}
   /// Takes over the samples and the resource; `other` is left without samples.
   HeightField(HeightField&& other) noexcept;

@@ -5,6 +5,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_regions.h>
@@ -44,8 +45,7 @@ class WINNOW_API PrimitivePairs {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// use.
-  explicit PrimitivePairs(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit PrimitivePairs(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// Forgets all pairs; memory is kept.
   void clear() noexcept;

@@ -3,6 +3,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_types.h>
@@ -74,8 +75,7 @@ class WINNOW_API NarrowPhase {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// call.
-  explicit NarrowPhase(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit NarrowPhase(std::pmr::memory_resource* memory = default_memory()) noexcept
       : memory_(memory) {}
   ~NarrowPhase();
   /// `other` is as if new.

@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
 
@@ -64,8 +65,7 @@ class WINNOW_API NarrowResult {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// use.
-  explicit NarrowResult(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit NarrowResult(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// Answers, one for each pair that was asked about.
   [[nodiscard]] std::size_t size() const noexcept {

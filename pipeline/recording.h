@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -46,10 +47,10 @@ class WINNOW_API Recorder {
  public:
   /// Into a file, which is made or overwritten. `memory` must outlive the recorder.
   explicit Recorder(const char* path,
-                    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+                    std::pmr::memory_resource* memory = default_memory()) noexcept;
   /// Wherever the sink takes it.
   explicit Recorder(const RecordingSink& sink,
-                    std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+                    std::pmr::memory_resource* memory = default_memory()) noexcept;
   /// Closes the recording; what it records must be gone by then.
   ~Recorder();
   Recorder(const Recorder&) = delete;
@@ -274,8 +275,8 @@ class WINNOW_API RecordedQueries {
  public:
   /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too,
   /// but for what is written: that comes from the recorder's, of one thread at a time.
-  explicit RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory =
-                                                     std::pmr::get_default_resource()) noexcept;
+  explicit RecordedQueries(RecordedScene& scene,
+                           std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// The questions themselves, for everything that is not recorded.
   [[nodiscard]] SceneQueries& queries() noexcept { return queries_; }
@@ -331,8 +332,8 @@ class WINNOW_API RecordedSweep {
  public:
   /// Looks at bodies of `scene`, which must outlive this. Every allocation comes from `memory`,
   /// which must too, but for what is written.
-  explicit RecordedSweep(RecordedScene& scene, std::pmr::memory_resource* memory =
-                                                   std::pmr::get_default_resource()) noexcept;
+  explicit RecordedSweep(RecordedScene& scene,
+                         std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// What the last one answered.
   [[nodiscard]] const SceneSweep* operator->() const noexcept { return &sweep_; }
@@ -364,8 +365,8 @@ class WINNOW_API RecordedSensors {
  public:
   /// Senses bodies of `scene`, which must outlive this. Every allocation comes from `memory`, which
   /// must too, but for what is written.
-  explicit RecordedSensors(RecordedScene& scene, std::pmr::memory_resource* memory =
-                                                     std::pmr::get_default_resource()) noexcept;
+  explicit RecordedSensors(RecordedScene& scene,
+                           std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~RecordedSensors();
   RecordedSensors(const RecordedSensors&) = delete;
   RecordedSensors& operator=(const RecordedSensors&) = delete;

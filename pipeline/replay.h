@@ -2,6 +2,7 @@
 
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -22,7 +23,7 @@ struct ReplayState;
 struct ReplayOptions {
   /// Every allocation comes from here. Whoever plays what strangers recorded gives one that has a
   /// limit: a small recording may ask for many pairs.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// On whose threads; answers are the same on all.
   Execution execution = Execution::parallel();
 };

@@ -8,6 +8,7 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/pose_view.h>
@@ -41,7 +42,7 @@ inline constexpr std::size_t kMotions = 3;
 /// What a scene is made with.
 struct SceneOptions {
   /// Every allocation comes from here. It must outlive the scene.
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  std::pmr::memory_resource* memory = default_memory();
   /// On whose threads work runs; results are the same on all.
   Execution execution = Execution::parallel();
   /// The structure of each set's partition, by Motion. A partition is made when its first body

@@ -4,6 +4,7 @@
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -122,8 +123,8 @@ class WINNOW_API SceneQueries {
  public:
   /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too;
   /// where its state is refused, questions are `out_of_memory`.
-  explicit SceneQueries(const Scene& scene, std::pmr::memory_resource* memory =
-                                                std::pmr::get_default_resource()) noexcept;
+  explicit SceneQueries(const Scene& scene,
+                        std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~SceneQueries();
   SceneQueries(const SceneQueries&) = delete;
   SceneQueries& operator=(const SceneQueries&) = delete;

@@ -3,6 +3,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/mid_phase.h>
@@ -82,8 +83,7 @@ class WINNOW_API SceneSweep {
  public:
   /// Looks at bodies of `scene`, which must outlive this. Every allocation comes from `memory`,
   /// which must too; where its state is refused, calls are `out_of_memory`.
-  explicit SceneSweep(
-      Scene& scene, std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit SceneSweep(Scene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~SceneSweep();
   SceneSweep(const SceneSweep&) = delete;
   SceneSweep& operator=(const SceneSweep&) = delete;

@@ -3,6 +3,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/object_filter.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -59,8 +60,7 @@ class WINNOW_API Sensors {
  public:
   /// Senses bodies of `scene`, which must outlive this. Every allocation comes from `memory`, which
   /// must too; where its state is refused, calls are `out_of_memory`.
-  explicit Sensors(Scene& scene,
-                   std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit Sensors(Scene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~Sensors();
   Sensors(const Sensors&) = delete;
   Sensors& operator=(const Sensors&) = delete;

@@ -4,6 +4,7 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
@@ -29,7 +30,7 @@ struct HullFaces {
 class WINNOW_API ShapePool {
  public:
   /// An empty pool. Every allocation comes from `memory`, which must outlive it.
-  explicit ShapePool(std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit ShapePool(std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~ShapePool();
   /// Takes over all shapes, whose ids stay, and the resource; what was moved from is empty.
   ShapePool(ShapePool&&) noexcept;

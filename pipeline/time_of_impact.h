@@ -4,6 +4,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/mid_phase.h>
@@ -49,8 +50,7 @@ class WINNOW_API ImpactResult {
  public:
   /// Every allocation comes from `memory`, which must outlive the object; none before the first
   /// use.
-  explicit ImpactResult(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept;
+  explicit ImpactResult(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
   /// Answers, one for each pair that was asked about.
   [[nodiscard]] std::size_t size() const noexcept { return time_.size(); }

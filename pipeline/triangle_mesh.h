@@ -5,6 +5,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/status.h>
 
@@ -35,8 +36,7 @@ struct MeshOptions {
 class WINNOW_API TriangleMesh {
  public:
   /// A mesh without triangles. Every allocation comes from `memory`, which must outlive the mesh.
-  explicit TriangleMesh(
-      std::pmr::memory_resource* memory = std::pmr::get_default_resource()) noexcept
+  explicit TriangleMesh(std::pmr::memory_resource* memory = default_memory()) noexcept
       : memory_(memory) {}
   /// Takes over triangles, tree and resource; `other` is left without triangles.
   TriangleMesh(TriangleMesh&& other) noexcept;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/large_pages.h>
+
 #include <cstddef>
 #include <memory_resource>
 
@@ -9,8 +11,7 @@ namespace winnow::bench {
 /// thread only, so it need not lock.
 class CountingResource final : public std::pmr::memory_resource {
  public:
-  explicit CountingResource(
-      std::pmr::memory_resource* upstream = std::pmr::new_delete_resource()) noexcept
+  explicit CountingResource(std::pmr::memory_resource* upstream = default_memory()) noexcept
       : upstream_(upstream) {}
 
   [[nodiscard]] std::size_t outstanding() const noexcept { return outstanding_; }

@@ -1,6 +1,8 @@
 #include "bench/measure/cold_frames.h"
 
 #include <winnow/core/hooks.h>
+#include <winnow/core/large_pages.h>
+#include "bench/common/address_range.h"
 #include "bench/common/arena.h"
 #include "bench/common/need.h"
 #include "bench/common/reused_memory.h"
@@ -9,7 +11,9 @@
 #include "bench/measure/fingerprint.h"
 #include "bench/peers/yardstick.h"
 
+#include <algorithm>
 #include <memory>
+#include <memory_resource>
 #include <stdexcept>
 
 namespace winnow::bench {
@@ -66,27 +70,37 @@ Parts run_frame(std::span<const Aabb> boxes, Partition& partition, std::vector<K
 struct FirstFrames {
   std::span<const Aabb> boxes;
   int threads;
-  ReusedMemory memory{room_for(boxes.size())};
+  AddressRange fresh{room_for(boxes.size())};
   std::vector<Key> keys = std::vector<Key>(boxes.size());
 
-  [[nodiscard]] Partition make(const ColdFrames& frames) {
+  [[nodiscard]] Partition make(const ColdFrames& frames, std::pmr::memory_resource& memory) {
     return make_named(frames.partition, {.memory = &memory, .execution = execution_for(threads)});
   }
   /// What it finds.
-  PairSummary run(ColdFrames& frames) {
+  PairSummary run(ColdFrames& frames, std::pmr::memory_resource& memory) {
     const Stopwatch clock;
-    Partition partition = make(frames);
+    Partition partition = make(frames, memory);
     PairBuffer pairs(&memory);
     const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
     frames.insert_ms.push_back(parts.inserted);
     frames.build_ms.push_back(parts.built - parts.inserted);
     frames.pairs_ms.push_back(parts.found - parts.built);
     frames.total_ms.push_back(parts.found);
+    frames.pages_ms.push_back(write_to_pages(partition.footprint().total().reserved +
+                                             pairs.footprint().total().reserved));
     return summarize(pairs.pairs(), boxes);
   }
+  /// Milliseconds that it takes to write to so many bytes of ordinary pages for the first time.
+  [[nodiscard]] double write_to_pages(std::size_t bytes) {
+    fresh.forget();
+    const Stopwatch clock;
+    touch_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
+    return clock.ms();
+  }
   /// The same after room for the objects and so many pairs was made.
-  PairSummary run_reserved(ColdFrames& frames, std::size_t count, Pages pages) {
-    Partition partition = make(frames);
+  PairSummary run_reserved(ColdFrames& frames, std::pmr::memory_resource& memory, std::size_t count,
+                           Pages pages) {
+    Partition partition = make(frames, memory);
     PairBuffer pairs(&memory);
     const Stopwatch before;
     need(partition.reserve(boxes.size(), pages), "room for objects");
@@ -103,7 +117,7 @@ struct FirstFrames {
 void forget_frames(ColdRace& race) {
   for (ColdFrames& one : race.frames) {
     for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms,
-                        &one.reserved_ms, &one.ready_ms, &one.reserve_ms}) {
+                        &one.reserved_ms, &one.ready_ms, &one.reserve_ms, &one.pages_ms}) {
       times->clear();
     }
   }
@@ -116,12 +130,13 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
                           int threads, std::size_t rounds, bool with_yardstick) {
   ColdRace race;
   for (const std::string& partition : partitions) {
-    for (const std::string_view memory : {kUntouched, kTouched}) {
+    for (const std::string_view memory : {kUntouched, kTouched, kLargePages}) {
       race.frames.push_back({.partition = partition, .memory = memory});
     }
   }
-  FirstFrames untouched{boxes, threads};
-  FirstFrames touched{boxes, threads};
+  FirstFrames frames{boxes, threads};
+  ReusedMemory untouched(room_for(boxes.size()));
+  ReusedMemory touched(room_for(boxes.size()));
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -133,16 +148,24 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        touched.memory.rewind();
-        found.push_back(touched.run(one));
+        touched.rewind();
+        found.push_back(frames.run(one, touched));
         continue;
       }
-      untouched.memory.rewind_untouched();
-      found.push_back(untouched.run(one));
+      const auto on_fresh_pages = [&](const auto& run) {
+        if (one.memory == kUntouched) {
+          untouched.rewind_untouched();
+          found.push_back(run(untouched));
+        } else {
+          LargePages large;
+          found.push_back(run(large));
+        }
+      };
+      on_fresh_pages([&](auto& memory) { return frames.run(one, memory); });
       const std::size_t pairs = found.back().reported;
       for (const Pages pages : {Pages::untouched, Pages::touched}) {
-        untouched.memory.rewind_untouched();
-        found.push_back(untouched.run_reserved(one, pairs, pages));
+        on_fresh_pages(
+            [&](auto& memory) { return frames.run_reserved(one, memory, pairs, pages); });
       }
     }
   };

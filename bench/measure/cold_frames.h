@@ -10,10 +10,11 @@
 
 namespace winnow::bench {
 
-/// Where a partition gets its memory: from pages that nobody has written to, or from those that its
-/// frame before has.
+/// Where a partition gets its memory: from ordinary pages that nobody has written to; from those
+/// that its frame before has; or, as by default, from large pages that nobody has written to.
 inline constexpr std::string_view kUntouched = "untouched";
 inline constexpr std::string_view kTouched = "touched";
+inline constexpr std::string_view kLargePages = "large pages";
 
 /// Milliseconds of the parts of first frames, one entry per frame.
 struct ColdFrames {
@@ -23,11 +24,13 @@ struct ColdFrames {
   std::vector<double> build_ms{};
   std::vector<double> pairs_ms{};
   std::vector<double> total_ms{};
-  // On pages that nobody has written to alone: a frame for which all memory was reserved, one for
-  // which it was touched as well, and what the latter took before the frame.
+  // Not on touched pages: a frame for which all memory was reserved, one for which it was touched
+  // as well, and what the latter took before the frame.
   std::vector<double> reserved_ms{};
   std::vector<double> ready_ms{};
   std::vector<double> reserve_ms{};
+  // What it takes to write to as many ordinary pages as the partition and its pairs hold.
+  std::vector<double> pages_ms{};
 };
 
 struct ColdRace {
@@ -37,9 +40,8 @@ struct ColdRace {
 
 /// First frames of so many fresh partitions of these boxes: all boxes are inserted, the structure
 /// is built and all pairs are found. Reserved is room for them and for as many pairs as they have.
-/// All take turns, and frames of the yardstick, which always
-/// starts anew, among them if it is wanted. Throws std::runtime_error if not all find the same
-/// pairs.
+/// All take turns, and frames of the yardstick, which always starts anew, among them if it is
+/// wanted. Throws std::runtime_error if not all find the same pairs.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
                                         const std::vector<std::string>& partitions, int threads,
                                         std::size_t rounds = 7, bool yardstick = true);

@@ -4,7 +4,20 @@
 #include "bench/common/sample.h"
 #include "bench/measure/cold_frames.h"
 
+#include <algorithm>
+
 namespace winnow::bench {
+namespace {
+
+// A partition's first frame on touched memory.
+double touched_ms(const ColdRace& race, const std::string& partition) {
+  const auto one = std::ranges::find_if(race.frames, [&](const ColdFrames& frames) {
+    return frames.partition == partition && frames.memory == kTouched;
+  });
+  return median_of(one->total_ms);
+}
+
+}  // namespace
 
 void declare_cold(Results& results) {
   results.declare({"cold",
@@ -18,6 +31,8 @@ void declare_cold(Results& results) {
                     {"reserved_ms", "after reserve", "ms", Better::less},
                     {"ready_ms", "after reserve that touches", "ms", Better::less},
                     {"reserve_ms", "that reserve", "ms"},
+                    {"pages_ms", "pages of the bytes held", "ms"},
+                    {"over_pages", "beyond touched memory, in these", "times", Better::less},
                     {"yardstick_ms", "the yardstick's frame", "ms"},
                     {"over_yardstick", "over the yardstick", "times"}}});
 }
@@ -45,6 +60,9 @@ void add_cold(Results& results, const NamedScene& scene, std::size_t objects, st
       row["reserved_ms"] = to_value(one.reserved_ms);
       row["ready_ms"] = to_value(one.ready_ms);
       row["reserve_ms"] = to_value(one.reserve_ms);
+      row["pages_ms"] = to_value(one.pages_ms);
+      row["over_pages"] =
+          (median_of(one.total_ms) - touched_ms(race, one.partition)) / median_of(one.pages_ms);
     }
     if (!race.yardstick_ms.empty()) {
       row["yardstick_ms"] = to_value(race.yardstick_ms);

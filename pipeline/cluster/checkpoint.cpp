@@ -1,4 +1,5 @@
 #include "pipeline/cluster/checkpoint.h"
+#include <winnow/core/large_pages.h>
 
 #include "core/memory/byte_stream.h"
 #include "pipeline/shapes/pair_order.h"
@@ -31,9 +32,9 @@ constexpr std::size_t kHeader = 2 * sizeof(std::uint64_t);
 
 /// Adds what one checkpoint has in its columns.
 [[nodiscard]] Status take_columns(std::span<const std::byte> columns, RecordBatch& batch) {
-  Column<BodyName> names(std::pmr::get_default_resource());
-  Column<BodyRecord> bodies(std::pmr::get_default_resource());
-  Column<TouchingPair> touching(std::pmr::get_default_resource());
+  Column<BodyName> names(default_memory());
+  Column<BodyRecord> bodies(default_memory());
+  Column<TouchingPair> touching(default_memory());
   ByteReader reader(columns);
   if (!reader.get_array(names) || !reader.get_array(bodies) || !reader.get_array(touching) ||
       !reader.rest().empty() || names.size() != bodies.size()) {
@@ -89,7 +90,7 @@ std::uint64_t told_by(const ClusterSceneBatch& batch) noexcept {
 
 Status write_checkpoint(std::span<const BodyName> names, std::span<const BodyRecord> bodies,
                         std::span<const TouchingPair> touching, std::vector<std::byte>& bytes) {
-  Column<std::byte> columns(std::pmr::get_default_resource());
+  Column<std::byte> columns(default_memory());
   ByteWriter writer(columns);
   writer.put_array(names);
   writer.put_array(bodies);

@@ -9,6 +9,7 @@
 
 #include <winnow/core/filter.h>
 #include <winnow/core/hits.h>
+#include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/partitions/partition.h>
@@ -75,8 +76,7 @@ class Exported : public NeedsInit {
 };
 struct Events : Exported<PairEvents> {
   explicit Events(bool client_data)
-      : Exported(std::make_shared<PairEvents>(
-                     PairEventsOptions{std::pmr::get_default_resource(), client_data}),
+      : Exported(std::make_shared<PairEvents>(PairEventsOptions{default_memory(), client_data}),
                  false) {}
 
   /// By a predicate, the last time.

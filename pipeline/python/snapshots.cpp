@@ -1,6 +1,7 @@
 // Snapshots as bytes: of partitions, shapes, scenes and contacts.
 
 #include "pipeline/python/snapshots.h"
+#include <winnow/core/large_pages.h>
 
 #include "pipeline/python/bytes.h"
 #include "pipeline/python/locks.h"
@@ -15,7 +16,7 @@ namespace {
 /// The bytes that save(column) appends, while nobody changes what it saves.
 template <typename Save>
 [[nodiscard]] py::bytes saved_by(std::shared_mutex& mutex, const char* call, Save&& save) {
-  Column<std::byte> out(std::pmr::get_default_resource());
+  Column<std::byte> out(default_memory());
   accept(reading(mutex, [&] { return save(out); }), call);
   return {reinterpret_cast<const char*>(out.data()), out.size()};
 }
@@ -97,7 +98,7 @@ void add_partition_snapshots(PartitionClass& partition) {
           "save",
           [](const SharedPartition& p) {
             // It may have updates to write first.
-            Column<std::byte> out(std::pmr::get_default_resource());
+            Column<std::byte> out(default_memory());
             accept(changing(p.mutex, [&] { return p.partition->save(out); }), "save");
             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
           },

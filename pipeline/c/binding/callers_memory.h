@@ -3,13 +3,14 @@
 #include "core/memory/new_in.h"
 
 #include <winnow/c/core.h>
+#include <winnow/core/large_pages.h>
 
 #include <memory_resource>
 #include <utility>
 
 namespace winnow::c {
 
-/// A caller's functions as a memory resource; without any, the default resource.
+/// A caller's functions as a memory resource; without any, the default memory.
 class CallersMemory final : public std::pmr::memory_resource {
  public:
   explicit CallersMemory(const winnow_memory* given) noexcept {
@@ -28,7 +29,7 @@ class CallersMemory final : public std::pmr::memory_resource {
   }
 
   winnow_memory functions_{};
-  std::pmr::memory_resource* otherwise_ = std::pmr::get_default_resource();
+  std::pmr::memory_resource* otherwise_ = default_memory();
 };
 
 /// What every pointer of the C interface leads to begins with: its own copy of the memory that it

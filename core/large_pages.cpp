@@ -1,0 +1,300 @@
+#include <winnow/core/large_pages.h>
+
+#include <winnow/core/column.h>
+#include "core/memory/guarded.h"
+#include "core/memory/new_in.h"
+#include "core/threads/mutex.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <string_view>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kLine = Column<std::byte>::kAlignment;
+constexpr std::size_t kMostAhead = std::size_t{32} << 20U;  // of a slab for what is to come
+constexpr std::size_t kKept = std::size_t{8} << 20U;        // free bytes, however few are in use
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(memory_sanitizer);
+#else
+constexpr bool kSanitized = false;
+#endif
+
+bool wants_large_pages() noexcept {
+  const char* const wish = std::getenv("WINNOW_LARGE_PAGES");
+  return !kSanitized && (wish == nullptr || std::string_view(wish) != "0");
+}
+
+constexpr std::size_t whole(std::size_t bytes, std::size_t unit) noexcept {
+  return (bytes + unit - 1) / unit * unit;
+}
+
+struct Range {
+  std::byte* begin;
+  std::size_t bytes;
+
+  [[nodiscard]] std::byte* end() const noexcept { return begin + bytes; }
+};
+
+/// Bytes from `at` to the next address of this alignment.
+std::size_t bytes_to_aligned(const std::byte* at, std::size_t alignment) noexcept {
+  const auto address = reinterpret_cast<std::uintptr_t>(at);
+  return static_cast<std::size_t>(whole(address, alignment) - address);
+}
+
+#ifdef __linux__
+
+constexpr bool kHasSlabs = true;
+
+/// Whole pages from the system; null if it refuses.
+std::byte* map_pages(std::size_t bytes) noexcept {
+  constexpr std::size_t kPage = LargePages::kPage;
+  void* const mapped =
+      ::mmap(nullptr, bytes + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED) return nullptr;
+  // The system aligns to small pages: what lies before and behind the large ones goes back.
+  auto* const from = static_cast<std::byte*>(mapped);
+  const std::size_t before = bytes_to_aligned(from, kPage);
+  std::byte* const begin = from + before;
+  if (before != 0) (void)::munmap(from, before);
+  if (before != kPage) (void)::munmap(begin + bytes, kPage - before);
+#ifdef MADV_HUGEPAGE
+  // Where it has no large pages, small ones do.
+  (void)::madvise(begin, bytes, MADV_HUGEPAGE);
+#endif
+  return begin;
+}
+
+void unmap_pages(const Range& range) noexcept {
+  (void)::munmap(range.begin, range.bytes);
+}
+
+#else
+
+constexpr bool kHasSlabs = false;
+
+std::byte* map_pages(std::size_t) noexcept {
+  return nullptr;
+}
+void unmap_pages(const Range&) noexcept {}
+
+#endif
+
+}  // namespace
+
+/// Writes to each large page of a block, before threads do so at once and wait for each other.
+void touch_large_pages(std::byte* block, std::size_t bytes) noexcept {
+  auto* const memory = reinterpret_cast<volatile unsigned char*>(block);
+  memory[0] = 0;
+  for (std::size_t at = bytes_to_aligned(block, LargePages::kPage); at < bytes;
+       at += LargePages::kPage) {
+    memory[at] = 0;
+  }
+}
+
+/// The slabs, and what is free in them. Both lists ascend by address; no two free ranges of a slab
+/// touch each other.
+class LargePages::Slabs {
+ public:
+  explicit Slabs(std::pmr::memory_resource* memory) noexcept : slabs_(memory), free_(memory) {}
+  ~Slabs() { std::for_each(slabs_.begin(), slabs_.end(), unmap_pages); }
+  Slabs(const Slabs&) = delete;
+  Slabs& operator=(const Slabs&) = delete;
+
+  /// Null if memory is refused.
+  [[nodiscard]] void* take(std::size_t bytes, std::size_t alignment) noexcept;
+  void give_back(void* block, std::size_t bytes) noexcept;
+
+  [[nodiscard]] std::size_t held_bytes() noexcept {
+    const Lock lock(mutex_);
+    return held_;
+  }
+  [[nodiscard]] std::size_t used_bytes() noexcept {
+    const Lock lock(mutex_);
+    return used_;
+  }
+
+ private:
+  [[nodiscard]] bool reserve_ranges() noexcept;
+  [[nodiscard]] Range* best_fit(std::size_t bytes, std::size_t alignment) noexcept;
+  [[nodiscard]] Range* add_slab(std::size_t bytes) noexcept;
+  void cut(Range* from, std::size_t gap, std::size_t bytes) noexcept;
+  [[nodiscard]] Range* insert(Column<Range>& list, const Range& range) noexcept;
+  static void erase(Column<Range>& list, const Range* range) noexcept;
+  [[nodiscard]] Range* slab_of(const std::byte* at) noexcept;
+  [[nodiscard]] bool is_whole_slab(const Range& range) noexcept {
+    return slab_of(range.begin)->bytes == range.bytes;
+  }
+  void return_empty_slabs() noexcept;
+
+  Mutex mutex_;
+  Column<Range> slabs_;
+  Column<Range> free_;
+  std::size_t blocks_ = 0;
+  std::size_t held_ = 0;
+  std::size_t used_ = 0;
+};
+
+void* LargePages::Slabs::take(std::size_t bytes, std::size_t alignment) noexcept {
+  const Lock lock(mutex_);
+  if (!reserve_ranges()) return nullptr;
+  const std::size_t wanted = whole(bytes, kLine);
+  Range* range = best_fit(wanted, alignment);
+  if (range == nullptr) range = add_slab(wanted);
+  if (range == nullptr) return nullptr;
+  const std::size_t gap = bytes_to_aligned(range->begin, alignment);
+  std::byte* const block = range->begin + gap;
+  cut(range, gap, wanted);
+  ++blocks_;
+  used_ += wanted;
+  touch_large_pages(block, wanted);
+  return block;
+}
+
+// Giving back must not be refused: behind every block, and at the beginning of every slab, there
+// may be a free range.
+bool LargePages::Slabs::reserve_ranges() noexcept {
+  return slabs_.grow(slabs_.size() + 1) && free_.grow(blocks_ + slabs_.size() + 3);
+}
+
+// The shortest free range that has room; null if none has.
+Range* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignment) noexcept {
+  Range* best = nullptr;
+  for (Range& range : free_) {
+    if (range.bytes < bytes || (best != nullptr && best->bytes <= range.bytes)) continue;
+    if (range.bytes - bytes >= bytes_to_aligned(range.begin, alignment)) best = &range;
+  }
+  return best;
+}
+
+// A free range of whole pages for a block, and for half as much as is held besides. Null if the
+// system refuses.
+Range* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
+  const std::size_t ahead = std::min(held_ / 2, kMostAhead);
+  const std::size_t pages = whole(std::max(bytes, ahead), kPage);
+  const Range slab{map_pages(pages), pages};
+  if (slab.begin == nullptr) return nullptr;
+  held_ += pages;
+  (void)insert(slabs_, slab);
+  return insert(free_, slab);
+}
+
+// Takes [gap, gap + bytes) out of a free range.
+void LargePages::Slabs::cut(Range* from, std::size_t gap, std::size_t bytes) noexcept {
+  const Range behind{from->begin + gap + bytes, from->bytes - gap - bytes};
+  from->bytes = gap;
+  if (gap == 0 && behind.bytes == 0) return erase(free_, from);
+  if (gap == 0) {
+    *from = behind;
+  } else if (behind.bytes != 0) {
+    (void)insert(free_, behind);
+  }
+}
+
+void LargePages::Slabs::give_back(void* block, std::size_t bytes) noexcept {
+  const Lock lock(mutex_);
+  const std::size_t taken = whole(bytes, kLine);
+  --blocks_;
+  used_ -= taken;
+  const Range* const slab = slab_of(static_cast<std::byte*>(block));
+  Range* range = insert(free_, {static_cast<std::byte*>(block), taken});
+  Range* const next = range + 1;
+  if (next != free_.end() && next->begin == range->end() && next->begin < slab->end()) {
+    range->bytes += next->bytes;
+    erase(free_, next);
+  }
+  if (range != free_.begin() && range[-1].end() == range->begin && range->begin > slab->begin) {
+    range[-1].bytes += range->bytes;
+    erase(free_, range--);
+  }
+  if (range->bytes == slab->bytes) return_empty_slabs();
+}
+
+void LargePages::Slabs::return_empty_slabs() noexcept {
+  for (std::size_t i = free_.size(); i-- > 0 && held_ - used_ > std::max(used_, kKept);) {
+    const Range range = free_[i];
+    if (!is_whole_slab(range)) continue;
+    erase(free_, free_.begin() + i);
+    erase(slabs_, slab_of(range.begin));
+    held_ -= range.bytes;
+    unmap_pages(range);
+  }
+}
+
+// Room was made.
+Range* LargePages::Slabs::insert(Column<Range>& list, const Range& range) noexcept {
+  Range* const at = std::upper_bound(
+      list.begin(), list.end(), range.begin,
+      [](const std::byte* p, const Range& r) { return std::less<>()(p, r.begin); });
+  list.set_size(list.size() + 1);
+  std::move_backward(at, list.end() - 1, list.end());
+  *at = range;
+  return at;
+}
+
+void LargePages::Slabs::erase(Column<Range>& list, const Range* range) noexcept {
+  Range* const at = list.begin() + (range - list.begin());
+  std::move(at + 1, list.end(), at);
+  list.set_size(list.size() - 1);
+}
+
+Range* LargePages::Slabs::slab_of(const std::byte* at) noexcept {
+  return std::upper_bound(
+             slabs_.begin(), slabs_.end(), at,
+             [](const std::byte* p, const Range& slab) { return std::less<>()(p, slab.begin); }) -
+         1;
+}
+
+LargePages::LargePages(std::pmr::memory_resource* small_blocks) noexcept
+    : small_blocks_(small_blocks),
+      slabs_(kHasSlabs ? new_in<Slabs>(small_blocks, small_blocks) : nullptr) {}
+
+LargePages::~LargePages() {
+  delete_in(small_blocks_, slabs_);
+}
+
+std::size_t LargePages::held_bytes() const noexcept {
+  return slabs_ == nullptr ? 0 : slabs_->held_bytes();
+}
+
+std::size_t LargePages::used_bytes() const noexcept {
+  return slabs_ == nullptr ? 0 : slabs_->used_bytes();
+}
+
+bool LargePages::is_large(std::size_t bytes, std::size_t alignment) const noexcept {
+  return slabs_ != nullptr && bytes >= kLargeBlock && alignment <= kPage;
+}
+
+void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
+  if (!is_large(bytes, alignment)) return small_blocks_->allocate(bytes, alignment);
+  // No system has as much.
+  void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
+  if (block == nullptr) leave_without_memory();
+  return block;
+}
+
+void LargePages::do_deallocate(void* block, std::size_t bytes, std::size_t alignment) {
+  if (!is_large(bytes, alignment)) return small_blocks_->deallocate(block, bytes, alignment);
+  slabs_->give_back(block, bytes);
+}
+
+std::pmr::memory_resource* default_memory() noexcept {
+  static const bool wanted = wants_large_pages();
+  std::pmr::memory_resource* const set = std::pmr::get_default_resource();
+  if (!wanted || !set->is_equal(*std::pmr::new_delete_resource())) return set;
+  // Never ended: objects that live as long as the process may give memory back after it would be.
+  alignas(LargePages) static std::byte room[sizeof(LargePages)];
+  static LargePages* const pages = ::new (static_cast<void*>(room)) LargePages();
+  return pages;
+}
+
+}  // namespace winnow
