@@ -59,8 +59,8 @@ WINNOW_C_API winnow_status winnow_set_isa(const char* name);
 
 /// Where memory comes from. `allocate` answers null if it refuses; `deallocate` gets the bytes and
 /// the alignment (a power of two) that the block was asked with. Calls that take a null pointer in
-/// place of one use pages of 2 MB for large blocks, where the system has them, and `new` for others. The struct is copied; the context must outlive what is
-/// made with it.
+/// place of one use pages of 2 MB for large blocks, where the system has them, and `new` for
+/// others. The struct is copied; the context must outlive what is made with it.
 typedef struct winnow_memory {
   void* (*allocate)(void* context, size_t bytes, size_t alignment);
   void (*deallocate)(void* context, void* block, size_t bytes, size_t alignment);
