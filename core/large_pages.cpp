@@ -89,8 +89,6 @@ void unmap_pages(const Range&) noexcept {}
 
 #endif
 
-}  // namespace
-
 /// Writes to each large page of a block, before threads do so at once and wait for each other.
 void touch_large_pages(std::byte* block, std::size_t bytes) noexcept {
   auto* const memory = reinterpret_cast<volatile unsigned char*>(block);
@@ -100,6 +98,8 @@ void touch_large_pages(std::byte* block, std::size_t bytes) noexcept {
     memory[at] = 0;
   }
 }
+
+}  // namespace
 
 /// The slabs, and what is free in them. Both lists ascend by address; no two free ranges of a slab
 /// touch each other.
@@ -156,7 +156,6 @@ void* LargePages::Slabs::take(std::size_t bytes, std::size_t alignment) noexcept
   cut(range, gap, wanted);
   ++blocks_;
   used_ += wanted;
-  touch_large_pages(block, wanted);
   return block;
 }
 
@@ -279,6 +278,7 @@ void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   // No system has as much.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
   if (block == nullptr) leave_without_memory();
+  touch_large_pages(static_cast<std::byte*>(block), bytes);
   return block;
 }
 
