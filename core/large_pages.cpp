@@ -38,7 +38,7 @@ constexpr std::size_t whole(std::size_t bytes, std::size_t unit) noexcept {
   return (bytes + unit - 1) / unit * unit;
 }
 
-struct Range {
+struct MemoryRange {
   std::byte* begin;
   std::size_t bytes;
 
@@ -74,7 +74,7 @@ std::byte* map_pages(std::size_t bytes) noexcept {
   return begin;
 }
 
-void unmap_pages(const Range& range) noexcept {
+void unmap_pages(const MemoryRange& range) noexcept {
   (void)::munmap(range.begin, range.bytes);
 }
 
@@ -85,7 +85,7 @@ constexpr bool kHasSlabs = false;
 std::byte* map_pages(std::size_t) noexcept {
   return nullptr;
 }
-void unmap_pages(const Range&) noexcept {}
+void unmap_pages(const MemoryRange&) noexcept {}
 
 #endif
 
@@ -125,20 +125,20 @@ class LargePages::Slabs {
 
  private:
   [[nodiscard]] bool reserve_ranges() noexcept;
-  [[nodiscard]] Range* best_fit(std::size_t bytes, std::size_t alignment) noexcept;
-  [[nodiscard]] Range* add_slab(std::size_t bytes) noexcept;
-  void cut(Range* from, std::size_t gap, std::size_t bytes) noexcept;
-  [[nodiscard]] Range* insert(Column<Range>& list, const Range& range) noexcept;
-  static void erase(Column<Range>& list, const Range* range) noexcept;
-  [[nodiscard]] Range* slab_of(const std::byte* at) noexcept;
-  [[nodiscard]] bool is_whole_slab(const Range& range) noexcept {
+  [[nodiscard]] MemoryRange* best_fit(std::size_t bytes, std::size_t alignment) noexcept;
+  [[nodiscard]] MemoryRange* add_slab(std::size_t bytes) noexcept;
+  void cut(MemoryRange* from, std::size_t gap, std::size_t bytes) noexcept;
+  [[nodiscard]] MemoryRange* insert(Column<MemoryRange>& list, const MemoryRange& range) noexcept;
+  static void erase(Column<MemoryRange>& list, const MemoryRange* range) noexcept;
+  [[nodiscard]] MemoryRange* slab_of(const std::byte* at) noexcept;
+  [[nodiscard]] bool is_whole_slab(const MemoryRange& range) noexcept {
     return slab_of(range.begin)->bytes == range.bytes;
   }
   void return_empty_slabs() noexcept;
 
   Mutex mutex_;
-  Column<Range> slabs_;
-  Column<Range> free_;
+  Column<MemoryRange> slabs_;
+  Column<MemoryRange> free_;
   std::size_t blocks_ = 0;
   std::size_t held_ = 0;
   std::size_t used_ = 0;
@@ -148,7 +148,7 @@ void* LargePages::Slabs::take(std::size_t bytes, std::size_t alignment) noexcept
   const Lock lock(mutex_);
   if (!reserve_ranges()) return nullptr;
   const std::size_t wanted = whole(bytes, kLine);
-  Range* range = best_fit(wanted, alignment);
+  MemoryRange* range = best_fit(wanted, alignment);
   if (range == nullptr) range = add_slab(wanted);
   if (range == nullptr) return nullptr;
   const std::size_t gap = bytes_to_aligned(range->begin, alignment);
@@ -166,9 +166,9 @@ bool LargePages::Slabs::reserve_ranges() noexcept {
 }
 
 // The shortest free range that has room; null if none has.
-Range* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignment) noexcept {
-  Range* best = nullptr;
-  for (Range& range : free_) {
+MemoryRange* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignment) noexcept {
+  MemoryRange* best = nullptr;
+  for (MemoryRange& range : free_) {
     if (range.bytes < bytes || (best != nullptr && best->bytes <= range.bytes)) continue;
     if (range.bytes - bytes >= bytes_to_aligned(range.begin, alignment)) best = &range;
   }
@@ -177,10 +177,10 @@ Range* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignment) noe
 
 // A free range of whole pages for a block, and for half as much as is held besides. Null if the
 // system refuses.
-Range* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
+MemoryRange* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
   const std::size_t ahead = std::min(held_ / 2, kMostAhead);
   const std::size_t pages = whole(std::max(bytes, ahead), kPage);
-  const Range slab{map_pages(pages), pages};
+  const MemoryRange slab{map_pages(pages), pages};
   if (slab.begin == nullptr) return nullptr;
   held_ += pages;
   (void)insert(slabs_, slab);
@@ -188,8 +188,8 @@ Range* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
 }
 
 // Takes [gap, gap + bytes) out of a free range.
-void LargePages::Slabs::cut(Range* from, std::size_t gap, std::size_t bytes) noexcept {
-  const Range behind{from->begin + gap + bytes, from->bytes - gap - bytes};
+void LargePages::Slabs::cut(MemoryRange* from, std::size_t gap, std::size_t bytes) noexcept {
+  const MemoryRange behind{from->begin + gap + bytes, from->bytes - gap - bytes};
   from->bytes = gap;
   if (gap == 0 && behind.bytes == 0) return erase(free_, from);
   if (gap == 0) {
@@ -204,9 +204,9 @@ void LargePages::Slabs::give_back(void* block, std::size_t bytes) noexcept {
   const std::size_t taken = whole(bytes, kLine);
   --blocks_;
   used_ -= taken;
-  const Range* const slab = slab_of(static_cast<std::byte*>(block));
-  Range* range = insert(free_, {static_cast<std::byte*>(block), taken});
-  Range* const next = range + 1;
+  const MemoryRange* const slab = slab_of(static_cast<std::byte*>(block));
+  MemoryRange* range = insert(free_, {static_cast<std::byte*>(block), taken});
+  MemoryRange* const next = range + 1;
   if (next != free_.end() && next->begin == range->end() && next->begin < slab->end()) {
     range->bytes += next->bytes;
     erase(free_, next);
@@ -220,7 +220,7 @@ void LargePages::Slabs::give_back(void* block, std::size_t bytes) noexcept {
 
 void LargePages::Slabs::return_empty_slabs() noexcept {
   for (std::size_t i = free_.size(); i-- > 0 && held_ - used_ > std::max(used_, kKept);) {
-    const Range range = free_[i];
+    const MemoryRange range = free_[i];
     if (!is_whole_slab(range)) continue;
     erase(free_, free_.begin() + i);
     erase(slabs_, slab_of(range.begin));
@@ -230,26 +230,28 @@ void LargePages::Slabs::return_empty_slabs() noexcept {
 }
 
 // Room was made.
-Range* LargePages::Slabs::insert(Column<Range>& list, const Range& range) noexcept {
-  Range* const at = std::upper_bound(
+MemoryRange* LargePages::Slabs::insert(Column<MemoryRange>& list,
+                                       const MemoryRange& range) noexcept {
+  MemoryRange* const at = std::upper_bound(
       list.begin(), list.end(), range.begin,
-      [](const std::byte* p, const Range& r) { return std::less<>()(p, r.begin); });
+      [](const std::byte* p, const MemoryRange& r) { return std::less<>()(p, r.begin); });
   list.set_size(list.size() + 1);
   std::move_backward(at, list.end() - 1, list.end());
   *at = range;
   return at;
 }
 
-void LargePages::Slabs::erase(Column<Range>& list, const Range* range) noexcept {
-  Range* const at = list.begin() + (range - list.begin());
+void LargePages::Slabs::erase(Column<MemoryRange>& list, const MemoryRange* range) noexcept {
+  MemoryRange* const at = list.begin() + (range - list.begin());
   std::move(at + 1, list.end(), at);
   list.set_size(list.size() - 1);
 }
 
-Range* LargePages::Slabs::slab_of(const std::byte* at) noexcept {
-  return std::upper_bound(
-             slabs_.begin(), slabs_.end(), at,
-             [](const std::byte* p, const Range& slab) { return std::less<>()(p, slab.begin); }) -
+MemoryRange* LargePages::Slabs::slab_of(const std::byte* at) noexcept {
+  return std::upper_bound(slabs_.begin(), slabs_.end(), at,
+                          [](const std::byte* p, const MemoryRange& slab) {
+                            return std::less<>()(p, slab.begin);
+                          }) -
          1;
 }
 
