@@ -110,6 +110,26 @@ class StandingPoints {
   double point_[kMost + 1][3];
 };
 
+/// The plane, and its normal in the hull's axes, lane by lane as well.
+template <typename T>
+struct PlaneUnderHull {
+  Plane<T> plane;
+  Turn<T> turn;
+  Rotation<T> axes;
+  Vec3<T> up;
+  alignas(64) T normal[3][Lanes<T>::kCount];
+
+  [[gnu::always_inline]] PlaneUnderHull(const NarrowJob& job, const PairBlock<T>& block)
+      : plane(load_plane<SideB>(job, block)),
+        turn(load_turn<SideA>(job, block)),
+        axes(rotation(turn)),
+        up(axes.to_local(plane.normal)) {
+    up.x.store(normal[0]);
+    up.y.store(normal[1]);
+    up.z.store(normal[2]);
+  }
+};
+
 struct HullOverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
@@ -125,13 +145,8 @@ struct HullOverPlane {
   /// How high the lowest vertices are, whichever these are.
   [[gnu::noinline]] static Feet<float, 1> heights(const NarrowJob& job,
                                                   const PairBlock<float>& block) {
-    const Plane<float> plane = load_plane<SideB>(job, block);
-    const Turn<float> turn = load_turn<SideA>(job, block);
-    const Vec3<float> up = rotation(turn).to_local(plane.normal);
-    alignas(64) float normal[3][kLanes];
-    up.x.store(normal[0]);
-    up.y.store(normal[1]);
-    up.z.store(normal[2]);
+    const PlaneUnderHull<float> under(job, block);
+    const Plane<float>& plane = under.plane;
     alignas(64) float low[kLanes][kLanes];
     alignas(64) float rounding[kLanes];
     alignas(64) float reach[kLanes];
@@ -140,7 +155,7 @@ struct HullOverPlane {
           job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
       rounding[lane] = static_cast<float>(shape.rounding);
       reach[lane] = 2.0F * static_cast<float>(hull::reach_of(shape));
-      const Vec3<float> n{normal[0][lane], normal[1][lane], normal[2][lane]};
+      const Vec3<float> n{under.normal[0][lane], under.normal[1][lane], under.normal[2][lane]};
       Floats least = hull::along(shape.vertex_float, 0, n);
       for (std::uint32_t row = kLanes; row < shape.vertex_count; row += kLanes) {
         least = min(least, hull::along(shape.vertex_float, row, n));
@@ -151,22 +166,17 @@ struct HullOverPlane {
     r.height[0] = plane.height + reduce_min_rows(low[0]);
     r.rounding = Floats::load(rounding);
     r.normal = plane.normal;
-    r.scale = plane.scale + r.rounding + Floats::load(reach) + doubt(turn);
+    r.scale = plane.scale + r.rounding + Floats::load(reach) + doubt(under.turn);
     return r;
   }
 
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
-    const Rotation<T> axes = rotation(turn);
-    const Vec3<T> up = axes.to_local(plane.normal);
-    alignas(64) T normal[3][kWidth];
+    const PlaneUnderHull<T> under(job, block);
+    const Plane<T>& plane = under.plane;
+    const auto& normal = under.normal;
     alignas(64) T height[kWidth];
-    up.x.store(normal[0]);
-    up.y.store(normal[1]);
-    up.z.store(normal[2]);
     plane.height.store(height);
     alignas(64) T vertex[Count][3][kWidth];
     alignas(64) T name[Count][kWidth];
@@ -211,13 +221,13 @@ struct HullOverPlane {
       const Vec3<T> local{Lanes<T>::load(vertex[i][0]), Lanes<T>::load(vertex[i][1]),
                           Lanes<T>::load(vertex[i][2])};
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
-      r.foot[i] = axes.to_world(local);
-      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
+      r.foot[i] = under.axes.to_world(local);
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(under.up, local));
       r.feature[i] = Lanes<T>::load(name[i]);
     }
     r.rounding = Lanes<T>::load(rounding);
     r.normal = plane.normal;
-    r.scale = plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(turn);
+    r.scale = plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(under.turn);
     return r;
   }
 
