@@ -1,6 +1,7 @@
 #include <winnow/core/column.h>
 
 #include "core/memory/guarded.h"
+#include "core/memory/touch_each_page.h"
 
 namespace winnow {
 namespace {
@@ -21,10 +22,7 @@ void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
 
 void touch_pages(void* begin, std::size_t bytes) noexcept {
   constexpr std::size_t kSmallestPage = 4096;  // of any system
-  // Nobody reads what is written: a compiler would leave it out.
-  auto* const memory = static_cast<volatile unsigned char*>(begin);
-  for (std::size_t at = 0; at < bytes; at += kSmallestPage) memory[at] = 0;
-  if (bytes != 0) memory[bytes - 1] = 0;
+  touch_each_page(begin, bytes, kSmallestPage);
 }
 
 ColumnRoom move_to_room(std::pmr::memory_resource& memory, ColumnRoom old, std::size_t size,

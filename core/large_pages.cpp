@@ -3,6 +3,7 @@
 #include <winnow/core/column.h>
 #include "core/memory/guarded.h"
 #include "core/memory/new_in.h"
+#include "core/memory/touch_each_page.h"
 #include "core/threads/mutex.h"
 
 #include <algorithm>
@@ -89,14 +90,11 @@ void unmap_pages(const MemoryRange&) noexcept {}
 
 #endif
 
-/// Writes to each large page of a block, before threads do so at once and wait for each other.
-void touch_large_pages(std::byte* block, std::size_t bytes) noexcept {
-  auto* const memory = reinterpret_cast<volatile unsigned char*>(block);
-  memory[0] = 0;
-  for (std::size_t at = bytes_to_aligned(block, LargePages::kPage); at < bytes;
-       at += LargePages::kPage) {
-    memory[at] = 0;
-  }
+/// The first of ranges in ascending order that begins behind an address.
+MemoryRange* first_behind(Column<MemoryRange>& list, const std::byte* address) noexcept {
+  return std::upper_bound(
+      list.begin(), list.end(), address,
+      [](const std::byte* at, const MemoryRange& r) { return std::less<>()(at, r.begin); });
 }
 
 }  // namespace
@@ -131,9 +129,6 @@ class LargePages::Slabs {
   [[nodiscard]] MemoryRange* insert(Column<MemoryRange>& list, const MemoryRange& range) noexcept;
   static void erase(Column<MemoryRange>& list, const MemoryRange* range) noexcept;
   [[nodiscard]] MemoryRange* slab_of(const std::byte* at) noexcept;
-  [[nodiscard]] bool is_whole_slab(const MemoryRange& range) noexcept {
-    return slab_of(range.begin)->bytes == range.bytes;
-  }
   void return_empty_slabs() noexcept;
 
   Mutex mutex_;
@@ -221,9 +216,10 @@ void LargePages::Slabs::give_back(void* block, std::size_t bytes) noexcept {
 void LargePages::Slabs::return_empty_slabs() noexcept {
   for (std::size_t i = free_.size(); i-- > 0 && held_ - used_ > std::max(used_, kKept);) {
     const MemoryRange range = free_[i];
-    if (!is_whole_slab(range)) continue;
+    const MemoryRange* const slab = slab_of(range.begin);
+    if (range.bytes != slab->bytes) continue;
     erase(free_, free_.begin() + i);
-    erase(slabs_, slab_of(range.begin));
+    erase(slabs_, slab);
     held_ -= range.bytes;
     unmap_pages(range);
   }
@@ -232,9 +228,7 @@ void LargePages::Slabs::return_empty_slabs() noexcept {
 // Room was made.
 MemoryRange* LargePages::Slabs::insert(Column<MemoryRange>& list,
                                        const MemoryRange& range) noexcept {
-  MemoryRange* const at = std::upper_bound(
-      list.begin(), list.end(), range.begin,
-      [](const std::byte* p, const MemoryRange& r) { return std::less<>()(p, r.begin); });
+  MemoryRange* const at = first_behind(list, range.begin);
   list.set_size(list.size() + 1);
   std::move_backward(at, list.end() - 1, list.end());
   *at = range;
@@ -248,11 +242,7 @@ void LargePages::Slabs::erase(Column<MemoryRange>& list, const MemoryRange* rang
 }
 
 MemoryRange* LargePages::Slabs::slab_of(const std::byte* at) noexcept {
-  return std::upper_bound(slabs_.begin(), slabs_.end(), at,
-                          [](const std::byte* p, const MemoryRange& slab) {
-                            return std::less<>()(p, slab.begin);
-                          }) -
-         1;
+  return first_behind(slabs_, at) - 1;
 }
 
 LargePages::LargePages(std::pmr::memory_resource* small_blocks) noexcept
@@ -280,7 +270,8 @@ void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   // No system has as much.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
   if (block == nullptr) leave_without_memory();
-  touch_large_pages(static_cast<std::byte*>(block), bytes);
+  // Before threads do so at once and wait for each other.
+  touch_each_page(block, bytes, kPage);
   return block;
 }
 

@@ -110,7 +110,8 @@ class StandingPoints {
   double point_[kMost + 1][3];
 };
 
-/// The plane, and its normal in the hull's axes, lane by lane as well.
+/// The plane and its normal in the hulls' axes, lane by lane as well, and what is asked of each
+/// hull beside its vertices.
 template <typename T>
 struct PlaneUnderHull {
   Plane<T> plane;
@@ -118,6 +119,8 @@ struct PlaneUnderHull {
   Rotation<T> axes;
   Vec3<T> up;
   alignas(64) T normal[3][Lanes<T>::kCount];
+  alignas(64) T rounding[Lanes<T>::kCount];
+  alignas(64) T reach[Lanes<T>::kCount];  // of what coordinates add up to
 
   [[gnu::always_inline]] PlaneUnderHull(const NarrowJob& job, const PairBlock<T>& block)
       : plane(load_plane<SideB>(job, block)),
@@ -127,6 +130,24 @@ struct PlaneUnderHull {
     up.x.store(normal[0]);
     up.y.store(normal[1]);
     up.z.store(normal[2]);
+  }
+
+  /// The hull of a lane; has to be called for all.
+  [[gnu::always_inline]] const HullShape& take(const NarrowJob& job, const PairBlock<T>& block,
+                                               std::uint32_t lane) {
+    const HullShape& shape =
+        job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
+    rounding[lane] = static_cast<T>(shape.rounding);
+    reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
+    return shape;
+  }
+
+  /// What is the same of all feet.
+  template <int Count>
+  [[gnu::always_inline]] void set_common(Feet<T, Count>& feet) const {
+    feet.rounding = Lanes<T>::load(rounding);
+    feet.normal = plane.normal;
+    feet.scale = plane.scale + feet.rounding + Lanes<T>::load(reach) + doubt(turn);
   }
 };
 
@@ -145,16 +166,10 @@ struct HullOverPlane {
   /// How high the lowest vertices are, whichever these are.
   [[gnu::noinline]] static Feet<float, 1> heights(const NarrowJob& job,
                                                   const PairBlock<float>& block) {
-    const PlaneUnderHull<float> under(job, block);
-    const Plane<float>& plane = under.plane;
+    PlaneUnderHull<float> under(job, block);
     alignas(64) float low[kLanes][kLanes];
-    alignas(64) float rounding[kLanes];
-    alignas(64) float reach[kLanes];
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
-      const HullShape& shape =
-          job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
-      rounding[lane] = static_cast<float>(shape.rounding);
-      reach[lane] = 2.0F * static_cast<float>(hull::reach_of(shape));
+      const HullShape& shape = under.take(job, block, lane);
       const Vec3<float> n{under.normal[0][lane], under.normal[1][lane], under.normal[2][lane]};
       Floats least = hull::along(shape.vertex_float, 0, n);
       for (std::uint32_t row = kLanes; row < shape.vertex_count; row += kLanes) {
@@ -163,17 +178,15 @@ struct HullOverPlane {
       least.store(low[lane]);
     }
     Feet<float, 1> r;
-    r.height[0] = plane.height + reduce_min_rows(low[0]);
-    r.rounding = Floats::load(rounding);
-    r.normal = plane.normal;
-    r.scale = plane.scale + r.rounding + Floats::load(reach) + doubt(under.turn);
+    r.height[0] = under.plane.height + reduce_min_rows(low[0]);
+    under.set_common(r);
     return r;
   }
 
   template <typename T, int Count>
   [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
-    const PlaneUnderHull<T> under(job, block);
+    PlaneUnderHull<T> under(job, block);
     const Plane<T>& plane = under.plane;
     const auto& normal = under.normal;
     alignas(64) T height[kWidth];
@@ -181,14 +194,8 @@ struct HullOverPlane {
     alignas(64) T vertex[Count][3][kWidth];
     alignas(64) T name[Count][kWidth];
     alignas(64) T missing[Count][kWidth] = {};
-    alignas(64) T rounding[kWidth];
-    alignas(64) T reach[kWidth];
     for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
-      const HullShape& shape =
-          job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
-      rounding[lane] = static_cast<T>(shape.rounding);
-      // Of what coordinates add up to.
-      reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
+      const HullShape& shape = under.take(job, block, lane);
       const Vec3<T> down{-normal[0][lane], -normal[1][lane], -normal[2][lane]};
       const std::uint32_t lowest = hull::highest_vertex(shape, down);
       if constexpr (Count == 1) {
@@ -225,9 +232,7 @@ struct HullOverPlane {
       r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(under.up, local));
       r.feature[i] = Lanes<T>::load(name[i]);
     }
-    r.rounding = Lanes<T>::load(rounding);
-    r.normal = plane.normal;
-    r.scale = plane.scale + r.rounding + Lanes<T>::load(reach) + doubt(under.turn);
+    under.set_common(r);
     return r;
   }
 
