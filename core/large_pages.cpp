@@ -7,6 +7,7 @@
 #include "core/threads/mutex.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <string_view>
@@ -30,9 +31,20 @@ constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(me
 constexpr bool kSanitized = false;
 #endif
 
+// Whether the system gives large pages to who asks for them.
+bool has_large_pages() noexcept {
+  std::FILE* const file = std::fopen("/sys/kernel/mm/transparent_hugepage/enabled", "r");
+  if (file == nullptr) return false;
+  char text[64];
+  const std::size_t length = std::fread(text, 1, sizeof text, file);
+  (void)std::fclose(file);
+  return length != 0 && std::string_view(text, length).find("[never]") == std::string_view::npos;
+}
+
 bool wants_large_pages() noexcept {
   const char* const wish = std::getenv("WINNOW_LARGE_PAGES");
-  return !kSanitized && (wish == nullptr || std::string_view(wish) != "0");
+  const bool refused = wish != nullptr && std::string_view(wish) == "0";
+  return !kSanitized && !refused && has_large_pages();
 }
 
 constexpr std::size_t whole(std::size_t bytes, std::size_t unit) noexcept {

@@ -57,10 +57,10 @@ class WINNOW_API LargePages final : public std::pmr::memory_resource {
 };
 
 /// Where objects of winnow take their memory from if they are not told: the standard library's
-/// default resource, if the program has set one (`std::pmr::set_default_resource`), and else large
-/// pages that the whole process shares. Tools that look for errors watch over the blocks of `new`:
-/// with the environment variable WINNOW_LARGE_PAGES=0, or built with the address or memory
-/// sanitizer, winnow takes the default resource in any case.
+/// default resource, if the program has set one (`std::pmr::set_default_resource`) or the system
+/// has no large pages, and else such pages that the whole process shares. Tools that look for
+/// errors watch over the blocks of `new`: with the environment variable WINNOW_LARGE_PAGES=0, or
+/// built with the address or memory sanitizer, winnow takes the default resource in any case.
 [[nodiscard]] WINNOW_API std::pmr::memory_resource* default_memory() noexcept;
 
 }  // namespace winnow
