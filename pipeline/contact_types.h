@@ -46,4 +46,19 @@ inline constexpr std::uint32_t kNoContact = ~0U;
 /// At most so many points per manifold.
 inline constexpr std::uint32_t kManifoldPoints = 4;
 
+/// What is known about one pair of shapes.
+struct PairAnswer {
+  /// Negative by the penetration depth: the length of the shortest translation that parts them.
+  double distance = 0.0;
+  /// The true distance is within distance +- error_bound.
+  double error_bound = 0.0;
+  double normal[3] = {1.0, 0.0, 0.0};  ///< unit, from a to b, in the axes of the world
+  /// On a, relative to the position of a, in the axes of the world. The point of b is
+  /// distance * normal farther.
+  double point[3] = {0.0, 0.0, 0.0};
+  bool overlap = false;                         ///< they share a point
+  std::uint32_t contact_count = 0;              ///< of `contacts`
+  ContactPoint contacts[kManifoldPoints] = {};  ///< none where they are apart beyond the margin
+};
+
 }  // namespace winnow

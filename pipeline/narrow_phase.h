@@ -112,4 +112,18 @@ class WINNOW_API NarrowPhase {
   std::uint32_t bad_body_ = 0;
 };
 
+/// What NarrowPhase answers about one pair, shape a at pose_a and b at pose_b, for who has no more
+/// than one: keeps nothing and allocates nothing, so any number of threads may ask. Of many pairs
+/// each takes several times as long as in a call of NarrowPhase. Of `answer` level `boolean` tells
+/// `overlap` alone, `distance` all but contacts, `manifold` all but the point. Errors as of
+/// NarrowPhase::collide; then `answer` is as it was.
+/// @{
+WINNOW_API Status collide(const ShapePool& shapes, ShapeId a, const Pose& pose_a, ShapeId b,
+                          const Pose& pose_b, const NarrowOptions& options,
+                          PairAnswer& answer) noexcept;
+WINNOW_API Status collide(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+                          const Pose& pose_b, const NarrowOptions& options,
+                          PairAnswer& answer) noexcept;
+/// @}
+
 }  // namespace winnow

@@ -387,6 +387,9 @@ class Narrow final : public PairsCommand {
            "Numbers of pairs; those of more than 16,384 lie scattered in memory");
     add_threads_option(app, threads_, "Numbers of threads that winnow takes");
     number(app, "--rounds", race_.rounds, 1, 1000, "Rounds in which all take turns");
+    app.add_flag("--one-a-call", one_a_call_,
+                 "Tiers also with a call of the function for one pair for each, as other libraries "
+                 "answer");
     app.add_flag("--upright", upright_,
                  "Bodies turned about the vertical axis alone, prisms for hulls, walls for "
                  "triangles: edges and faces are parallel");
@@ -404,9 +407,10 @@ class Narrow final : public PairsCommand {
                          {.kind = kind,
                           .pairs = count,
                           .levels = levels(),
-                          .tiers = tiers(),
-                          .threads = threads_,
-                          .peers = peers_,
+                          .contenders = {.tiers = tiers(),
+                                         .threads = threads_,
+                                         .one_a_call = one_a_call_,
+                                         .peers = peers_},
                           .seed = seed_,
                           .upright = upright_,
                           .race = race_},
@@ -420,6 +424,7 @@ class Narrow final : public PairsCommand {
 
   std::vector<std::size_t> pairs_{8192, 100'000};
   std::vector<int> threads_{1};
+  bool one_a_call_ = false;
   bool upright_ = false;
   NarrowRaceOptions race_;
 };

@@ -42,4 +42,29 @@ double WinnowNarrow::recomputed() const {
   return alone / static_cast<double>(std::max<std::uint64_t>(statistics.pairs, 1));
 }
 
+void WinnowOnePair::run(ContactLevel level, std::span<const BodyPair> pairs) {
+  options_.level = level;
+  answers_.resize(std::max(answers_.size(), pairs.size()));
+  PairAnswer found;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const BodyPair pair = pairs[i];
+    const Pose& a = set_->poses[pair.a];
+    need(collide(set_->pool, set_->shapes[pair.a], a, set_->shapes[pair.b], set_->poses[pair.b],
+                 options_, found),
+         "pair");
+    NarrowAnswer& answer = answers_[i];
+    answer.overlap = found.overlap;
+    if (level == ContactLevel::boolean) continue;
+    answer.distance = found.distance;
+    answer.error_bound = found.error_bound;
+    for (int axis = 0; axis < 3; ++axis) {
+      answer.normal[axis] = found.normal[axis];
+      if (level == ContactLevel::distance) {
+        answer.point[axis] = a.position[axis] + found.point[axis];
+      }
+    }
+    answer.contacts = found.contact_count;
+  }
+}
+
 }  // namespace winnow::bench

@@ -30,4 +30,24 @@ class WinnowNarrow final : public NarrowEngine {
   NarrowResult result_;
 };
 
+/// winnow's function for one pair, in one tier, called for each.
+class WinnowOnePair final : public NarrowEngine {
+ public:
+  explicit WinnowOnePair(NarrowTier tier) : options_{.tier = tier} {}
+
+  [[nodiscard]] std::string name() const override {
+    return std::string(to_text(options_.tier)) + ", one a call";
+  }
+  [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
+  void start(const PairSet& set) override { set_ = &set; }
+  /// Throws std::runtime_error if a pair is refused.
+  void run(ContactLevel level, std::span<const BodyPair> pairs) override;
+  [[nodiscard]] NarrowAnswer answer(std::size_t i) const override { return answers_[i]; }
+
+ private:
+  NarrowOptions options_;
+  const PairSet* set_ = nullptr;
+  std::vector<NarrowAnswer> answers_;
+};
+
 }  // namespace winnow::bench

@@ -276,14 +276,14 @@ void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
   const std::size_t pairs = options.at("pairs");
   declare_pair_times(measured.results, PairKeys::settings);
   measured.machine_ms =
-      add_pair_times(
-          measured.results,
-          {.kind = *kind,
-           .pairs = pairs,
-           .tiers = {NarrowTier::fast, NarrowTier::robust},
-           .threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2} : std::vector<int>{1},
-           .peers = true},
-          PairKeys::settings)
+      add_pair_times(measured.results,
+                     {.kind = *kind,
+                      .pairs = pairs,
+                      .contenders = {.tiers = {NarrowTier::fast, NarrowTier::robust},
+                                     .threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2}
+                                                                          : std::vector<int>{1},
+                                     .peers = true}},
+                     PairKeys::settings)
           .machine_ms;
 }
 

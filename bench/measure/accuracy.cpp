@@ -147,7 +147,7 @@ std::vector<AccuracyAtGap> split_by_gap(const Accuracy& whole,
 AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
   const auto set = make_pair_set(options.kind, options.set);
   const auto truths = truths_of(*set, options.judge);
-  const auto contenders = narrow_contenders(*set, options.tiers, {1}, options.peers);
+  const auto contenders = narrow_contenders(*set, {.tiers = options.tiers, .peers = options.peers});
   AccuracyMeasurement measured;
   for (const ContactLevel level : options.levels) {
     for (const auto& [engine, threads] : contenders) {

@@ -95,15 +95,15 @@ class PairEntry {
 }  // namespace
 
 std::vector<NarrowContender> narrow_contenders(const PairSet& set,
-                                               const std::vector<NarrowTier>& tiers,
-                                               const std::vector<int>& threads, bool peers) {
+                                               const NarrowContenderOptions& options) {
   std::vector<NarrowContender> contenders;
-  for (const NarrowTier tier : tiers) {
-    for (const int count : threads) {
+  for (const NarrowTier tier : options.tiers) {
+    for (const int count : options.threads) {
       contenders.push_back({std::make_unique<WinnowNarrow>(tier, count), count});
     }
+    if (options.one_a_call) contenders.push_back({std::make_unique<WinnowOnePair>(tier), 1});
   }
-  if (peers) {
+  if (options.peers) {
     for (auto& peer : make_narrow_peers()) {
       const bool takes_any = std::any_of(kLevels.begin(), kLevels.end(), [&](ContactLevel level) {
         return peer->takes(set.kind, level);
@@ -164,8 +164,7 @@ NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
                                                 .seed = options.seed,
                                                 .scattered = options.pairs > kMostPairsInCache,
                                                 .upright = options.upright});
-  std::vector<NarrowContender> contenders =
-      narrow_contenders(*set, options.tiers, options.threads, options.peers);
+  std::vector<NarrowContender> contenders = narrow_contenders(*set, options.contenders);
   MachineClock clock;
   for (const ContactLevel level : options.levels) {
     clock.tick();

@@ -37,12 +37,17 @@ struct NarrowContender {
   int threads = 1;
 };
 
-/// winnow's tiers, on each of these numbers of threads, and with `peers` the other libraries that
-/// the tool was built with, all started with the set.
+/// Which of them.
+struct NarrowContenderOptions {
+  std::vector<NarrowTier> tiers{NarrowTier::robust};
+  std::vector<int> threads{1};  ///< winnow's; other libraries use one
+  bool one_a_call = false;      ///< winnow's tiers also as they answer a single pair
+  bool peers = false;           ///< other libraries too, where the tool was built with them
+};
+
+/// All started with the set.
 [[nodiscard]] std::vector<NarrowContender> narrow_contenders(const PairSet& set,
-                                                             const std::vector<NarrowTier>& tiers,
-                                                             const std::vector<int>& threads,
-                                                             bool peers);
+                                                             const NarrowContenderOptions& options);
 
 struct NarrowRaceOptions {
   std::size_t rounds = 7;
@@ -72,9 +77,7 @@ struct NarrowMeasureOptions {
   std::size_t pairs = 8192;
   std::vector<ContactLevel> levels{ContactLevel::boolean, ContactLevel::distance,
                                    ContactLevel::manifold};
-  std::vector<NarrowTier> tiers{NarrowTier::robust};
-  std::vector<int> threads{1};  ///< winnow's; other libraries use one
-  bool peers = false;           ///< other libraries too, where the tool was built with them
+  NarrowContenderOptions contenders{};
   std::uint64_t seed = 1;
   bool upright = false;  ///< as PairSetOptions say
   NarrowRaceOptions race{};

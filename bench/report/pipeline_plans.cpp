@@ -28,11 +28,12 @@ std::vector<PairKind> reported(std::span<const PairKind> all, bool quick) {
 }
 
 void measure_narrow_times(Results& results, const ReportOptions& options, const PairKind& kind) {
-  NarrowMeasureOptions asked{.kind = kind,
-                             .pairs = options.quick ? 512U : 8192U,
-                             .tiers = {NarrowTier::robust, NarrowTier::fast, NarrowTier::reference},
-                             .peers = options.peers,
-                             .seed = options.seed};
+  NarrowMeasureOptions asked{
+      .kind = kind,
+      .pairs = options.quick ? 512U : 8192U,
+      .contenders = {.tiers = {NarrowTier::robust, NarrowTier::fast, NarrowTier::reference},
+                     .peers = options.peers},
+      .seed = options.seed};
   asked.race.rounds = options.quick ? 3 : 5;
   if (options.quick) asked.race.turn_ms = 0.5;
   if (options.quick) asked.race.smallest_part = 128;

@@ -124,6 +124,33 @@ WINNOW_C_API winnow_status winnow_narrow_phase_statistics(const winnow_narrow_ph
 WINNOW_C_API winnow_status winnow_narrow_phase_footprint(const winnow_narrow_phase* narrow,
                                                          winnow_footprint* footprint);
 
+/// One contact of a pair.
+typedef struct winnow_contact_point {
+  float position[3];
+  float depth;
+  uint64_t feature;
+} winnow_contact_point;
+
+/// What is known about one pair. Level boolean tells `overlap` alone, distance all but contacts,
+/// manifold all but the point.
+typedef struct winnow_pair_answer {
+  double distance;
+  double error_bound;
+  double normal[3];
+  double point[3];
+  bool overlap;
+  uint32_t contact_count;
+  winnow_contact_point contacts[4];
+} winnow_pair_answer;
+
+/// One pair, for who has no more than one: needs no narrow phase and no memory, and any number of
+/// threads may ask. `options` may be null.
+WINNOW_C_API winnow_status winnow_collide(const winnow_shape_pool* shapes, winnow_shape_id a,
+                                          const winnow_pose* pose_a, winnow_shape_id b,
+                                          const winnow_pose* pose_b,
+                                          const winnow_narrow_options* options,
+                                          winnow_pair_answer* answer);
+
 #ifdef __cplusplus
 }
 #endif

@@ -61,7 +61,9 @@ template <typename T>
 [[gnu::always_inline]] inline void write_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                  Mask16 overlap) {
   std::uint8_t* out = job.overlap + block.first;
-  if (block.count == Lanes<T>::kCount) {
+  if constexpr (Lanes<T>::kCount == 1) {
+    *out = static_cast<std::uint8_t>(overlap & 1U);
+  } else if (block.count == Lanes<T>::kCount) {
     for (unsigned byte = 0; byte < Lanes<T>::kCount; byte += 8) {
       const std::uint64_t bytes = bytes_of_bits(overlap >> byte & 0xFFU);
       __builtin_memcpy(out + byte, &bytes, 8);
@@ -77,17 +79,21 @@ template <typename T>
 [[gnu::always_inline]] inline void write_column(double* column, const PairBlock<T>& block,
                                                 const Lanes<T>& v) {
   constexpr unsigned lanes = Lanes<T>::kCount;
-  alignas(64) double stage[lanes];
   double* out = column + block.first;
-  double* to = block.count == lanes ? out : stage;
-  if constexpr (sizeof(T) == sizeof(double)) {
-    v.store_unaligned(to);
+  if constexpr (lanes == 1) {
+    *out = v.part[0];
   } else {
-    to_double<0>(v).store_unaligned(to);
-    to_double<1>(v).store_unaligned(to + 8);
+    alignas(64) double stage[lanes];
+    double* to = block.count == lanes ? out : stage;
+    if constexpr (sizeof(T) == sizeof(double)) {
+      v.store_unaligned(to);
+    } else {
+      to_double<0>(v).store_unaligned(to);
+      to_double<1>(v).store_unaligned(to + 8);
+    }
+    if (block.count == lanes) return;
+    for (unsigned lane = 0; lane < block.count; ++lane) out[lane] = stage[lane];
   }
-  if (block.count == lanes) return;
-  for (unsigned lane = 0; lane < block.count; ++lane) out[lane] = stage[lane];
 }
 
 /// Levels distance and manifold, all but contacts.
@@ -146,7 +152,9 @@ template <int Points, typename T>
 /// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
 template <typename T>
 [[gnu::always_inline]] inline Floats as_floats(const Lanes<T>& v) {
-  if constexpr (sizeof(T) == sizeof(double)) {
+  if constexpr (Lanes<T>::kCount == 1) {
+    return Floats(static_cast<float>(v.part[0]));
+  } else if constexpr (sizeof(T) == sizeof(double)) {
     return to_single(v);
   } else {
     return v;
@@ -245,9 +253,9 @@ std::uint32_t answer_job(NarrowJob& job) {
 
 /// Level boolean of tier robust: what float is sure about, and then the rest in double. A block of
 /// float lanes takes as long as one of double, for twice as many pairs.
-template <typename Kind>
+template <typename Kind, NarrowKernel in_double = answer_job<Kind, double, kBoolean>>
 std::uint32_t answer_sure_first(NarrowJob& job) {
-  if (job.count <= Doubles::kCount) return answer_job<Kind, double, kBoolean>(job);
+  if (job.count <= Doubles::kCount) return in_double(job);
   NarrowJob part = job;
   part.beyond_doubt = true;
   const std::uint32_t doubtful = answer_job<Kind, float, kBoolean>(part);

@@ -38,7 +38,7 @@ struct NarrowJob {
   const Pose* poses;
   /// Whether poses fill more than the nearer caches: kernels ask memory for them ahead.
   bool has_many_bodies;
-  ShapeTables tables;
+  const ShapeTables* tables;
   /// Contacts are made of pairs that are no farther apart.
   double margin;
 

@@ -71,18 +71,53 @@ template <typename T, int Count, typename Load>
   }
 }
 
+/// Columns of the pairs' rows of doubles: row(lane) is where that of the pair in a lane begins.
+template <int Count, typename T, typename Row>
+[[gnu::always_inline]] inline void load_columns(Row&& row, Lanes<T> (&out)[Count]) {
+  static_assert(1 <= Count && Count <= 4);
+  if constexpr (Lanes<T>::kCount == 1) {
+    const double* const only = row(0);
+    for (int k = 0; k < Count; ++k) out[k] = Lanes<T>(only[k]);
+  } else {
+    in_precision<T>(
+        [&](int from, Doubles(&rows)[Count]) {
+          const auto row_from = [&](int lane) { return row(from + lane); };
+          if constexpr (Count == 1) {
+            rows[0] = load_rows1(row_from);
+          } else if constexpr (Count == 2) {
+            load_rows2(row_from, rows);
+          } else if constexpr (Count == 3) {
+            Doubles two[2];
+            load_rows2(row_from, two);
+            rows[0] = two[0];
+            rows[1] = two[1];
+            rows[2] = load_rows1([&](int lane) { return row(from + lane) + 2; });
+          } else {
+            load_rows4(row_from, rows);
+          }
+        },
+        out);
+  }
+}
+
 /// Position of b less that of a, subtracted in double.
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> load_offset(const NarrowJob& job, const PairBlock<T>& block) {
-  Lanes<T> d[4];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[4]) {
-        load_differences4([&](int lane) { return numbers(job.poses[block.pairs[from + lane].b]); },
-                          [&](int lane) { return numbers(job.poses[block.pairs[from + lane].a]); },
-                          out);
-      },
-      d);
-  return {d[0], d[1], d[2]};
+  const auto position_of = [&](std::uint32_t body) { return numbers(job.poses[body]); };
+  if constexpr (Lanes<T>::kCount == 1) {
+    const double* const a = position_of(block.pairs[0].a);
+    const double* const b = position_of(block.pairs[0].b);
+    return {Lanes<T>(b[0] - a[0]), Lanes<T>(b[1] - a[1]), Lanes<T>(b[2] - a[2])};
+  } else {
+    Lanes<T> d[4];
+    in_precision<T>(
+        [&](int from, Doubles(&out)[4]) {
+          load_differences4([&](int lane) { return position_of(block.pairs[from + lane].b); },
+                            [&](int lane) { return position_of(block.pairs[from + lane].a); }, out);
+        },
+        d);
+    return {d[0], d[1], d[2]};
+  }
 }
 
 /// A quaternion of any length and the factor 2 / |q|^2 that makes its products those of a rotation:
@@ -98,13 +133,7 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline Turn<T> load_turn(const NarrowJob& job, const PairBlock<T>& block) {
   constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
   Lanes<T> q[4];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[4]) {
-        load_rows4(
-            [&](int lane) { return job.poses[Side::body(block.pairs[from + lane])].orientation; },
-            out);
-      },
-      q);
+  load_columns([&](int lane) { return job.poses[Side::body(block.pairs[lane])].orientation; }, q);
   const Lanes<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const LaneMask<T> usable = (norm > Lanes<T>(T(1) / limit)) & (norm < Lanes<T>(limit));
   const Lanes<T> scale = select(usable, Lanes<T>(T(2)) / norm, Lanes<T>(T(__builtin_nan(""))));
@@ -195,33 +224,14 @@ template <typename Side, int Count, typename T, typename Shape>
 [[gnu::always_inline]] inline void load_shapes(const NarrowJob& job, const PairBlock<T>& block,
                                                const Shape* table, Lanes<T> (&out)[Count]) {
   static_assert(sizeof(Shape) == Count * sizeof(double));
-  in_precision<T>(
-      [&](int from, Doubles(&rows)[Count]) {
-        const auto row = [&](int lane) {
-          return numbers(table[shape_index<Side>(job, block, from + lane)]);
-        };
-        if constexpr (Count == 1) {
-          rows[0] = load_rows1(row);
-        } else if constexpr (Count == 2) {
-          load_rows2(row, rows);
-        } else if constexpr (Count == 3) {
-          Doubles two[2];
-          load_rows2(row, two);
-          rows[0] = two[0];
-          rows[1] = two[1];
-          rows[2] = load_rows1([&](int lane) { return row(lane) + 2; });
-        } else {
-          load_rows4(row, rows);
-        }
-      },
-      out);
+  load_columns([&](int lane) { return numbers(table[shape_index<Side>(job, block, lane)]); }, out);
 }
 
 template <typename Side, typename T>
 [[gnu::always_inline]] inline Lanes<T> load_sphere(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
   Lanes<T> r[1];
-  load_shapes<Side>(job, block, job.tables.spheres, r);
+  load_shapes<Side>(job, block, job.tables->spheres, r);
   return r[0];
 }
 
@@ -229,7 +239,7 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline CapsuleLanes<T> load_capsule(const NarrowJob& job,
                                                            const PairBlock<T>& block) {
   Lanes<T> r[2];
-  load_shapes<Side>(job, block, job.tables.capsules, r);
+  load_shapes<Side>(job, block, job.tables->capsules, r);
   return {r[0], r[1]};
 }
 
@@ -237,7 +247,7 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline BoxLanes<T> load_box(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
   Lanes<T> r[4];
-  load_shapes<Side>(job, block, job.tables.boxes, r);
+  load_shapes<Side>(job, block, job.tables->boxes, r);
   return {{r[0], r[1], r[2]}, r[3]};
 }
 
@@ -245,7 +255,7 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline HalfSpaceLanes<T> load_half_space(const NarrowJob& job,
                                                                 const PairBlock<T>& block) {
   Lanes<T> r[4];
-  load_shapes<Side>(job, block, job.tables.half_spaces, r);
+  load_shapes<Side>(job, block, job.tables->half_spaces, r);
   return {{r[0], r[1], r[2]}, r[3]};
 }
 
@@ -262,23 +272,16 @@ template <typename Side, typename T>
 [[gnu::always_inline]] inline TriangleLanes<T> load_triangle(const NarrowJob& job,
                                                              const PairBlock<T>& block) {
   const auto row = [&](int lane) {
-    return numbers(job.tables.triangles[shape_index<Side>(job, block, lane)]);
+    return numbers(job.tables->triangles[shape_index<Side>(job, block, lane)]);
   };
-  Lanes<T> r[10];
-  in_precision<T>(
-      [&](int from, Doubles(&out)[10]) {
-        Doubles quad[4];
-        for (int part = 0; part < 2; ++part) {
-          load_rows4([&](int lane) { return row(from + lane) + 4 * part; }, quad);
-          for (int k = 0; k < 4; ++k) out[4 * part + k] = quad[k];
-        }
-        Doubles two[2];
-        load_rows2([&](int lane) { return row(from + lane) + 8; }, two);
-        out[8] = two[0];
-        out[9] = two[1];
-      },
-      r);
-  return {{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}, r[9]};
+  Lanes<T> r[2][4];
+  Lanes<T> last[2];
+  for (int part = 0; part < 2; ++part) {
+    load_columns([&](int lane) { return row(lane) + 4 * part; }, r[part]);
+  }
+  load_columns([&](int lane) { return row(lane) + 8; }, last);
+  return {{{r[0][0], r[0][1], r[0][2]}, {r[0][3], r[1][0], r[1][1]}, {r[1][2], r[1][3], last[0]}},
+          last[1]};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

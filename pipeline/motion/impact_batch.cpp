@@ -40,7 +40,7 @@ constexpr std::uint16_t kNoLanes = 2 * kKinds * kKinds;
 class StartDistances {
  public:
   explicit StartDistances(const ShapeTables& tables) noexcept {
-    job_.tables = tables;
+    job_.tables = &tables;
     job_.pairs = pairs_.data();
     job_.shapes = shapes_.data();
     job_.poses = poses_.data();

@@ -8,11 +8,10 @@
 
 #include "pipeline/motion/impact_search.h"
 
+#include <winnow/pipeline/narrow_phase.h>
 #include "pipeline/motion/moving_pair.h"
-#include "pipeline/motion/one_pair.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/gjk.h"
-#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <array>
@@ -32,6 +31,15 @@ constexpr std::uint32_t kMostLooks = 200'000;
 constexpr std::uint32_t kMostWithin = 64;
 /// Distances need to be no better than this share of them until the last one.
 constexpr double kGoodEnough = 1e-3;
+
+/// Of shapes that are there, at valid poses.
+[[nodiscard]] PairAnswer distance_of(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
+                                     ShapeId b, const Pose& pose_b) noexcept {
+  PairAnswer answer;
+  const NarrowOptions options{.level = ContactLevel::distance};
+  static_cast<void>(collide(tables, a, pose_a, b, pose_b, options, answer));
+  return answer;
+}
 
 /// The pair at one time.
 struct Look {

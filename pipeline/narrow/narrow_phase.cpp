@@ -3,13 +3,12 @@
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
 #include "core/sort/stretches.h"
-#include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/question.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <numeric>
@@ -213,8 +212,7 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   BodyPair own = pair.front();
   if (own.a >= shapes.size() || own.b >= shapes.size()) return Status::invalid_argument;
   for (const std::uint32_t body : {own.a, own.b}) {
-    const std::uint32_t kind = shapes[body].kind_index();
-    if (kind < kShapeKinds && shapes[body].index() < tables.count[kind]) continue;
+    if (holds(tables, shapes[body])) continue;
     bad_body = body;
     return Status::invalid_key;
   }
@@ -227,8 +225,14 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   }
   if (!order.resize(1)) return Status::out_of_memory;
   order[0] = 0;
-  const NarrowRun run{shapes[own.a].kind(), shapes[own.b].kind(), 0, 1};
-  return runs.push_back(run) ? Status::ok : Status::out_of_memory;
+  if (!runs.resize(1)) return Status::out_of_memory;
+  // In place, member by member: a copy of what was just put together would wait for its stores.
+  NarrowRun& run = runs[0];
+  run.a = shapes[own.a].kind();
+  run.b = shapes[own.b].kind();
+  run.first = 0;
+  run.count = 1;
+  return Status::ok;
 }
 
 // Calls body(pairs, the number of the first, look) for each stretch of the pairs.
@@ -363,14 +367,6 @@ template <typename T>
   return column == nullptr ? nullptr : column + first;
 }
 
-[[nodiscard]] NarrowKernel pick(const NarrowRun& run, const NarrowOptions& options) noexcept {
-  const NarrowKernels* const kernels = narrow_kernels(run.a, run.b);
-  if (kernels == nullptr || options.tier == NarrowTier::reference) return nullptr;
-  const std::uint32_t level = kernel_index(options.level);
-  const bool fast = options.tier == NarrowTier::fast && kernels->fast[level] != nullptr;
-  return fast ? kernels->fast[level] : kernels->robust[level];
-}
-
 /// What became of a job.
 struct ChunkOutcome {
   std::uint32_t contacts = 0;
@@ -436,10 +432,9 @@ void write_answer(NarrowJob& job, ContactLevel level, std::uint32_t i,
 }
 
 /// Answers a job: by `kernel` (null: there is none), then one by one what it could not certify.
-[[nodiscard]] ChunkOutcome answer_job(NarrowJob& job, ContactLevel level,
-                                      NarrowKernel kernel) noexcept {
+void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
+                ChunkOutcome& outcome) noexcept {
   std::uint32_t uncertified[kJobPairs];
-  ChunkOutcome outcome;
   if (kernel != nullptr) {
     job.uncertified = uncertified;
     outcome.uncertified = kernel(job);
@@ -457,12 +452,11 @@ void write_answer(NarrowJob& job, ContactLevel level, std::uint32_t i,
       if (!b.is_valid()) outcome.bad_body = std::min(outcome.bad_body, pair.b);
       continue;
     }
-    const PairAnswer answer = solve_pair(job.tables, job.shapes[pair.a], a, job.shapes[pair.b], b,
+    const PairAnswer answer = solve_pair(*job.tables, job.shapes[pair.a], a, job.shapes[pair.b], b,
                                          level, job.margin, outcome.solver);
     write_answer(job, level, i, answer);
   }
   outcome.contacts = job.contacts.size;
-  return outcome;
 }
 
 /// Answer i of a job becomes that about (b, a).
@@ -473,7 +467,8 @@ void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) no
   for (int axis = 0; axis < 3; ++axis) {
     const double apart = b[axis] - a[axis];
     if (level == ContactLevel::distance) {
-      job.point[axis][i] += job.distance[i] * job.normal[axis][i] - apart;
+      double& x = job.point[axis][i];
+      x = mirrored_point(x, job.distance[i] * job.normal[axis][i], apart);
     } else {
       float* const column = job.contacts.position[axis] + job.contact_first[i];
       for (std::uint32_t k = 0; k < job.contact_count[i]; ++k) {
@@ -489,15 +484,18 @@ void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) no
   }
 }
 
-/// What `collide` was given.
+/// What `collide` was given, and what it tells beside answers, in place: who copies counters waits
+/// until they are stored.
 struct Call {
   const ShapeTables& tables;
   const Bodies& bodies;
   std::span<const BodyPair> pairs;
   const NarrowOptions& options;
+  NarrowStatistics& statistics;
+  std::uint32_t& bad_body;
 
   void answer(Chunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
-    chunk.outcome = answer_job(chunk.job, options.level, chunk.kernel);
+    answer_job(chunk.job, options.level, chunk.kernel, chunk.outcome);
     if (!any_mirrored) return;
     for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
       const BodyPair& given = pairs[result.pair_of(chunk.first + i)];
@@ -528,8 +526,6 @@ struct NarrowPhase::State {
   [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
                                      NarrowResult& result);
 
-  NarrowStatistics statistics;
-  std::uint32_t bad_body = ~0U;
   PairBuckets buckets;
   ContactColumns scratch;
 };
@@ -559,9 +555,8 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
   if (state_ == nullptr) state_ = new_in<State>(memory_, memory_);
   Status status = Status::out_of_memory;
   if (state_ != nullptr) {
-    status = state_->collide({tables, bodies, pairs, options}, result);
-    statistics_ = state_->statistics;
-    bad_body_ = state_->bad_body;
+    const Call call{tables, bodies, pairs, options, statistics_, bad_body_};
+    status = state_->collide(call, result);
   }
   if (status != Status::ok) result.clear();
   return status;
@@ -569,16 +564,10 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
 
 Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   const NarrowOptions& options = call.options;
-  statistics = {};
-  bad_body = ~0U;
   if (call.bodies.shapes.size() != call.bodies.poses.size()) return Status::size_mismatch;
-  const bool has_level =
-      options.level >= ContactLevel::boolean && options.level <= ContactLevel::manifold;
-  if (!has_level || !std::isfinite(options.margin) || options.margin < 0.0) {
-    return Status::invalid_argument;
-  }
+  if (!can_be_asked(options)) return Status::invalid_argument;
   const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
-                                     result.order_, result.runs_, bad_body);
+                                     result.order_, result.runs_, call.bad_body);
   if (status != Status::ok) return status;
   return result.resize(call.pairs.size(), options.level) ? run(call, result)
                                                          : Status::out_of_memory;
@@ -587,8 +576,8 @@ Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
 Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   Wave wave;
   for (const NarrowRun& run : result.runs()) {
-    const NarrowKernel kernel = pick(run, call.options);
-    if (kernel == nullptr) statistics.without_lanes += run.count;
+    const NarrowKernel kernel = kernel_for(run.a, run.b, call.options);
+    if (kernel == nullptr) call.statistics.without_lanes += run.count;
     for (std::uint32_t at = 0; at < run.count; at += kJobPairs) {
       Chunk& chunk = wave.add();
       chunk.kernel = kernel;
@@ -605,8 +594,8 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
       !result.contacts_.grow(result.contacts() + most_room_for(call.pairs.size()))) {
     return Status::out_of_memory;
   }
-  statistics.pairs = call.pairs.size();
-  return bad_body == ~0U ? Status::ok : Status::invalid_pose;
+  call.statistics.pairs = call.pairs.size();
+  return call.bad_body == ~0U ? Status::ok : Status::invalid_pose;
 }
 
 void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& result,
@@ -618,7 +607,7 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.shapes = call.bodies.shapes.data();
   job.poses = call.bodies.poses.data();
   job.has_many_bodies = call.bodies.poses.size() > kManyBodies;
-  job.tables = call.tables;
+  job.tables = &call.tables;
   job.margin = call.options.margin;
   job.overlap = offset(result.overlap_.data(), first);
   job.beyond_doubt = false;
@@ -664,10 +653,10 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
     if (!gather_contacts(call, wave, result)) return false;
   }
   for (const Chunk& chunk : wave) {
-    if (chunk.kernel != nullptr) statistics.recomputed += chunk.outcome.uncertified;
-    statistics.exact += chunk.outcome.solver.exact;
-    statistics.bounded += chunk.outcome.solver.bounded;
-    bad_body = std::min(bad_body, chunk.outcome.bad_body);
+    if (chunk.kernel != nullptr) call.statistics.recomputed += chunk.outcome.uncertified;
+    call.statistics.exact += chunk.outcome.solver.exact;
+    call.statistics.bounded += chunk.outcome.solver.bounded;
+    call.bad_body = std::min(call.bad_body, chunk.outcome.bad_body);
   }
   return true;
 }

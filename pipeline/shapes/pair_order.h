@@ -6,7 +6,9 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/shapes.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace winnow {
 
@@ -50,6 +52,14 @@ struct KindPairs {
 /// most the largest float.
 [[nodiscard]] inline float mirrored_position(float x, double apart) noexcept {
   return finite_float(static_cast<double>(x) - apart);
+}
+
+/// A coordinate of the point of b relative to body b, which is `apart` farther, from that of a
+/// relative to body a and the way from there to it; at most the largest double.
+[[nodiscard]] inline double mirrored_point(double x, double way, double apart) noexcept {
+  static constexpr double kMost = std::numeric_limits<double>::max();
+  const auto finite = [](double v) { return std::clamp(v, -kMost, kMost); };
+  return finite(finite(x + way) - finite(apart));
 }
 
 }  // namespace winnow

@@ -95,29 +95,6 @@ PairAnswer solve(const Question& ask, bool mirrored, ContactLevel level, double 
   return answer;
 }
 
-/// The largest double of its sign for an infinity.
-double finite(double x) noexcept {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  return std::clamp(x, -kMost, kMost);
-}
-
-/// The answer for (b, a) made one for (a, b).
-void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    const double c = finite(pose_b.position[i] - pose_a.position[i]);
-    answer.point[i] = finite(finite(answer.point[i] + answer.distance * answer.normal[i]) + c);
-    answer.normal[i] = -answer.normal[i];
-    for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
-      float& x = answer.contacts[k].position[i];
-      x = mirrored_position(x, -c);
-    }
-  }
-  for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
-    std::uint64_t& feature = answer.contacts[k].feature;
-    feature = mirrored_feature(feature);
-  }
-}
-
 }  // namespace
 
 PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
@@ -130,6 +107,22 @@ PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, 
   PairAnswer answer = solve({tables, b, pose_b, a, pose_a}, true, level, margin, counts);
   mirror(pose_a, pose_b, answer);
   return answer;
+}
+
+void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    const double apart = pose_a.position[i] - pose_b.position[i];
+    answer.point[i] = mirrored_point(answer.point[i], answer.distance * answer.normal[i], apart);
+    answer.normal[i] = -answer.normal[i];
+    for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+      float& x = answer.contacts[k].position[i];
+      x = mirrored_position(x, apart);
+    }
+  }
+  for (std::uint32_t k = 0; k < answer.contact_count; ++k) {
+    std::uint64_t& feature = answer.contacts[k].feature;
+    feature = mirrored_feature(feature);
+  }
 }
 
 }  // namespace winnow

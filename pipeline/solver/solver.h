@@ -24,19 +24,6 @@ struct SolverCounts {
   }
 };
 
-/// One answer, all in double. The point of b is `distance * normal` from that of a.
-struct PairAnswer {
-  double distance = 0.0;
-  double error_bound = 0.0;
-  /// Unit, from a to b, in the axes of the world.
-  double normal[3] = {1.0, 0.0, 0.0};
-  /// On a, relative to the position of a, in the axes of the world.
-  double point[3] = {0.0, 0.0, 0.0};
-  bool overlap = false;
-  std::uint32_t contact_count = 0;
-  ContactPoint contacts[kManifoldPoints] = {};
-};
-
 /// Any pair of valid shapes at valid poses, one at a time, in double and, where that cannot tell
 /// the sign, in exact arithmetic: the tier `reference`, and where the lanes of the tier `robust`
 /// send what they cannot certify. Never NaN, always ends.
@@ -49,5 +36,8 @@ struct PairAnswer {
 [[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                     ShapeId b, const Pose& pose_b, ContactLevel level,
                                     double margin, SolverCounts& counts) noexcept;
+
+/// The answer about (b, a) becomes that about (a, b).
+void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept;
 
 }  // namespace winnow

@@ -208,6 +208,24 @@ static void note_answers(const trace* t, const winnow_narrow_result* result) {
   note(t, "contacts", c.contacts);
 }
 
+static void note_pair(const trace* t, winnow_contact_level level,
+                      const winnow_pair_answer* answer) {
+  note(t, "overlap", answer->overlap);
+  if (level == WINNOW_LEVEL_BOOLEAN) return;
+  note_real(t, "distance", answer->distance);
+  note_real(t, "error_bound", answer->error_bound);
+  for (int axis = 0; axis < 3; ++axis) note_real(t, "normal", answer->normal[axis]);
+  if (level == WINNOW_LEVEL_DISTANCE) {
+    for (int axis = 0; axis < 3; ++axis) note_real(t, "point", answer->point[axis]);
+  }
+  for (uint32_t k = 0; k < answer->contact_count; ++k) {
+    const winnow_contact_point* point = &answer->contacts[k];
+    for (int axis = 0; axis < 3; ++axis) note_real(t, "contact", (double)point->position[axis]);
+    note_real(t, "depth", (double)point->depth);
+    note(t, "feature", point->feature);
+  }
+}
+
 void ask_narrow_phase_in_c(const trace* t) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
@@ -240,6 +258,12 @@ void ask_narrow_phase_in_c(const trace* t) {
     options.margin = 0.1;
     OK(winnow_narrow_phase_collide(narrow, pool, &bodies, pairs, kBodies - 1, &options, result));
     note_answers(t, result);
+    for (size_t i = 1; i < kBodies; ++i) {
+      winnow_pair_answer answer;
+      OK(winnow_collide(pool, shape_of[i - 1], &poses[i - 1], shape_of[i], &poses[i], &options,
+                        &answer));
+      note_pair(t, options.level, &answer);
+    }
   }
   /* Poses of float, with a stride. */
   winnow_pose_view* view = &bodies.poses;

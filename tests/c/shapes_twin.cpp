@@ -80,6 +80,22 @@ void note_answers(const trace* t, const NarrowResult& result) {
   note(t, "contacts", result.contacts());
 }
 
+void note_pair(const trace* t, ContactLevel level, const PairAnswer& answer) {
+  note(t, "overlap", answer.overlap);
+  if (level == ContactLevel::boolean) return;
+  note_real(t, "distance", answer.distance);
+  note_real(t, "error_bound", answer.error_bound);
+  for (const double x : answer.normal) note_real(t, "normal", x);
+  if (level == ContactLevel::distance) {
+    for (const double x : answer.point) note_real(t, "point", x);
+  }
+  for (const ContactPoint& point : std::span(answer.contacts, answer.contact_count)) {
+    for (const float x : point.position) note_real(t, "contact", static_cast<double>(x));
+    note_real(t, "depth", static_cast<double>(point.depth));
+    note(t, "feature", point.feature);
+  }
+}
+
 }  // namespace
 
 Pose pose_in(std::size_t i, std::size_t frame) {
@@ -178,8 +194,15 @@ void ask_narrow_phase_in_cpp(const trace* t) {
   NarrowResult result;
   for (const ContactLevel level :
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-    (void)narrow.collide(pool, {shapes, poses}, pairs, {.level = level, .margin = 0.1}, result);
+    const NarrowOptions options{.level = level, .margin = 0.1};
+    (void)narrow.collide(pool, {shapes, poses}, pairs, options, result);
     note_answers(t, result);
+    for (const BodyPair pair : pairs) {
+      PairAnswer answer;
+      (void)collide(pool, shapes[pair.a], poses[pair.a], shapes[pair.b], poses[pair.b], options,
+                    answer);
+      note_pair(t, level, answer);
+    }
   }
   for (Pose& pose : poses) {
     for (double& x : pose.position) x = static_cast<double>(static_cast<float>(x));

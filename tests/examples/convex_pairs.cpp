@@ -2,6 +2,7 @@
 
 #include <winnow/pipeline/narrow_phase.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -37,5 +38,11 @@ int main() {
     // also distance(), error_bound(), normal(axis), contact(point): position, depth, feature
   }
   // [end]
+  // [one pair]
+  winnow::PairAnswer answer;  // no scratch, no list
+  winnow::collide(shapes, box, winnow::Pose::at(0, 0, 0), pyramid, winnow::Pose::at(0, 0, 1.5),
+                  {.level = winnow::ContactLevel::distance}, answer);
+  // [end]
+  check(std::abs(answer.distance - 0.5) < 1e-9, "the pyramid hovers above the box");
   check(touching.size() == 1 && touching[0] == 0, "the pyramid stands in the first box");
 }

@@ -45,7 +45,7 @@ struct Answers {
     job.count = count;
     job.shapes = scene.shapes.data();
     job.poses = scene.poses.data();
-    job.tables = scene.pool.tables();
+    job.tables = &scene.pool.tables();
     job.margin = 0.05;
     job.overlap = overlap.data();
     job.distance = column[0].data();

@@ -132,6 +132,42 @@ TEST_F(Batches, a_pair_by_itself_is_answered_as_among_others) {
   }
 }
 
+/// Of the one pair of `scene` that is i-th, by the function for one.
+PairAnswers ask_one(const PairScene& scene, std::size_t i, const NarrowOptions& options) {
+  const BodyPair pair = scene.pairs[i];
+  PairAnswer answer;
+  EXPECT_EQ(collide(scene.pool, scene.shapes[pair.a], scene.poses[pair.a], scene.shapes[pair.b],
+                    scene.poses[pair.b], options, answer),
+            Status::ok);
+  PairAnswers answers;
+  answers.overlap = answer.overlap;
+  if (options.level == ContactLevel::boolean) return answers;
+  answers.distance = answer.distance;
+  answers.error_bound = answer.error_bound;
+  const bool has_point = options.level == ContactLevel::distance;
+  for (int axis = 0; axis < 3; ++axis) {
+    answers.normal[axis] = answer.normal[axis];
+    answers.point[axis] = has_point ? answer.point[axis] : 0.0;
+  }
+  answers.contacts.assign(answer.contacts, answer.contacts + answer.contact_count);
+  return answers;
+}
+
+TEST_F(Batches, the_function_for_one_pair_answers_as_a_narrow_phase_does) {
+  for (const NarrowTier tier : kTiers) {
+    for (const ContactLevel level : kLevels) {
+      const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
+      std::vector<PairAnswers> alone(scene_.pairs.size());
+      // Any number of threads may ask.
+      const auto work = Execution::parallel();
+      Threads(3).run([&] {
+        work.for_each(alone.size(), [&](std::size_t i) { alone[i] = ask_one(scene_, i, options); });
+      });
+      expect_same(ask(scene_, options), alone, "one pair");
+    }
+  }
+}
+
 TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
   constexpr std::size_t kMany = 50000;  // several tasks sort them
   const std::size_t few = scene_.pairs.size();

@@ -193,6 +193,49 @@ TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_TRUE(same(after[i], reference[i])) << i;
 }
 
+TEST_F(NarrowInput, the_function_for_one_pair_refuses_as_a_narrow_phase_does_and_changes_nothing) {
+  const auto expect_the_same = [&](std::uint32_t a, std::uint32_t b, const NarrowOptions& options) {
+    PairAnswer answer;
+    answer.distance = 17.0;
+    answer.overlap = true;
+    const Status status = winnow::collide(scene_.pool, scene_.shapes[a], scene_.poses[a],
+                                          scene_.shapes[b], scene_.poses[b], options, answer);
+    scene_.pairs = {{a, b}};
+    ASSERT_EQ(status, collide(options));
+    if (status == Status::ok) return;
+    EXPECT_EQ(answer.distance, 17.0);
+    EXPECT_TRUE(answer.overlap);
+  };
+  const std::vector<BodyPair> pairs = scene_.pairs;
+  const auto other = static_cast<std::uint32_t>(scene_.shapes.size());
+  scene_.shapes.push_back({});
+  scene_.poses.push_back({});
+  for (const BodyPair pair : pairs) {
+    for (const ContactLevel level : {ContactLevel::pairs, ContactLevel::boolean,
+                                     ContactLevel::distance, ContactLevel::manifold}) {
+      for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+        expect_the_same(pair.a, pair.b, {.level = level, .tier = tier});
+        expect_the_same(pair.a, pair.b, {.level = level, .tier = tier, .margin = kNan});
+        const Pose good = scene_.poses[pair.b];
+        for (const Pose& bad :
+             {Pose{{1, kInfinity, 3}, {1, 0, 0, 0}}, Pose{{1, 2, 3}, {0, 0, 0, 0}},
+              Pose{{1, 2, 3}, {1, kNan, 0, 0}}, Pose{{1, 2, 3}, {1, 0, 0, kInfinity}}}) {
+          scene_.poses[pair.b] = bad;
+          expect_the_same(pair.a, pair.b, {.level = level, .tier = tier});
+          expect_the_same(pair.b, pair.a, {.level = level, .tier = tier});
+        }
+        scene_.poses[pair.b] = good;
+      }
+    }
+    for (const ShapeId id : {ShapeId{}, ShapeId::of(ShapeKind::cone, 1000), ShapeId{9U << 28U},
+                             ShapeId::of(ShapeKind::half_space, (1U << 28U) - 1U)}) {
+      scene_.shapes[other] = id;
+      expect_the_same(pair.a, other, {});
+      expect_the_same(other, pair.a, {});
+    }
+  }
+}
+
 TEST_F(NarrowInput, a_bad_pose_of_a_body_that_is_in_no_pair_does_not_matter) {
   scene_.shapes.push_back(scene_.shapes.front());
   scene_.poses.push_back({{kNan, 0, 0}, {0, 0, 0, 0}});

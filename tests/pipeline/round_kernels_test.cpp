@@ -57,7 +57,7 @@ class Answers {
     job.count = count;
     job.shapes = scene.shapes.data();
     job.poses = scene.poses.data();
-    job.tables = scene.pool.tables();
+    job.tables = &scene.pool.tables();
     job.margin = kMargin;
     job.overlap = overlap.data();
     job.distance = column[0].data();

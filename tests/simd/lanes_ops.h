@@ -1,9 +1,8 @@
 #pragma once
 
-// Every operation of simd/lanes/lanes.h, boxes.h, compress.h, places.h and positive.h behind plain
-// pointers, so that an
-// ordinary test can compare each instruction set with a scalar loop. Arrays hold 16 elements unless
-// said.
+// Every operation of simd/lanes/lanes.h, alone.h, boxes.h, compress.h, places.h and positive.h
+// behind plain pointers, so that an ordinary test can compare each instruction set with a scalar
+// loop. Arrays hold 16 elements unless said.
 
 #include "simd/kernels/kernels.h"
 
@@ -57,8 +56,12 @@ struct LanesOps {
   void (*larger_positive)(const float* a, const float* b, float* out);
   void (*smaller_positive)(const float* a, const float* b, float* out);
   std::uint32_t (*reduce_min_positive)(const float* in);
+  /// kAloneResults of two doubles, each of which stands alone, and the same of lanes of them.
+  void (*alone)(double a, double b, double* out);
+  void (*not_alone)(double a, double b, double* out);
   const char* isa_name;
 };
+inline constexpr int kAloneResults = 19;
 
 WINNOW_KERNELS(LanesOps, lanes_ops);
 

@@ -1,3 +1,4 @@
+#include "simd/lanes/alone.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/lanes.h"
@@ -66,6 +67,40 @@ float reduce_min_lanes(const float* in) {
 }
 float reduce_max_lanes(const float* in) {
   return reduce_max(Floats::load_unaligned(in));
+}
+/// kAloneResults of two numbers that stand in all lanes.
+template <typename T>
+void do_all(double first, double second, double* out) {
+  const Lanes<T> a = Lanes<T>(T(first));
+  const Lanes<T> b = Lanes<T>(T(second));
+  const auto put = [&](const Lanes<T>& v) {
+    alignas(64) T lane[Lanes<T>::kCount];
+    v.store(lane);
+    *out++ = static_cast<double>(lane[0]);
+  };
+  const auto put_mask = [&](const LaneMask<T>& mask) { *out++ = bits(mask) & 1U; };
+  put(a + b);
+  put(a - b);
+  put(a * b);
+  put(a / b);
+  put(-a);
+  put(abs(a));
+  put(sqrt(a));
+  put(min(a, b));
+  put(max(a, b));
+  put(select(a < b, a, b));
+  put_mask(a < b);
+  put_mask(a <= b);
+  put_mask(a > b);
+  put_mask(a >= b);
+  put_mask(a == b);
+  put_mask((a < b) & (a == a));
+  put_mask((a < b) | (b == b));
+  put_mask(!(a < b));
+  Lanes<T> sum = a;
+  sum += b;
+  sum *= b;
+  put(sum);
 }
 unsigned count_bits(std::uint32_t mask) {
   return count(mask);
@@ -166,6 +201,8 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .larger_positive = isa::larger_positive_lanes,
     .smaller_positive = isa::smaller_positive_lanes,
     .reduce_min_positive = isa::reduce_min_positive_lanes,
+    .alone = isa::do_all<isa::Alone>,
+    .not_alone = isa::do_all<double>,
     .isa_name = WINNOW_TEXT(WINNOW_ISA_NAME),
 };
 

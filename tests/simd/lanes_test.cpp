@@ -258,6 +258,31 @@ TEST_P(LaneOps, positive_floats_are_ordered_by_their_bits) {
   }
 }
 
+TEST_P(LaneOps, a_double_that_stands_alone_is_computed_as_in_lanes) {
+  const std::array hostile{0.0,     -0.0,     1.0,    -1.0,     static_cast<double>(kInf),
+                           DBL_MAX, -DBL_MAX, 5e-324, -DBL_MIN, -static_cast<double>(kInf)};
+  const auto draw = [&] {
+    return random_.chance(0.4) ? hostile[random_.below(hostile.size())] : random_.uniform(-2, 2);
+  };
+  for (int round = 0; round < 20000; ++round) {
+    const double a = draw();
+    const double b = draw();
+    std::array<double, kAloneResults> alone{};
+    std::array<double, kAloneResults> lanes{};
+    ops().alone(a, b, alone.data());
+    ops().not_alone(a, b, lanes.data());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      const bool same = std::isnan(lanes[i]) ? std::isnan(alone[i])
+                                             : std::bit_cast<std::uint64_t>(alone[i]) ==
+                                                   std::bit_cast<std::uint64_t>(lanes[i]);
+      ASSERT_TRUE(same) << "result " << i << " of " << a << " and " << b << ": " << alone[i]
+                        << " and " << lanes[i];
+    }
+    ASSERT_EQ(std::isnan(alone[0]), std::isnan(a + b));
+    ASSERT_EQ(alone[14] != 0.0, a == b);
+  }
+}
+
 TEST_P(LaneOps, masks_are_counted_and_searched) {
   for (std::uint32_t mask = 0; mask < 65536; ++mask) {
     unsigned bits = 0;

@@ -117,3 +117,15 @@ winnow_status winnow_narrow_phase_footprint(const winnow_narrow_phase* narrow,
   if (narrow == nullptr) return WINNOW_INVALID_ARGUMENT;
   return write_footprint(narrow, narrow->value.footprint(), narrow->room.bytes(), footprint);
 }
+
+winnow_status winnow_collide(const winnow_shape_pool* shapes, winnow_shape_id a,
+                             const winnow_pose* pose_a, winnow_shape_id b,
+                             const winnow_pose* pose_b, const winnow_narrow_options* options,
+                             winnow_pair_answer* answer) {
+  winnow::NarrowOptions read;
+  if (!are_given(shapes, pose_a, pose_b, answer) || !read_options(options, read)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
+  return winnow::c::answer(
+      winnow::collide(shapes->value, {a}, *twin(pose_a), {b}, *twin(pose_b), read, *twin(answer)));
+}

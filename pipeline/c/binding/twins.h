@@ -89,6 +89,14 @@ WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, data);
 WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, offsets);
 WINNOW_TWIN_MEMBERS(winnow_body_definition, BodyDefinition, layer);
 
+WINNOW_TWINS(winnow_pair_answer, PairAnswer)
+WINNOW_TWIN_MEMBERS(winnow_pair_answer, PairAnswer, point);
+WINNOW_TWIN_MEMBERS(winnow_pair_answer, PairAnswer, overlap);
+WINNOW_TWIN_MEMBERS(winnow_pair_answer, PairAnswer, contact_count);
+WINNOW_TWIN_MEMBERS(winnow_pair_answer, PairAnswer, contacts);
+WINNOW_ARE_TWINS(winnow_contact_point, ContactPoint)
+WINNOW_TWIN_MEMBERS(winnow_contact_point, ContactPoint, feature);
+
 WINNOW_ARE_TWINS(winnow_run, ContactRun)
 WINNOW_TWIN_MEMBERS(winnow_run, ContactRun, first);
 WINNOW_ARE_TWINS(winnow_run, NarrowRun)

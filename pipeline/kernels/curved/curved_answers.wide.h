@@ -84,18 +84,17 @@ template <int Level>
 class CurvedAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
-    CurvedAnswers answers(job);
     if constexpr (Level == 0) {
       // Float is sure about most.
-      hull::Verdicts::run(job, [&](std::uint32_t i) { answers.take(i); });
+      return hull::answer_in_doubt<CurvedAnswers>(job, hull::Verdicts::run(job));
     } else {
+      CurvedAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {
         fetch_ahead(job, i);
         answers.take(i);
       }
+      return answers.finish_taken();
     }
-    answers.answer_taken();
-    return answers.uncertified_;
   }
 
  private:
@@ -108,7 +107,16 @@ class CurvedAnswers {
   static constexpr double kCertified = 1e-9;
   static constexpr double kCertifiedOwn = 4e-7;
 
+  template <typename Answers>
+  friend std::uint32_t hull::answer_in_doubt(NarrowJob& job, std::uint32_t count);
+
   explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
+
+  /// Answers what is left; returns how many are uncertified in all.
+  std::uint32_t finish_taken() {
+    answer_taken();
+    return uncertified_;
+  }
 
   void take(std::uint32_t i) {
     CurvedPair& pair = pair_[taken_];

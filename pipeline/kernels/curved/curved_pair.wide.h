@@ -191,8 +191,8 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
   const Pose& first = pair.swapped ? pose_b : pose_a;
   const Pose& second = pair.swapped ? pose_a : pose_b;
-  double size = describe(job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
-                describe(job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double size = describe(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
+                describe(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
   double frame[9];
   double axes[9];
   if (!hull::rotation_of(first.orientation, frame) ||

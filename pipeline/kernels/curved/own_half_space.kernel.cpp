@@ -103,7 +103,7 @@ struct HalfSpaceOwn {
     alignas(64) T radius[kWidth] = {};
     for (std::uint32_t lane = 0; lane < block.count; ++lane) {
       const SupportShape& shape =
-          job.tables.supports[shape_index<SideB>(job, block, static_cast<int>(lane))];
+          job.tables->supports[shape_index<SideB>(job, block, static_cast<int>(lane))];
       rounding[lane] = static_cast<T>(shape.rounding);
       radius[lane] = static_cast<T>(shape.radius);
       double d[3];
@@ -150,6 +150,6 @@ struct HalfSpaceOwn {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(half_space_support_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceOwn>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceOwn>();
 
 }  // namespace winnow

@@ -249,6 +249,7 @@ struct BoxBox {
 }  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::BoxBox>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::flat::BoxBox,
+                                            WINNOW_ISA_NAME::kDistance>();
 
 }  // namespace winnow

@@ -402,6 +402,7 @@ struct BoxTriangle {
 }  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::BoxTriangle>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::flat::BoxTriangle,
+                                            WINNOW_ISA_NAME::kDistance>();
 
 }  // namespace winnow

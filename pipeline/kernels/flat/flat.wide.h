@@ -11,8 +11,8 @@
 // A kind of pair has scale, offset, along, to_world and its roundings, and the functions best_axis,
 // axis_points and closest_by_vertices; a Staged holds its lanes in memory.
 
-#include "pipeline/kernels/answers.wide.h"
 #include "pipeline/kernels/flat/seen_faces.wide.h"
+#include "pipeline/kernels/one_pair.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME::flat {
@@ -546,7 +546,7 @@ template <typename Staged, typename T, typename Pair>
 /// much where it is to be sure.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> verdict_slack(const NarrowJob& job, const Lanes<T>& scale) {
-  return scale * Lanes<T>(leaves_doubt<T>(job) ? T(2) * kFlatSlack<T> : kFlatSlack<T>);
+  return scale * Lanes<T>(leaves_doubt<T>(job) ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);
 }
 
 /// Lanes of sizes of which level boolean compares products of three lengths, and shares of them.

@@ -338,6 +338,7 @@ struct TriangleTriangle {
 }  // namespace WINNOW_ISA_NAME::flat
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::flat::TriangleTriangle>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::flat::TriangleTriangle,
+                                            WINNOW_ISA_NAME::kDistance>();
 
 }  // namespace winnow

@@ -83,7 +83,8 @@ inline constexpr std::uint32_t kSegmentNeighbours[2] = {1, 0};
 /// completed its faces have no planes: many pairs are decided before they are asked for.
 class CoreHull {
  public:
-  CoreHull() = default;
+  /// Nothing is set: to do so for all slots of a job takes longer than the answer to one pair.
+  CoreHull() {}
   CoreHull(const CoreHull&) = delete;
   CoreHull& operator=(const CoreHull&) = delete;
 
@@ -165,6 +166,9 @@ class CoreHull {
   void begin(const double (*vertex)[3], std::uint32_t count, std::uint32_t dimension,
              double rounding) {
     hull_ = HullShape{};
+    for (auto& column : plane_) {
+      for (float& x : column) x = 0.0F;
+    }
     hull_.vertex_count = count;
     hull_.dimension = dimension;
     hull_.rounding = rounding;
@@ -214,12 +218,14 @@ class CoreHull {
   static constexpr std::uint32_t kRow = Doubles::kCount;
   static_assert(kRow >= 8);
 
-  HullShape hull_;
-  HullFace face_[2] = {};
+  union {
+    HullShape hull_;
+  };
+  HullFace face_[2];
   alignas(64) double vertex_[3][kRow];
   alignas(64) float vertex_float_[3][kLanes];
   /// Rows from the count of faces on are not read as faces.
-  alignas(64) float plane_[4][kLanes] = {};
+  alignas(64) float plane_[4][kLanes];
 };
 
 /// How a shape's supports are found.
@@ -268,8 +274,8 @@ class CoreAndHull {
     const std::uint32_t simple = Before ? bodies.a : bodies.b;
     const std::uint32_t body = Before ? bodies.b : bodies.a;
     const Shape& shape =
-        table_of(job.tables, static_cast<const Shape*>(nullptr))[job.shapes[simple].index()];
-    const HullShape& hull = job.tables.hulls[job.shapes[body].index()];
+        table_of(*job.tables, static_cast<const Shape*>(nullptr))[job.shapes[simple].index()];
+    const HullShape& hull = job.tables->hulls[job.shapes[body].index()];
     const HullShape& core = core_[slot].of(shape);
     const HullShape& a = Before ? core : hull;
     const HullShape& b = Before ? hull : core;

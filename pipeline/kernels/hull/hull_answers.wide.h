@@ -19,25 +19,33 @@ template <typename Shapes, typename T, int Level>
 class HullAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
-    HullAnswers answers(job);
     if constexpr (Level == 0) {
       // Most need no more.
-      Verdicts::run(job, [&](std::uint32_t i) { answers.take(i); });
+      return answer_in_doubt<HullAnswers>(job, Verdicts::run(job));
     } else {
+      HullAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {
         fetch_ahead(job, i);
         answers.take(i);
       }
+      return answers.finish_taken();
     }
-    answers.answer_taken();
-    return answers.uncertified_;
   }
 
  private:
   static constexpr bool kRobust = sizeof(T) == 8;
   static constexpr std::uint32_t kChunk = Shapes::kRoom;
 
+  template <typename Answers>
+  friend std::uint32_t answer_in_doubt(NarrowJob& job, std::uint32_t count);
+
   explicit HullAnswers(NarrowJob& job) : job_(job) {}
+
+  /// Answers what is left; returns how many are uncertified in all.
+  std::uint32_t finish_taken() {
+    answer_taken();
+    return uncertified_;
+  }
 
   void take(std::uint32_t i) {
     if (!place(i, taken_, pair_[taken_])) return give_up(i);

@@ -136,7 +136,7 @@ struct PlaneUnderHull {
   [[gnu::always_inline]] const HullShape& take(const NarrowJob& job, const PairBlock<T>& block,
                                                std::uint32_t lane) {
     const HullShape& shape =
-        job.tables.hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
+        job.tables->hulls[shape_index<SideA>(job, block, static_cast<int>(lane))];
     rounding[lane] = static_cast<T>(shape.rounding);
     reach[lane] = T(2) * static_cast<T>(hull::reach_of(shape));
     return shape;
@@ -196,7 +196,8 @@ struct HullOverPlane {
     alignas(64) T missing[Count][kWidth] = {};
     for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
       const HullShape& shape = under.take(job, block, lane);
-      const Vec3<T> down{-normal[0][lane], -normal[1][lane], -normal[2][lane]};
+      const Vec3<typename RealOf<T>::Type> down{-normal[0][lane], -normal[1][lane],
+                                                -normal[2][lane]};
       const std::uint32_t lowest = hull::highest_vertex(shape, down);
       if constexpr (Count == 1) {
         hull_vertex(shape, lowest, 0, lane, vertex, name);
@@ -241,7 +242,7 @@ struct HullOverPlane {
                                                  std::uint32_t i, std::uint32_t lane,
                                                  T (&to)[Count][3][Width],
                                                  T (&name)[Count][Width]) {
-    const T* const* column = hull::columns_of(shape, T());
+    const auto* const* column = hull::columns_of(shape, typename RealOf<T>::Type());
     for (int k = 0; k < 3; ++k) to[i][k][lane] = column[k][vertex];
     name[i][lane] = static_cast<T>(vertex);
   }
@@ -251,6 +252,6 @@ struct HullOverPlane {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(hull_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HullOverPlane>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::HullOverPlane>();
 
 }  // namespace winnow

@@ -10,8 +10,8 @@ struct HullAndHull {
   using Seconds = HullSeconds;
 
   static bool place(const NarrowJob& job, BodyPair bodies, std::uint32_t /*slot*/, HullPair& pair) {
-    const HullShape& a = job.tables.hulls[job.shapes[bodies.a].index()];
-    const HullShape& b = job.tables.hulls[job.shapes[bodies.b].index()];
+    const HullShape& a = job.tables->hulls[job.shapes[bodies.a].index()];
+    const HullShape& b = job.tables->hulls[job.shapes[bodies.b].index()];
     const Pose& pose_a = job.poses[bodies.a];
     const Pose& pose_b = job.poses[bodies.b];
     return place_hulls(a, b, pose_a, pose_b, comes_second(a, b, pose_a, pose_b), pair);

@@ -23,34 +23,58 @@ struct LoadedCores {
 /// Of no set of a program's own a point is known without asking.
 inline constexpr float kNoInner = -1e30F;
 
+/// Floats of the shapes of a block, lane by lane: numbers_of(shape index, out) gives those of one.
+template <typename Side, int Count, typename NumbersOf>
+[[gnu::always_inline]] static inline void stage_numbers(const NarrowJob& job,
+                                                        const PairBlock<float>& block,
+                                                        NumbersOf&& numbers_of,
+                                                        Floats (&out)[Count]) {
+  alignas(64) float column[Count][Floats::kCount];
+  // A pair that is alone is looked up once.
+  const int lanes = block.count == 1 ? 1 : Floats::kCount;
+  for (int lane = 0; lane < lanes; ++lane) {
+    double number[Count];
+    numbers_of(shape_index<Side>(job, block, lane), number);
+    for (int k = 0; k < Count; ++k) column[k][lane] = static_cast<float>(number[k]);
+  }
+  for (int k = 0; k < Count; ++k) {
+    out[k] = lanes == 1 ? Floats(column[k][0]) : Floats::load(column[k]);
+  }
+}
+
 template <typename Side>
 [[gnu::noinline]] static void load_hulls(const NarrowJob& job, const PairBlock<float>& block,
                                          LoadedCores& to) {
-  alignas(64) float column[6][Floats::kCount];
-  for (int lane = 0; lane < Floats::kCount; ++lane) {
-    const HullShape& hull = job.tables.hulls[shape_index<Side>(job, block, lane)];
-    for (int k = 0; k < 3; ++k) column[k][lane] = static_cast<float>(hull.center[k]);
-    column[3][lane] = static_cast<float>(hull.rounding);
-    column[4][lane] = static_cast<float>(reach_of(hull));
-    column[5][lane] = static_cast<float>(hull.inner_radius);
-  }
-  to.center = {Floats::load(column[0]), Floats::load(column[1]), Floats::load(column[2])};
-  to.rounding = Floats::load(column[3]);
-  to.reach = Floats::load(column[4]);
-  to.inner = Floats::load(column[5]);
+  Floats r[6];
+  stage_numbers<Side>(
+      job, block,
+      [&](std::uint32_t i, double* out) {
+        const HullShape& hull = job.tables->hulls[i];
+        for (int k = 0; k < 3; ++k) out[k] = hull.center[k];
+        out[3] = hull.rounding;
+        out[4] = reach_of(hull);
+        out[5] = hull.inner_radius;
+      },
+      r);
+  to.center = {r[0], r[1], r[2]};
+  to.rounding = r[3];
+  to.reach = r[4];
+  to.inner = r[5];
 }
 
 template <typename Side>
 [[gnu::noinline]] static void load_own_sets(const NarrowJob& job, const PairBlock<float>& block,
                                             LoadedCores& to) {
-  alignas(64) float column[2][Floats::kCount];
-  for (int lane = 0; lane < Floats::kCount; ++lane) {
-    const SupportShape& set = job.tables.supports[shape_index<Side>(job, block, lane)];
-    column[0][lane] = static_cast<float>(set.rounding);
-    column[1][lane] = static_cast<float>(set.radius);
-  }
-  to.rounding = Floats::load(column[0]);
-  to.reach = Floats::load(column[1]);
+  Floats r[2];
+  stage_numbers<Side>(
+      job, block,
+      [&](std::uint32_t i, double* out) {
+        out[0] = job.tables->supports[i].rounding;
+        out[1] = job.tables->supports[i].radius;
+      },
+      r);
+  to.rounding = r[0];
+  to.reach = r[1];
   to.inner = Floats(kNoInner);
 }
 
@@ -99,7 +123,7 @@ template <typename Side>
                                                           const PairBlock<float>& block,
                                                           LoadedCores& to) {
   Floats r[4];
-  load_shapes<Side>(job, block, job.tables.ellipsoids, r);
+  load_shapes<Side>(job, block, job.tables->ellipsoids, r);
   const Floats most = max(max(r[0], r[1]), r[2]);
   const Floats least = min(min(r[0], r[1]), r[2]);
   const Floats zero(0.0F);
@@ -115,7 +139,7 @@ template <typename Side>
                                                       const PairBlock<float>& block,
                                                       LoadedCores& to) {
   Floats r[3];
-  load_shapes<Side>(job, block, job.tables.tapered_capsules, r);
+  load_shapes<Side>(job, block, job.tables->tapered_capsules, r);
   const Floats zero(0.0F);
   const Floats more = abs(r[1] - r[0]);
   const LaneMask<float> is_ball = more >= r[2] + r[2];
@@ -165,10 +189,10 @@ template <typename Side>
       load_boxes<Side>(job, block, to);
       break;
     case ShapeKind::cylinder:
-      load_spun_cores<Side>(job, block, job.tables.cylinders, to);
+      load_spun_cores<Side>(job, block, job.tables->cylinders, to);
       break;
     case ShapeKind::cone:
-      load_spun_cores<Side>(job, block, job.tables.cones, to);
+      load_spun_cores<Side>(job, block, job.tables->cones, to);
       break;
     case ShapeKind::ellipsoid:
       load_ellipsoids<Side>(job, block, to);

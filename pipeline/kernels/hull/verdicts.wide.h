@@ -5,6 +5,7 @@
 // middles, which shows most that are apart; those that are left take turns in the lanes of a
 // search. Lengths are divided by the pair's size.
 
+#include "pipeline/kernels/answers.wide.h"
 #include "pipeline/kernels/hull/hull_supports.wide.h"
 #include "pipeline/kernels/hull/loaded_cores.wide.h"
 #include "pipeline/kernels/hull/search_lanes.wide.h"
@@ -14,17 +15,17 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 class Verdicts {
  public:
-  /// Answers a job; calls in_doubt(i) for the pairs that it leaves.
-  template <typename InDoubt>
-  static void run(const NarrowJob& job, InDoubt&& in_doubt) {
-    if (job.count == 0) return;
+  /// Answers a job, but for pairs that it lists in `uncertified`; returns how many.
+  [[gnu::noinline]] static std::uint32_t run(NarrowJob& job) {
+    if (job.count == 0) return 0;
     Verdicts verdicts(job);
     for_blocks<float>(job, [&](const PairBlock<float>& block) {
       const Mask16 strange = verdicts.look(block);
-      for (Mask16 rest = strange; rest != 0; rest &= rest - 1) in_doubt(block.first + first(rest));
-      verdicts.search(in_doubt, false);
+      verdicts.in_doubt_ = write_uncertified(job, block, verdicts.in_doubt_, strange);
+      verdicts.search(false);
     });
-    verdicts.search(in_doubt, true);
+    verdicts.search(true);
+    return verdicts.in_doubt_;
   }
 
  private:
@@ -140,8 +141,7 @@ class Verdicts {
 
   /// Goes on with the pairs that wait until all are in lanes; where this `ends` until all lanes are
   /// done.
-  template <typename InDoubt>
-  [[gnu::noinline]] void search(InDoubt&& in_doubt, bool ends) {
+  [[gnu::noinline]] void search(bool ends) {
     for (Mask16 free = kAllRows & ~active_; free != 0 && waiting_ != 0; free &= free - 1) {
       refill(first(free));
     }
@@ -160,7 +160,7 @@ class Verdicts {
         if (((found.far | found.inside) & bit) != 0) {
           job_.overlap[pair_[lane]] = (found.inside & bit) != 0 ? 1 : 0;
         } else {
-          in_doubt(pair_[lane]);
+          job_.uncertified[in_doubt_++] = pair_[lane];
         }
         active_ &= ~bit;
         refill(lane);
@@ -200,8 +200,8 @@ class Verdicts {
         const std::uint32_t i = side == 0 ? shape_index<SideA>(job_, block, lane)
                                           : shape_index<SideB>(job_, block, lane);
         const bool own = kind_[side] == ShapeKind::support;
-        block_singles_.hull[side][lane] = own ? nullptr : job_.tables.hulls + i;
-        block_singles_.own[side][lane] = own ? job_.tables.supports + i : nullptr;
+        block_singles_.hull[side][lane] = own ? nullptr : job_.tables->hulls + i;
+        block_singles_.own[side][lane] = own ? job_.tables->supports + i : nullptr;
       }
     }
   }
@@ -238,6 +238,7 @@ class Verdicts {
 
   const NarrowJob& job_;
   const ShapeKind kind_[2];
+  std::uint32_t in_doubt_ = 0;
 
   // The searches, and which pairs they are of.
   Mask16 active_ = 0;
@@ -259,5 +260,16 @@ class Verdicts {
   Singles block_singles_;
   VertexHeights heights_;
 };
+
+/// Answers the pairs that verdicts have left in `uncertified`, `count` of them, with an object that
+/// takes much room and so time to make: most jobs of one pair leave none.
+template <typename Answers>
+std::uint32_t answer_in_doubt(NarrowJob& job, std::uint32_t count) {
+  if (count == 0) return 0;
+  Answers answers(job);
+  // No more are given up than were read, so what is still to be read is not written over.
+  for (std::uint32_t k = 0; k < count; ++k) answers.take(job.uncertified[k]);
+  return answers.finish_taken();
+}
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

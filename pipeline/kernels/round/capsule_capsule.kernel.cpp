@@ -165,6 +165,6 @@ struct CapsuleCapsule {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleCapsule>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::CapsuleCapsule>();
 
 }  // namespace winnow

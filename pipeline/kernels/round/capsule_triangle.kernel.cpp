@@ -232,6 +232,6 @@ struct CapsuleTriangle {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::CapsuleTriangle>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::CapsuleTriangle>();
 
 }  // namespace winnow

@@ -158,16 +158,16 @@ struct BoxFeet {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::SphereFeet, 1>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CapsuleFeet, 2>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::BoxFeet, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::TriangleFeet, 4>>();
 
 }  // namespace winnow

@@ -2,7 +2,7 @@
 
 // The end of every kernel of spheres and capsules: from the cores' witness to certified answers.
 
-#include "pipeline/kernels/answers.wide.h"
+#include "pipeline/kernels/one_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::round {
 

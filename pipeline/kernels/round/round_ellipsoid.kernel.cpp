@@ -17,7 +17,7 @@ template <typename T>
 [[gnu::always_inline]] inline EllipsoidLanes<T> load_ellipsoid(const NarrowJob& job,
                                                                const PairBlock<T>& block) {
   Lanes<T> r[4];
-  load_shapes<SideB>(job, block, job.tables.ellipsoids, r);
+  load_shapes<SideB>(job, block, job.tables->ellipsoids, r);
   return {{r[0], r[1], r[2]}, r[3]};
 }
 
@@ -181,8 +181,8 @@ struct HalfSpaceEllipsoid {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_ellipsoid_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereEllipsoid>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereEllipsoid>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(half_space_ellipsoid_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceEllipsoid>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceEllipsoid>();
 
 }  // namespace winnow

@@ -19,7 +19,7 @@ template <typename T>
 [[gnu::always_inline]] inline TaperLanes<T> load_taper(const NarrowJob& job,
                                                        const PairBlock<T>& block) {
   Lanes<T> r[3];
-  load_shapes<SideB>(job, block, job.tables.tapered_capsules, r);
+  load_shapes<SideB>(job, block, job.tables->tapered_capsules, r);
   return {{r[0], r[1]}, r[2]};
 }
 
@@ -153,8 +153,8 @@ struct HalfSpaceTaper {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_tapered_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereTaper>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereTaper>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(half_space_tapered_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceTaper>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::HalfSpaceTaper>();
 
 }  // namespace winnow

@@ -96,6 +96,6 @@ struct SphereBox {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_box_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereBox>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereBox>();
 
 }  // namespace winnow

@@ -32,6 +32,6 @@ struct SphereCapsule {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_capsule_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereCapsule>(false);
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereCapsule>(false);
 
 }  // namespace winnow

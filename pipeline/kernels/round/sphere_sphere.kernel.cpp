@@ -27,6 +27,6 @@ struct SphereSphere {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_sphere_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereSphere>(false);
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereSphere>(false);
 
 }  // namespace winnow

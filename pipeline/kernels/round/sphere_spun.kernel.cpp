@@ -21,7 +21,7 @@ struct MeridianView {
 };
 
 struct CylinderMeridian {
-  static const CylinderShape* table(const NarrowJob& job) { return job.tables.cylinders; }
+  static const CylinderShape* table(const NarrowJob& job) { return job.tables->cylinders; }
 
   template <typename T>
   [[gnu::always_inline]] static MeridianView<T> view(const SpunLanes<T>& s, const Lanes<T>& away,
@@ -45,7 +45,7 @@ struct CylinderMeridian {
 };
 
 struct ConeMeridian {
-  static const ConeShape* table(const NarrowJob& job) { return job.tables.cones; }
+  static const ConeShape* table(const NarrowJob& job) { return job.tables->cones; }
 
   template <typename T>
   [[gnu::always_inline]] static MeridianView<T> view(const SpunLanes<T>& s, const Lanes<T>& away,
@@ -121,10 +121,10 @@ struct SphereSpun {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_cylinder_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::SphereSpun<WINNOW_ISA_NAME::round::CylinderMeridian>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_cone_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::SphereSpun<WINNOW_ISA_NAME::round::ConeMeridian>>();
 
 }  // namespace winnow

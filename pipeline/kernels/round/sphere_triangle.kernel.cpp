@@ -83,6 +83,6 @@ struct SphereTriangle {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_triangle_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<WINNOW_ISA_NAME::round::SphereTriangle>();
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereTriangle>();
 
 }  // namespace winnow

@@ -91,7 +91,7 @@ template <typename T>
 struct CylinderFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const SpunOverPlane<T> s = place_spun(job, block, job.tables.cylinders);
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables->cylinders);
     const Lanes<T> zero(T(0));
     const LaneMask<T> upper = s.along < zero;
     const Vec3<T> low = select(upper, s.half, -s.half);
@@ -111,7 +111,7 @@ struct CylinderFeet {
 struct ConeFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const SpunOverPlane<T> s = place_spun(job, block, job.tables.cones);
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables->cones);
     const Lanes<T> rise = s.shape.half_length * s.along;
     Feet<T, 4> feet;
     set_cap(feet, s, -s.half, -rise, Lanes<T>(T{kRimCorners}));
@@ -135,10 +135,10 @@ struct ConeFeet {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(cylinder_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CylinderFeet, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(cone_half_space_kernels) =
-    WINNOW_ISA_NAME::narrow_kernels_of<
+    WINNOW_ISA_NAME::closed_form_kernels_of<
         WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::ConeFeet, 4>>();
 
 }  // namespace winnow

@@ -3,10 +3,10 @@
 // Two shapes, composite ones too, where they stand: whether they share a point, and their closest
 // parts.
 
+#include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
 #include "pipeline/shapes/triangle_direction.h"
-#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <utility>
@@ -18,8 +18,10 @@ namespace winnow {
   PartTables tables(parts.shapes());
   const ShapeId first = tables.put(0, a);
   const ShapeId second = tables.put(1, b);
-  SolverCounts counts;
-  return solve_pair(tables.tables(), first, a.pose, second, b.pose, level, 0.0, counts);
+  PairAnswer answer;
+  static_cast<void>(
+      collide(tables.tables(), first, a.pose, second, b.pose, {.level = level}, answer));
+  return answer;
 }
 
 /// True if one stands behind the other, which is a one-sided triangle: they do not meet then.

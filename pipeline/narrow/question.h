@@ -1,0 +1,33 @@
+#pragma once
+
+// What calls about pairs of shapes have in common: which are refused, and who answers.
+
+#include <winnow/pipeline/narrow_phase.h>
+#include "pipeline/kernels/kernels.h"
+
+#include <cmath>
+
+namespace winnow {
+
+[[nodiscard]] inline bool can_be_asked(const NarrowOptions& options) noexcept {
+  const bool has_level =
+      options.level >= ContactLevel::boolean && options.level <= ContactLevel::manifold;
+  return has_level && std::isfinite(options.margin) && options.margin >= 0.0;
+}
+
+[[nodiscard]] inline bool holds(const ShapeTables& tables, ShapeId shape) noexcept {
+  const std::uint32_t kind = shape.kind_index();
+  return kind < kShapeKinds && shape.index() < tables.count[kind];
+}
+
+/// The kernel for pairs of two kinds, a <= b; null where the solver answers.
+[[nodiscard]] inline NarrowKernel kernel_for(ShapeKind a, ShapeKind b,
+                                             const NarrowOptions& options) noexcept {
+  const NarrowKernels* const kernels = narrow_kernels(a, b);
+  if (kernels == nullptr || options.tier == NarrowTier::reference) return nullptr;
+  const std::uint32_t level = kernel_index(options.level);
+  const bool fast = options.tier == NarrowTier::fast && kernels->fast[level] != nullptr;
+  return fast ? kernels->fast[level] : kernels->robust[level];
+}
+
+}  // namespace winnow

@@ -1,0 +1,122 @@
+#pragma once
+
+// One double as lanes: a kernel of doubles computes one pair of it with the same operations, and so
+// to the same bits, without filling registers for it.
+
+#include "simd/lanes/lanes.h"
+
+namespace winnow::WINNOW_ISA_NAME {
+
+/// A double that stands alone, as the type of number of its lanes.
+struct Alone {
+  double value;
+
+  Alone() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  [[gnu::always_inline]] constexpr Alone(double v) : value(v) {}
+  [[gnu::always_inline]] constexpr operator double() const { return value; }
+};
+
+template <>
+inline constexpr int kPartsOf<Alone> = 1;
+
+/// What a number of lanes is in memory.
+template <typename T>
+struct RealOf {
+  using Type = T;
+};
+template <>
+struct RealOf<Alone> {
+  using Type = double;
+};
+
+/// A number of which the compiler does not know how it came about. g++ 12 is wrong where it puts
+/// such numbers side by side in registers: it makes one fused operation of a sum of products beside
+/// a difference of them, though it is told not to fuse, and chooses by the masks of others.
+[[gnu::always_inline]] inline double opaque(double v) {
+#if defined(WINNOW_ISA_IS_neon64)
+  asm("" : "+w"(v));
+#else
+  asm("" : "+x"(v));
+#endif
+  return v;
+}
+
+template <>
+struct LaneMask<Alone, 1> {
+  bool part[1];
+
+  [[gnu::always_inline]] friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
+    return {{a.part[0] && b.part[0]}};
+  }
+  [[gnu::always_inline]] friend LaneMask operator|(const LaneMask& a, const LaneMask& b) {
+    return {{a.part[0] || b.part[0]}};
+  }
+  [[gnu::always_inline]] friend LaneMask operator!(const LaneMask& a) { return {{!a.part[0]}}; }
+};
+
+template <>
+struct Lanes<Alone, 1> {
+  using Mask = LaneMask<Alone, 1>;
+  static constexpr int kCount = 1;
+
+  double part[1];
+
+  Lanes() = default;
+  [[gnu::always_inline]] Lanes(double v) : part{v} {}       // NOLINT(google-explicit-constructor)
+  [[gnu::always_inline]] Lanes(Alone v) : part{v.value} {}  // NOLINT(google-explicit-constructor)
+
+  [[gnu::always_inline]] static Lanes load(const Alone* p) { return Lanes(*p); }
+  [[gnu::always_inline]] static Lanes load_unaligned(const Alone* p) { return Lanes(*p); }
+  [[gnu::always_inline]] void store(Alone* p) const { p->value = part[0]; }
+  [[gnu::always_inline]] void store_unaligned(Alone* p) const { p->value = part[0]; }
+
+#define WINNOW_ALONE_OPERATOR(op)                                                   \
+  [[gnu::always_inline]] friend Lanes operator op(const Lanes& a, const Lanes& b) { \
+    return Lanes(opaque(a.part[0] op b.part[0]));                                   \
+  }                                                                                 \
+  [[gnu::always_inline]] Lanes& operator op##=(const Lanes& b) {                    \
+    return *this = *this op b;                                                      \
+  }
+  WINNOW_ALONE_OPERATOR(+)
+  WINNOW_ALONE_OPERATOR(-)
+  WINNOW_ALONE_OPERATOR(*)
+  WINNOW_ALONE_OPERATOR(/)
+#undef WINNOW_ALONE_OPERATOR
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& a) {
+    return Lanes(opaque(-0.0 - a.part[0]));
+  }
+
+#define WINNOW_ALONE_COMPARE(op)                                                   \
+  [[gnu::always_inline]] friend Mask operator op(const Lanes& a, const Lanes& b) { \
+    return {{a.part[0] op b.part[0]}};                                             \
+  }
+  WINNOW_ALONE_COMPARE(<)
+  WINNOW_ALONE_COMPARE(<=)
+  WINNOW_ALONE_COMPARE(>)
+  WINNOW_ALONE_COMPARE(>=)
+  WINNOW_ALONE_COMPARE(==)
+#undef WINNOW_ALONE_COMPARE
+
+  [[gnu::always_inline]] friend Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) {
+    return Lanes(opaque(mask.part[0] ? a.part[0] : b.part[0]));
+  }
+  [[gnu::always_inline]] friend Lanes min(const Lanes& a, const Lanes& b) {
+    return Lanes(opaque(a.part[0] < b.part[0] ? a.part[0] : b.part[0]));
+  }
+  [[gnu::always_inline]] friend Lanes max(const Lanes& a, const Lanes& b) {
+    return Lanes(opaque(a.part[0] > b.part[0] ? a.part[0] : b.part[0]));
+  }
+  [[gnu::always_inline]] friend Lanes abs(const Lanes& a) {
+    return Lanes(opaque(__builtin_fabs(a.part[0])));
+  }
+  [[gnu::always_inline]] friend Lanes sqrt(const Lanes& a) {
+    return Lanes(opaque(__builtin_sqrt(a.part[0])));
+  }
+};
+
+[[gnu::always_inline]] inline Mask16 bits(const LaneMask<Alone, 1>& mask) {
+  return mask.part[0] ? 1U : 0U;
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME
