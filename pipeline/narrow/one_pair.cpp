@@ -77,6 +77,8 @@ class OnePair {
       std::copy_n(point_, 3, answer.point);
       return;
     }
+    // A caller of C may have set nothing, and mirroring reads it.
+    std::fill_n(answer.point, 3, 0.0);
     answer.contact_count = contact_count_;
     for (std::uint32_t k = 0; k < contact_count_; ++k) {
       const std::uint32_t i = contact_first_ + k;
