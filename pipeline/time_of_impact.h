@@ -145,8 +145,8 @@ class WINNOW_API ImpactResult {
 /// Where neither turns, the looks are steps of one search for closest points (van den Bergen, "Ray
 /// casting against general convex objects with application to continuous collision detection",
 /// 2004): some six. Eight pairs of the same kinds look at once, in double, 256 being sorted by kind
-/// at a time; half-spaces that turn, support functions and pairs that touch at the start do so one
-/// by one. What is said of a pair does not depend on the others. Of composite shapes that for each
+/// at a time; two half-spaces, and what double can hardly tell apart, do so one by one. What is said
+/// of a pair does not depend on the others. Of composite shapes that for each
 /// pair of parts whose boxes meet on the way, and a traversal for each half radian or so that they
 /// turn past each other within reach.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,

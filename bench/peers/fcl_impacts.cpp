@@ -25,7 +25,7 @@ class FclImpacts final : public ImpactEngine {
   [[nodiscard]] std::string name() const override { return "FCL continuous"; }
   [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
     using enum ShapeKind;
-    for (const ShapeKind missing : {triangle, half_space, tapered_capsule, support}) {
+    for (const ShapeKind missing : {triangle, half_space, ellipsoid, tapered_capsule, support}) {
       if (kind.a == missing || kind.b == missing) return false;
     }
     return turn != PairTurn::whirl;

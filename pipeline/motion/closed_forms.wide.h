@@ -1,8 +1,9 @@
 #pragma once
 
 // Closest points of cores that are points and segments, by the closed forms of the narrow phase,
-// and of any core and a half-space.
+// of a point and most other cores, and of any core and a half-space.
 
+#include "pipeline/kernels/round/ellipsoid_surface.wide.h"
 #include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/motion/closest_cores.wide.h"
 
@@ -11,11 +12,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 /// Pairs of kinds, in their order, whose closest points need no search.
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
   if (b == ShapeKind::half_space) return true;
-  const bool of_point = a == ShapeKind::sphere &&
-                        (b == ShapeKind::sphere || b == ShapeKind::capsule || b == ShapeKind::box ||
-                         b == ShapeKind::cylinder || b == ShapeKind::triangle);
-  return of_point ||
-         (a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle));
+  if (a == ShapeKind::sphere) return b != ShapeKind::hull && b != ShapeKind::support;
+  return (a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle));
 }
 
 /// From a point of a to the closest of b, and that point from the middle of a.
@@ -23,6 +21,70 @@ struct ClosestWay {
   Vector way;
   Vector on_a;
 };
+
+/// In the plane of a point and an axis: away from the axis, not below 0, and along it.
+struct Meridian {
+  Doubles away;
+  Doubles z;
+};
+
+/// The nearest point of a cone's side or base.
+[[gnu::always_inline]] inline Meridian nearest_of_cone(const Vector& half, const Meridian& p) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const Doubles rise = half.z + half.z;
+  // From the rim, the side goes inwards by the radius as it rises.
+  const Doubles square = half.x * half.x + rise * rise;
+  const Doubles x = p.away - half.x;
+  const Doubles y = p.z + half.z;
+  const Doubles place = (y * rise - x * half.x) / select(square > zero, square, one);
+  const Doubles share = max(min(place, one), zero);
+  const Meridian side{half.x * (one - share), rise * share - half.z};
+  const Meridian base{min(p.away, half.x), -half.z};
+  const auto square_to = [&](const Meridian& q) {
+    return (q.away - p.away) * (q.away - p.away) + (q.z - p.z) * (q.z - p.z);
+  };
+  const Truth is_base = square_to(base) < square_to(side);
+  return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
+}
+
+/// Of a point and a ball, the nearest point of what is around both; the ball is the upper one where
+/// its height is positive. What leaves both at the same angle leads from the side to the point or
+/// the ball.
+[[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const Truth up = half.z >= zero;
+  const Doubles height = abs(half.z);
+  const Doubles z = select(up, p.z, -p.z);
+  const Doubles length = height + height;
+  const Truth is_ball = half.x >= length;
+  const Doubles sine = select(is_ball, zero, half.x / length);
+  const Doubles cosine = sqrt((one - sine) * (one + sine));
+  // From the point.
+  const Doubles over = z + height;
+  const Doubles along = cosine * over + sine * p.away;
+  const Doubles outside = cosine * p.away - sine * over;
+  const Truth low = (!is_ball) & (along <= zero);
+  const Truth side = (!is_ball) & (along > zero) & (along < cosine * length);
+  const Doubles from_ball = sqrt(p.away * p.away + (z - height) * (z - height));
+  const Doubles share = half.x / from_ball;
+  const Doubles away = select(low, zero, select(side, p.away - outside * cosine, p.away * share));
+  const Doubles at =
+      select(low, -height, select(side, z + outside * sine, height + (z - height) * share));
+  return {positive_part(away), select(up, at, -at)};
+}
+
+/// Of an ellipsoid that is worn off by its least radius of curvature.
+static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p) {
+  const auto view = round::view_surface(radius, Vector{abs(p.x), abs(p.y), abs(p.z)});
+  const auto facing = [](const Doubles& like, const Doubles& size) {
+    return select(like < Doubles(0.0), -size, size);
+  };
+  const Vector& outward = view.outward;
+  return farthest_of_ellipsoid(
+      radius, {facing(p.x, outward.x), facing(p.y, outward.y), facing(p.z, outward.z)});
+}
 
 /// The point of a core that is closest to `p`, which is outside, both in its own frame.
 [[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
@@ -39,6 +101,17 @@ struct ClosestWay {
       const Doubles share = select(across > core.half.x, core.half.x / across, Doubles(1.0));
       return {p.x * share, p.y * share, within(p.z, core.half.z)};
     }
+    case ShapeKind::cone:
+    case ShapeKind::tapered_capsule: {
+      const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
+      const Meridian nearest = table.kind == ShapeKind::cone ? nearest_of_cone(core.half, here)
+                                                             : nearest_of_taper(core.half, here);
+      const Doubles share =
+          select(here.away > Doubles(1e-150), nearest.away / here.away, Doubles(0.0));
+      return {p.x * share, p.y * share, nearest.z};
+    }
+    case ShapeKind::ellipsoid:
+      return nearest_of_ellipsoid(core.half, p);
     default:
       return zero_vector();
   }

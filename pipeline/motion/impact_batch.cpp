@@ -1,6 +1,7 @@
 #include "pipeline/motion/impact_batch.h"
 
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/problem.h"
 
 #include <algorithm>
@@ -16,8 +17,10 @@ namespace {
 
 /// Numbers of kinds are below.
 constexpr std::size_t kKinds = 14;
+/// Ways to move, which ImpactMotion names.
+constexpr std::size_t kMotions = 3;
 /// Of pairs without lanes.
-constexpr std::uint16_t kNoLanes = 2 * kKinds * kKinds;
+constexpr std::uint16_t kNoLanes = kMotions * kKinds * kKinds;
 
 [[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
   const double(&turn)[3] = query.motion[side]->turn;
@@ -25,15 +28,19 @@ constexpr std::uint16_t kNoLanes = 2 * kKinds * kKinds;
          (turn[0] == 0.0 && turn[1] == 0.0 && turn[2] == 0.0);
 }
 
-/// Of pairs that one job may have: an even number if none of the bodies turns.
+[[nodiscard]] ImpactMotion motion_of(const ImpactQuery& query) noexcept {
+  const bool turns_b = !is_straight(query, 1);
+  if (turns_b && query.shape[1].kind() == ShapeKind::half_space) return ImpactMotion::plane_turns;
+  return turns_b || !is_straight(query, 0) ? ImpactMotion::turns : ImpactMotion::straight;
+}
+
+/// Of pairs that one job may have: the number of their motion is the rest by kMotions.
 [[nodiscard]] std::uint16_t kinds_of(const ImpactQuery& query) noexcept {
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
   if (a == ShapeKind::half_space) return kNoLanes;
-  if (b == ShapeKind::half_space && !is_straight(query, 1)) return kNoLanes;
-  const bool straight = is_straight(query, 0) && is_straight(query, 1);
   const std::size_t kinds = static_cast<std::size_t>(a) * kKinds + static_cast<std::size_t>(b);
-  return static_cast<std::uint16_t>(2 * kinds + (straight ? 0 : 1));
+  return static_cast<std::uint16_t>(kMotions * kinds + static_cast<std::size_t>(motion_of(query)));
 }
 
 /// Distances of pairs of one pair of kinds at the start of their motions, in lanes.
@@ -56,7 +63,10 @@ class StartDistances {
   [[nodiscard]] bool is_full() const noexcept { return job_.count == kRoom; }
   void add(std::size_t query, const ImpactQuery& asked) noexcept {
     queries_[job_.count] = query;
-    pairs_[job_.count] = {2 * job_.count, 2 * job_.count + 1};
+    asked_[job_.count] = &asked;
+    mirrored_ = is_mirrored(asked.shape[0], asked.shape[1]);
+    pairs_[job_.count] = {2 * job_.count + (mirrored_ ? 1U : 0U),
+                          2 * job_.count + (mirrored_ ? 0U : 1U)};
     for (std::size_t side = 0; side < 2; ++side) {
       shapes_[2 * job_.count + side] = asked.shape[side];
       poses_[2 * job_.count + side] = asked.motion[side]->start;
@@ -74,18 +84,21 @@ class StartDistances {
  private:
   template <typename Take>
   void answer(Take& take) noexcept {
-    const NarrowKernels* const kernels = narrow_kernels(shapes_[0].kind(), shapes_[1].kind());
+    const NarrowKernels* const kernels =
+        narrow_kernels(shapes_[pairs_[0].a].kind(), shapes_[pairs_[0].b].kind());
     if (kernels == nullptr) return;
     const std::uint32_t left = kernels->robust[kernel_index(ContactLevel::distance)](job_);
     for (std::uint32_t i = 0; i < left; ++i) distance_[uncertified_[i]] = 1.0;
     for (std::size_t i = 0; i < job_.count; ++i) {
       if (!(distance_[i] <= 0.0)) continue;
-      take(queries_[i], Impact{true,
-                               0.0,
-                               distance_[i],
-                               error_bound_[i],
-                               {normal_[0][i], normal_[1][i], normal_[2][i]},
-                               {point_[0][i], point_[1][i], point_[2][i]}});
+      Impact impact{true,
+                    0.0,
+                    distance_[i],
+                    error_bound_[i],
+                    {normal_[0][i], normal_[1][i], normal_[2][i]},
+                    {point_[0][i], point_[1][i], point_[2][i]}};
+      if (mirrored_) mirror_impact(*asked_[i]->motion[0], *asked_[i]->motion[1], impact);
+      take(queries_[i], impact);
     }
   }
 
@@ -94,7 +107,10 @@ class StartDistances {
   using Row = std::array<T, kRoom>;
 
   NarrowJob job_{};
+  /// As kernels are asked.
+  bool mirrored_ = false;
   Row<std::size_t> queries_;
+  Row<const ImpactQuery*> asked_;
   Row<BodyPair> pairs_;
   std::array<ShapeId, 2 * kRoom> shapes_;
   std::array<Pose, 2 * kRoom> poses_;
@@ -178,15 +194,15 @@ void ImpactBatch::search(std::size_t i) noexcept {
 
 void ImpactBatch::find() noexcept {
   sort_by_kinds();
-  ImpactJob job{false, tables_,    queries_.data(), nullptr,
-                0,     tolerance_, found_.data(),   verdicts_.data()};
+  ImpactJob job{ImpactMotion::straight, tables_,         queries_.data(), nullptr, 0, tolerance_,
+                found_.data(),          verdicts_.data()};
   for (std::size_t at = 0; at < count_; at += job.count) {
     const std::uint16_t kinds = kinds_[order_[at]];
     job.order = order_.data() + at;
     job.count = 1;
     while (at + job.count < count_ && kinds_[job.order[job.count]] == kinds) ++job.count;
     if (kinds != kNoLanes) {
-      job.straight = kinds % 2 == 0;
+      job.motion = static_cast<ImpactMotion>(kinds % kMotions);
       impact_lane_kernels().run(job);
     } else {
       for (std::uint32_t i = 0; i < job.count; ++i) {

@@ -43,6 +43,10 @@ constexpr double kLongest = 1e40;
   return select(known, select(stays, one, select(share < one, share, one)), zero);
 }
 
+[[nodiscard]] bool is_straight(const ImpactJob& job) {
+  return job.motion == ImpactMotion::straight;
+}
+
 /// How a point at y from a core's middle moves along an axis.
 [[gnu::always_inline]] inline Doubles speed_along(const CoreTable& table, const MovingCore& core,
                                                   const Vector& axis, const Vector& y) {
@@ -94,6 +98,7 @@ class ImpactStep : BlockStep {
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : BlockStep(job, block),
         is_exact_(has_closed_form(tables_.a.kind, tables_.b.kind)),
+        has_plane_(tables_.b.kind == ShapeKind::half_space),
         coarse_(coarse && !is_exact_) {}
 
   /// Looks at all lanes once. Returns those that go on.
@@ -114,11 +119,12 @@ class ImpactStep : BlockStep {
     look_.between = p_.start + p_.travel * p_.next;
     look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
-    then_ = gap_along(pair);
+    if (!has_plane_) then_ = gap_along(pair);
     look_.closest = closest_points(pair);
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.most = closest.upper - p_.roundings + look_.noise;
+    if (has_plane_) then_ = look_.gap;
     look_.slope = dot(closest.axis, p_.travel) +
                   speed_along(tables_.b, p_.b, closest.axis, closest.on_b) -
                   speed_along(tables_.a, p_.a, closest.axis, closest.on_a);
@@ -216,11 +222,15 @@ class ImpactStep : BlockStep {
     const Truth asked = active_ & (p_.proves > Doubles(0.0));
     Doubles share = share_above(above, then_ - target, p_.bend * width * width * eighth, asked);
     if (bits(asked & !(share >= Doubles(1.0))) == 0) return p_.next;
+    if (has_plane_) return reached(share, way);
     const Doubles bent = bend_between(p_, axis, look_.closest.axis, width, look_.between);
     const Doubles turning = share_above(above, look_.gap - target, bent * eighth, asked);
     share = select(look_.parted & (turning > share), turning, share);
-    const Doubles reached = min(p_.time + share * way, p_.next);
-    return select(share >= Doubles(1.0), p_.next, reached);
+    return reached(share, way);
+  }
+  /// By a share of the way to the next look.
+  [[nodiscard]] Doubles reached(const Doubles& share, const Doubles& way) const {
+    return select(share >= Doubles(1.0), p_.next, min(p_.time + share * way, p_.next));
   }
 
   /// Of lanes with a new look: whether they have met, or when to look next.
@@ -236,7 +246,8 @@ class ImpactStep : BlockStep {
     if (bits(active_) == 0) return;
     const ClosestLanes& c = look_.closest;
     const TurningAlong of_a = turning_along(tables_.a, p_.a, c.axis, c.high_a);
-    const TurningAlong of_b = turning_along(tables_.b, p_.b, -c.axis, c.high_b);
+    const TurningAlong of_b = has_plane_ ? turning_plane(of_a.acceleration)
+                                         : turning_along(tables_.b, p_.b, -c.axis, c.high_b);
     const Doubles free = free_until(of_a.high + of_b.high);
     const Doubles bend = of_a.acceleration + of_b.acceleration;
     end_apart(looked & ((free >= p_.last) | (free > p_.until)));
@@ -253,6 +264,24 @@ class ImpactStep : BlockStep {
     p_.time = select(looked, moved, p_.time);
     p_.next = select(looked, select(freely, free, next), p_.next);
     p_.proves = one_where(looked & !freely);
+  }
+
+  /// What a half-space does along its normal, which turns with it and sweeps without end: the gap
+  /// is n . P, with P from its position to a point of a, and bends by n'' . P + 2 n' . P' + n .
+  /// P''. Of the last, `counted` is what a does along n as it is now.
+  [[nodiscard]] TurningAlong turning_plane(const Doubles& counted) const {
+    const Doubles& high = look_.closest.high_b;
+    if (!tables_.b.turns) return {high, Doubles(0.0)};
+    const Truth turns = p_.b.angle > Doubles(0.0);
+    const Vector end = p_.start + p_.travel * p_.last;
+    const Doubles far = max(length(look_.between), length(end)) + p_.a.size;
+    const Doubles fast = p_.speed + p_.a.angle * p_.a.reach;
+    const Doubles rate =
+        p_.b.angle * (length(cross(look_.closest.axis, p_.b.axis)) + Doubles(kAxisDoubt));
+    const Doubles of_a = p_.a.angle * p_.a.angle * p_.a.reach;
+    const Doubles bend =
+        rate * (p_.b.angle * far + fast * Doubles(2.0)) + positive_part(of_a - counted);
+    return {select(turns, Doubles(__builtin_inf()), high), select(turns, bend, Doubles(0.0))};
   }
 
   /// They are apart until then by what they sweep, which reaches so high from both middles.
@@ -305,6 +334,8 @@ class ImpactStep : BlockStep {
 
   /// Gaps are as good as can be; else to kGoodEnough.
   bool is_exact_;
+  /// Of the half-space, whose normal is the only axis: at each time the one there.
+  bool has_plane_;
   bool coarse_;
   /// The new look is where they are surely apart until.
   Truth whole_;
@@ -344,10 +375,9 @@ class ImpactLoad {
       CoreTable& table = side == 0 ? tables_.a : tables_.b;
       MovingCore& core = side == 0 ? p_.a : p_.b;
       table.kind = query_[0]->shape[side].kind();
-      table.in_world =
-          table.kind == ShapeKind::sphere || (job_.straight && table.kind == ShapeKind::triangle);
-      table.turns =
-          !job_.straight && table.kind != ShapeKind::sphere && table.kind != ShapeKind::half_space;
+      table.in_world = table.kind == ShapeKind::sphere ||
+                       (is_straight(job_) && table.kind == ShapeKind::triangle);
+      table.turns = turns(table.kind);
       load_core(
           job_.tables, [&](int lane) { return index_[side][lane]; }, table, core);
       measure(table, core);
@@ -355,6 +385,11 @@ class ImpactLoad {
                             table, [&](int lane) { return motion_[side][lane]; }, core);
     }
     return usable;
+  }
+
+  [[nodiscard]] bool turns(ShapeKind kind) const {
+    if (kind == ShapeKind::half_space) return job_.motion == ImpactMotion::plane_turns;
+    return kind != ShapeKind::sphere && !is_straight(job_);
   }
 
   /// True where both positions and both ways are surely valid.
@@ -388,7 +423,9 @@ class ImpactLoad {
         Doubles(kPlace) * (way * Doubles(8.0) +
                            (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
     // A half-space's normal turns by rounding, and with it what is far from its position.
-    if (has_half_space()) p_.still_noise += Doubles(64.0 * kPlace) * way;
+    if (has_half_space()) {
+      p_.still_noise += Doubles(kPlace) * (Doubles(64.0) + p_.b.angle * Doubles(4.0)) * way;
+    }
     const Doubles least = min(p_.a.extent, p_.b.extent);
     const Doubles most = max(p_.a.extent, p_.b.extent);
     p_.tolerance = select(least > Doubles(0.0), least, most) * Doubles(job_.tolerance);
@@ -430,7 +467,7 @@ class ImpactLoad {
     const Truth near = cut_to_window();
     p_.proves = p_.within = p_.looks = zero;
     if (!has_closed_form(tables_.a.kind, tables_.b.kind)) begin_search();
-    if (!job_.straight) {
+    if (!is_straight(job_)) {
       p_.speed = length(p_.travel);
       p_.axis = zero_vector();
       p_.gap = Doubles(1.0);
@@ -539,7 +576,7 @@ class ImpactRounds {
   /// together.
   [[nodiscard]] std::uint32_t blocks_when_filled() const {
     if (!searches_) return kBlocks / 2;
-    return job_.straight ? 0 : 1;
+    return is_straight(job_) ? 0 : 1;
   }
 
   /// Loads queries while blocks are free, and looks at them once while they are in the cache: of
@@ -557,8 +594,8 @@ class ImpactRounds {
   }
 
   void look(std::uint32_t i, bool first) {
-    active_[i] = job_.straight ? StraightStep(job_, block_[i]).run()
-                               : ImpactStep(job_, block_[i], first).run();
+    active_[i] = is_straight(job_) ? StraightStep(job_, block_[i]).run()
+                                   : ImpactStep(job_, block_[i], first).run();
   }
 
   /// As few blocks as take all lanes that are active: those of the last go to the first.
@@ -574,7 +611,7 @@ class ImpactRounds {
       for (; active_[from] != 0; active_[from] &= active_[from] - 1) {
         while (active_[to] == kAllLanes<double>) ++to;
         const unsigned lane_to = first(~active_[to]);
-        move_lane(block_[from], first(active_[from]), block_[to], lane_to, job_.straight);
+        move_lane(block_[from], first(active_[from]), block_[to], lane_to, is_straight(job_));
         active_[to] |= 1U << lane_to;
       }
     }

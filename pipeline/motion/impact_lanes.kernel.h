@@ -24,10 +24,16 @@ enum class ImpactVerdict : std::uint8_t {
   invalid,  ///< a motion is not valid, which lanes never tell: to them it is unsure from the start
 };
 
+/// What turns of the pairs of a job. A sphere never does.
+enum class ImpactMotion : std::uint8_t {
+  straight,     ///< nothing
+  turns,        ///< some of the bodies, but no half-space
+  plane_turns,  ///< the half-spaces, and any of the other bodies
+};
+
 /// Queries of one pair of kinds, all of which have lanes, and where their answers go.
 struct ImpactJob {
-  /// None of the bodies turns; else some do.
-  bool straight;
+  ImpactMotion motion;
   ShapeTables tables;
   const ImpactQuery* queries;
   /// Which of the queries: indices, here and of the answers.

@@ -1,6 +1,7 @@
 // Ellipsoids against spheres and half-spaces: how far a point or a plane is from one.
 
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/kernels/round/ellipsoid_surface.wide.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
 
 namespace winnow {
@@ -19,86 +20,6 @@ template <typename T>
   Lanes<T> r[4];
   load_shapes<SideB>(job, block, job.tables->ellipsoids, r);
   return {{r[0], r[1], r[2]}, r[3]};
-}
-
-template <typename T>
-[[gnu::always_inline]] inline Vec3<T> times(const Vec3<T>& a, const Vec3<T>& b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-
-/// An ellipsoid as far as it goes along a direction.
-template <typename T>
-struct Reach {
-  Lanes<T> height;
-  Vec3<T> point;
-};
-
-template <typename T>
-[[gnu::always_inline]] inline Reach<T> reach_of(const Vec3<T>& radius, const Vec3<T>& direction) {
-  const Vec3<T> stretched = times(radius, direction);
-  const Lanes<T> height = sqrt(dot(stretched, stretched));
-  const Lanes<T> least(sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-18F));
-  return {height, times(radius, stretched) * (Lanes<T>(T(1)) / max(height, least))};
-}
-
-/// A point seen from an ellipsoid, in its frame and, by its symmetry, where no coordinate is
-/// negative. The way out of, or to, the surface is along q_i / (s + e_i), where e_i are the squares
-/// of the radii less that of the least, and s is the largest at which the r_i q_i / (s + e_i) are a
-/// unit vector (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid",
-/// 2013). Its length's inverse is nearly straight in s, and Newton's method goes up to the root (as
-/// Moré and Sorensen, "Computing a trust region step", 1983).
-template <typename T>
-struct SurfaceView {
-  /// Unit.
-  Vec3<T> outward;
-  /// Signed, between these.
-  Lanes<T> low;
-  Lanes<T> high;
-};
-
-template <typename T>
-[[gnu::always_inline]] inline SurfaceView<T> view_surface(const Vec3<T>& radius, const Vec3<T>& q) {
-  constexpr int steps = sizeof(T) == sizeof(double) ? 8 : 6;
-  const Lanes<T> zero(T(0));
-  const Lanes<T> one(T(1));
-  const Lanes<T> thin = min(min(radius.x, radius.y), radius.z);
-  const auto square_beyond = [&](const Lanes<T>& r) { return (r - thin) * (r + thin); };
-  const Vec3<T> excess{square_beyond(radius.x), square_beyond(radius.y), square_beyond(radius.z)};
-  const Vec3<T> weight = times(radius, q);
-  const auto of_least = [&](const Lanes<T>& w, const Lanes<T>& e) {
-    return select(e > zero, zero, w * w);
-  };
-  // Never 0, which has no inverse: beside a flat ellipsoid this is as good.
-  const Lanes<T> most = max(max(radius.x, radius.y), radius.z);
-  const Lanes<T> hardly =
-      most * most * Lanes<T>(sizeof(T) == sizeof(double) ? T(1e-30) : T(1e-12F));
-  Lanes<T> s = max(sqrt(of_least(weight.x, excess.x) + of_least(weight.y, excess.y) +
-                        of_least(weight.z, excess.z)),
-                   hardly);
-  const auto inverse = [&] {
-    return Vec3<T>{one / (s + excess.x), one / (s + excess.y), one / (s + excess.z)};
-  };
-  Vec3<T> over = inverse();
-  for (int i = 0; i < steps; ++i) {
-    const Vec3<T> share = times(weight, over);
-    const Lanes<T> square = dot(share, share);
-    const Lanes<T> bend = dot(times(share, share), over);
-    s = s + max((sqrt(square) - one) * square / bend, zero);
-    over = inverse();
-  }
-  const Vec3<T> way = times(q, over);
-  const Vec3<T> outward = way * (one / sqrt(dot(way, way)));
-  const Vec3<T> share = times(weight, over);
-  const Lanes<T> within = one / max(sqrt(dot(share, share)), one);
-  const Vec3<T> gap = q - times(radius, share) * within;
-  // Any t above -thin^2 bounds the squared distance to the surface (Lagrange's dual function).
-  // Where it is not above zero, the point is hardly inside or has no s: nothing is known.
-  const Lanes<T> t = s - thin * thin;
-  const Lanes<T> least = t * (dot(times(q, q), over) - one);
-  const Lanes<T> unknown(T(__builtin_nan("")));
-  const Lanes<T> inside = select(least > zero, -sqrt(max(least, zero)), unknown);
-  const Lanes<T> low = dot(outward, q) - reach_of(radius, outward).height;
-  return {outward, low, select(t > zero, sqrt(dot(gap, gap)), inside)};
 }
 
 struct SphereEllipsoid {
