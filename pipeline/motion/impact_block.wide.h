@@ -4,6 +4,7 @@
 // go.
 
 #include "pipeline/motion/closed_forms.wide.h"
+#include "pipeline/motion/smooth_guess.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
@@ -11,6 +12,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 inline constexpr double kMostLooksWithin = 64.0;
 /// What takes more looks takes the search that has one pair alone.
 inline constexpr double kMostLaneLooks = 256.0;
+/// Gaps are not seen to be smaller than some noise.
+inline constexpr double kClosedNoise = 6.0;
 /// Of the noise: what distances need not be better than.
 inline constexpr double kEnough = 0.125;
 
@@ -45,6 +48,13 @@ struct PairLanes {
   /// 1 while there is more to do.
   Doubles active;
   WitnessLanes witness;
+  /// Of pairs that do not turn and have guesses.
+  TriedLanes tried;
+  /// Of pairs that do not turn and look back, the direction that shows the largest gap, unit, once
+  /// there is a simplex; and from the point of a that is farthest along it to that of b, without
+  /// the way between the middles.
+  Vector best;
+  Vector best_way;
   /// Of pairs that turn: how fast they travel; what else is known by the last look, when to look
   /// next, and as in ImpactSearch.
   Doubles speed;
@@ -69,6 +79,16 @@ struct ImpactBlock {
   PairLanes lanes;
   PairBlockTables tables;
 };
+
+/// Whether earlier directions are of use: the way between points that nearly touch is short, and
+/// rounding turns it by much. Rims are hit so at any tolerance, other shapes at small ones.
+[[nodiscard]] inline bool looks_back(const ImpactJob& job, const PairBlockTables& tables) {
+  constexpr double kSmall = 2e-7;
+  const auto has_rim = [](ShapeKind kind) {
+    return kind == ShapeKind::cylinder || kind == ShapeKind::cone || kind == ShapeKind::support;
+  };
+  return job.tolerance < kSmall || has_rim(tables.a.kind) || has_rim(tables.b.kind);
+}
 
 /// What the lanes show where they are placed.
 struct LookLanes {
@@ -150,6 +170,10 @@ class BlockStep {
         answers_(job, block.tables),
         active_(p_.active > Doubles(0.0)) {}
 
+  /// Gaps that may be as large have been closed.
+  [[nodiscard]] Doubles closed() const {
+    return max(p_.tolerance, look_.noise * Doubles(kClosedNoise));
+  }
   void end_unsure(const Truth& lanes) {
     answers_.put_unsure(bits(active_ & lanes), p_.time);
     active_ = active_ & !lanes;

@@ -156,6 +156,7 @@ class ImpactStep : BlockStep {
     if (bits(active_ & proves) == 0) {
       whole_ = active_;
       p_.time = p_.next;
+      p_.curve = Doubles(0.0);
       // What a coarse look does not tell apart is looked at again.
       if (coarse_) whole_ = whole_ & look_.parted;
       end_unsure(whole_ & !look_.parted);
@@ -237,7 +238,7 @@ class ImpactStep : BlockStep {
   void decide() {
     const Truth looked = active_ & whole_;
     if (bits(looked) == 0) return;
-    const Truth near = looked & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
+    const Truth near = looked & (look_.most <= closed());
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
     const Truth met = near & (meets | (p_.within > Doubles(kMostLooksWithin)));
@@ -460,6 +461,8 @@ class ImpactLoad {
     const Vector between = p_.start + p_.travel * p_.time;
     const Truth there = dot(between, between) > zero;
     p_.axis = select(there, between, Vector{Doubles(1.0), zero, zero});
+    p_.best = p_.best_way = zero_vector();
+    if (has_guesses(tables_.a.kind, tables_.b.kind)) p_.tried.clear();
   }
 
   void begin(const Truth& usable) {
@@ -517,16 +520,16 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   constexpr std::size_t kAngle = offsetof(MovingCore, angle);
   constexpr std::size_t kCorner = offsetof(MovingCore, corner);
   constexpr std::size_t kAxes = offsetof(MovingCore, axes);
-  constexpr std::size_t kSize = offsetof(MovingCore, size);
+  constexpr std::size_t kExtent = offsetof(MovingCore, extent);
   if (table.turns) move_members<0, kAngle>(from, lane_from, to, lane_to);
   move_members<kAngle, kCorner>(from, lane_from, to, lane_to);
   if (has_corners(table.kind)) move_members<kCorner, kAxes>(from, lane_from, to, lane_to);
-  if (!table.turns && !table.in_world) move_members<kAxes, kSize>(from, lane_from, to, lane_to);
+  if (!table.turns && !table.in_world) move_members<kAxes, kExtent>(from, lane_from, to, lane_to);
 }
 
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
-inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& to,
-                      unsigned lane_to, bool straight) {
+inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned lane_from,
+                      ImpactBlock& to, unsigned lane_to) {
   const PairBlockTables& tables = from.tables;
   const PairLanes& source = from.lanes;
   PairLanes& target = to.lanes;
@@ -534,12 +537,19 @@ inline void move_lane(const ImpactBlock& from, unsigned lane_from, ImpactBlock& 
   move_core(tables.b, source.b, lane_from, target.b, lane_to);
   constexpr std::size_t kStart = offsetof(PairLanes, start);
   constexpr std::size_t kWitness = offsetof(PairLanes, witness);
+  constexpr std::size_t kTried = offsetof(PairLanes, tried);
+  constexpr std::size_t kBest = offsetof(PairLanes, best);
   constexpr std::size_t kLook = offsetof(PairLanes, speed);
   move_members<kStart, kWitness>(source, lane_from, target, lane_to);
   if (!has_closed_form(tables.a.kind, tables.b.kind)) {
-    move_members<kWitness, kLook>(source, lane_from, target, lane_to);
+    move_members<kWitness, kTried>(source, lane_from, target, lane_to);
+    if (is_straight(job)) {
+      const bool guesses = has_guesses(tables.a.kind, tables.b.kind);
+      if (guesses) move_members<kTried, kBest>(source, lane_from, target, lane_to);
+      if (looks_back(job, tables)) move_members<kBest, kLook>(source, lane_from, target, lane_to);
+    }
   }
-  if (!straight) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
+  if (!is_straight(job)) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
   to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
   to.tables.b.hull[lane_to] = tables.b.hull[lane_from];
   to.tables.a.own[lane_to] = tables.a.own[lane_from];
@@ -611,7 +621,7 @@ class ImpactRounds {
       for (; active_[from] != 0; active_[from] &= active_[from] - 1) {
         while (active_[to] == kAllLanes<double>) ++to;
         const unsigned lane_to = first(~active_[to]);
-        move_lane(block_[from], first(active_[from]), block_[to], lane_to, is_straight(job_));
+        move_lane(job_, block_[from], first(active_[from]), block_[to], lane_to);
         active_[to] |= 1U << lane_to;
       }
     }

@@ -114,18 +114,22 @@ struct MovingCore {
   /// how high its centre is. Half-space: its normal.
   Vector half;
   Doubles rounding;
+  /// No point of the shape is farther from the body's position.
+  Doubles size;
   /// Of a triangle. Of a half-space the first number is its offset.
   Vector corner[3];
   /// Where it is placed: its axes in the world.
   Rotation<double> axes;
-  /// No point of the shape is farther from the body's position.
-  Doubles size;
   /// Of which tolerances are shares.
   Doubles extent;
 };
 
 [[nodiscard]] constexpr bool has_corners(ShapeKind kind) {
   return kind == ShapeKind::triangle || kind == ShapeKind::half_space;
+}
+
+[[nodiscard]] constexpr bool has_faces(ShapeKind kind) {
+  return kind == ShapeKind::box || kind == ShapeKind::hull || kind == ShapeKind::triangle;
 }
 
 /// What of a core is not a number.

@@ -4,7 +4,8 @@
 // travels along a line, so that what a direction shows is known for all times. Each step of the
 // search for closest points brings the pair at once to where the direction that it tried shows a
 // gap no longer (van den Bergen, "Ray casting against general convex objects with application to
-// continuous collision detection", 2004).
+// continuous collision detection", 2004). Any direction may be tried; on smooth surfaces guesses
+// are in turns with it.
 
 #include "pipeline/motion/impact_block.wide.h"
 
@@ -15,7 +16,10 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 /// of the world, its points of a and the ways from them to those of b.
 class StraightStep : BlockStep {
  public:
-  StraightStep(const ImpactJob& job, ImpactBlock& block) : BlockStep(job, block) {}
+  StraightStep(const ImpactJob& job, ImpactBlock& block)
+      : BlockStep(job, block),
+        guesses_(has_guesses(tables_.a.kind, tables_.b.kind)),
+        looks_back_(looks_back(job, tables_)) {}
 
   /// Returns the lanes that go on.
   [[nodiscard]] Mask16 run() {
@@ -73,23 +77,47 @@ class StraightStep : BlockStep {
     square_ = dot(v, v);
     closest.between = v;
     closest.upper = sqrt(square_);
+    Vector direction = v;
+    Doubles size = closest.upper;
+    if (guesses_) {
+      guessed_ = active_ & p_.tried.is_next();
+      direction = select(guessed_, p_.tried.guess, v);
+      size = select(guessed_, length(direction), size);
+    } else {
+      guessed_ = active_ & !active_;
+    }
     Vector own_a;
     Vector own_b;
-    pair.facing(v, bits(active_), own_a, own_b);
+    pair.facing(direction, bits(active_), own_a, own_b);
     closest.on_a = pair.on_a(own_a);
     way_ = pair.on_b(own_b) - closest.on_a;
     compare_with(way_);
     const Vector w = look_.between + way_;
-    const Doubles reach = dot(v, w);
-    const Doubles over = Doubles(1.0) / closest.upper;
-    closest.axis = v * over;
+    const Doubles reach = dot(direction, w);
+    const Doubles over = Doubles(1.0) / size;
+    closest.axis = direction * over;
     closest.lower = reach * over;
-    const Doubles gain = square_ - reach;
+    Truth elsewhere = guessed_;
+    if (guesses_) tried_ = closest.axis;
+    if (looks_back_) elsewhere = elsewhere | take_best();
+    const Doubles gain = square_ - select(elsewhere, closest.lower * closest.upper, reach);
     const Doubles left = closest.upper - p_.roundings;
-    const Truth ends = (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already();
+    const Truth ends =
+        (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already() & !guessed_;
     // Rounding turns the direction, by more the shorter it is, and moves what is farthest along it.
     settled_ = used_[0] & ((gain <= look_.noise * Doubles(kEnough) * (closest.upper + p_.sizes)) |
                            ends | (p_.proves > Doubles(0.0)));
+  }
+
+  /// Where an earlier direction shows more than what was tried it is taken. Returns those lanes.
+  [[nodiscard]] Truth take_best() {
+    ClosestLanes& closest = look_.closest;
+    const Doubles shown = dot(p_.best, look_.between + p_.best_way);
+    const Truth known = used_[0] & (shown > closest.lower);
+    closest.lower = select(known, shown, closest.lower);
+    closest.axis = p_.best = select(known, p_.best, closest.axis);
+    p_.best_way = select(known, p_.best_way, way_);
+    return known;
   }
 
   /// What the closest points tell.
@@ -103,8 +131,7 @@ class StraightStep : BlockStep {
 
   /// Whether the lanes have met, or until when they are apart.
   void decide() {
-    const Truth within =
-        look_.parted & (look_.most <= max(p_.tolerance, look_.noise * Doubles(8.0)));
+    const Truth within = look_.parted & (look_.most <= closed());
     const Truth near = within & settled_;
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
@@ -115,8 +142,10 @@ class StraightStep : BlockStep {
     end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
     // Touching, too near for double to tell, or no number left between.
     end_unsure(settled_ & ((!look_.parted) | (free <= p_.time)));
-    // What is within the tolerance is first known as well as can be.
-    p_.time = select(active_ & look_.parted & ((!within) | settled_), free, p_.time);
+    // What is within the tolerance, or has come near enough for it, is first known as well as can
+    // be.
+    const Truth far = (!within) & (look_.gap > p_.tolerance * Doubles(0.375));
+    p_.time = select(active_ & look_.parted & (far | settled_), free, p_.time);
   }
 
   [[nodiscard]] Doubles free_until() const {
@@ -143,8 +172,7 @@ class StraightStep : BlockStep {
   /// Brings lanes to where they seem to meet, if that is ahead of what is proved.
   void try_ahead(const CorePair& pair, const Doubles& here) {
     const ClosestLanes& closest = look_.closest;
-    const Doubles reach =
-        p_.roundings + max(p_.tolerance, look_.noise * Doubles(8.0)) * Doubles(0.5);
+    const Doubles reach = p_.roundings + closed() * Doubles(0.5);
     const Doubles closing = -look_.slope * closest.upper;
     const Doubles left = (closest.upper - reach) * (closest.upper + reach);
     const Doubles square = closing * closing - closing_square(pair, closest, p_.travel) * left;
@@ -178,10 +206,13 @@ class StraightStep : BlockStep {
     const Truth stands = used_[0] & (p_.time <= before);
     const Truth stuck = stands & (square >= square_);
     end_unsure(nearest.inside | !(square > Doubles(0.0)));
-    p_.proves = one_where(stuck);
+    p_.proves = one_where(stuck & !guessed_);
     const Truth moves = active_ & !stuck;
     keep(nearest, moves);
     p_.axis = select(moves, nearest.point, p_.axis);
+    if (guesses_) {
+      SmoothGuess(look_.between, p_.axis, p_.tried).note({tried_, way_, guessed_}, active_);
+    }
   }
 
   /// Where `moves`: the nearest feature becomes the simplex.
@@ -197,6 +228,11 @@ class StraightStep : BlockStep {
     }
   }
 
+  bool guesses_;
+  bool looks_back_;
+  /// Where what was tried was a guess; and if some are, the direction, unit.
+  Truth guessed_;
+  Vector tried_;
   /// No direction shows more than the one that was tried.
   Truth settled_;
   /// Of the distance to the simplex.

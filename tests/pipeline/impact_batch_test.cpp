@@ -26,6 +26,14 @@ struct Crowd {
       const ShapeKind b = kinds[random.below(kinds.size())];
       add_pairs(scene, a, b, kPairStyles[random.below(std::size(kPairStyles))], 1, random);
     }
+    set_motions();
+  }
+  /// Of one pair of kinds.
+  Crowd(ShapeKind a, ShapeKind b, std::size_t count, std::uint64_t seed) : random(seed) {
+    add_pairs(scene, a, b, PairStyle::ordinary, count, random);
+    set_motions();
+  }
+  void set_motions() {
     motions.resize(scene.shapes.size());
     for (const BodyPair& pair : scene.pairs) {
       const MotionStyle style = kMotionStyles[random.below(std::size(kMotionStyles))];
@@ -67,6 +75,24 @@ TEST(ImpactBatches, answer_as_each_pair_is_answered_alone) {
     SCOPED_TRACE(i);
     crowd.find(std::span(crowd.pairs).subspan(i, 1), alone);
     expect_same(together, i, alone, 0);
+  }
+}
+
+// Which makes full blocks of lanes.
+TEST(ImpactBatches, of_one_pair_of_kinds_answer_as_each_pair_is_answered_alone) {
+  const std::vector<ShapeKind> kinds = moving_kinds();
+  ImpactResult together;
+  ImpactResult alone;
+  for (const ShapeKind a : kinds) {
+    for (const ShapeKind b : kinds) {
+      SCOPED_TRACE(testing::Message() << to_string(a) << " " << to_string(b));
+      const Crowd crowd(a, b, scaled(200), 84);
+      crowd.find(crowd.pairs, together);
+      for (std::size_t i = 0; i < crowd.pairs.size(); ++i) {
+        crowd.find(std::span(crowd.pairs).subspan(i, 1), alone);
+        expect_same(together, i, alone, 0);
+      }
+    }
   }
 }
 
