@@ -80,9 +80,9 @@ TEST(TimeOfImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
     const double tolerance = kTolerances[random.below(std::size(kTolerances))];
     const Meeting found = meeting_of(scene.pool, pair, tolerance);
     ASSERT_EQ(found.status, Status::ok);
-    SCOPED_TRACE(testing::Message() << n << ": " << to_string(a) << " " << to_string(b) << " "
-                                    << to_string(made) << " " << to_string(style) << " "
-                                    << tolerance);
+    SCOPED_TRACE(testing::Message()
+                 << n << ": " << to_string(a) << " " << to_string(b) << " " << to_string(made)
+                 << " " << to_string(style) << " " << tolerance);
     const Before then = before(scene.pool, pair, found.time, 2000);
     EXPECT_NE(then, Before::met);
     unproved += then == Before::apart ? 0 : 1;
