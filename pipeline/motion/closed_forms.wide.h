@@ -13,7 +13,7 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
   if (b == ShapeKind::half_space) return true;
   if (a == ShapeKind::sphere) return b != ShapeKind::hull && b != ShapeKind::support;
-  return (a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle));
+  return a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle);
 }
 
 /// From a point of a to the closest of b, and that point from the middle of a.
@@ -48,9 +48,9 @@ struct Meridian {
   return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
 }
 
-/// Of a point and a ball, the nearest point of what is around both; the ball is the upper one where
-/// its height is positive. What leaves both at the same angle leads from the side to the point or
-/// the ball.
+/// The nearest point of the convex hull of a point and a ball, which is the upper one where its
+/// height is positive. The normal of the side between them rises with the slope `sine`, and what
+/// is beyond it sees the point or the ball.
 [[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
   const Doubles one(1.0);

@@ -267,9 +267,9 @@ class ImpactStep : BlockStep {
     p_.proves = one_where(looked & !freely);
   }
 
-  /// What a half-space does along its normal, which turns with it and sweeps without end: the gap
-  /// is n . P, with P from its position to a point of a, and bends by n'' . P + 2 n' . P' + n .
-  /// P''. Of the last, `counted` is what a does along n as it is now.
+  /// What a half-space does along its normal n, which turns with it and sweeps without end. The gap
+  /// is n . P, with P from its position to a point of a; its second derivative is
+  /// n'' . P + 2 n' . P' + n . P''. Of the last, `counted` is what a does along n as it is now.
   [[nodiscard]] TurningAlong turning_plane(const Doubles& counted) const {
     const Doubles& high = look_.closest.high_b;
     if (!tables_.b.turns) return {high, Doubles(0.0)};
