@@ -604,8 +604,15 @@ class ImpactRounds {
   }
 
   void look(std::uint32_t i, bool first) {
-    active_[i] = is_straight(job_) ? StraightStep(job_, block_[i]).run()
-                                   : ImpactStep(job_, block_[i], first).run();
+    ImpactBlock& block = block_[i];
+    if (!is_straight(job_)) {
+      active_[i] = ImpactStep(job_, block, first).run();
+    } else if (searches_ && (has_guesses(block.tables.a.kind, block.tables.b.kind) ||
+                             looks_back(job_, block.tables))) {
+      active_[i] = StraightStep<true>(job_, block).run();
+    } else {
+      active_[i] = StraightStep<false>(job_, block).run();
+    }
   }
 
   /// As few blocks as take all lanes that are active: those of the last go to the first.

@@ -13,7 +13,9 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// One step of all lanes of a block, which are placed. Of lanes without a closed form `axis` is the
 /// nearest point of the simplex, or any direction while there is none; the witness has, in the axes
-/// of the world, its points of a and the ways from them to those of b.
+/// of the world, its points of a and the ways from them to those of b. `Elsewhere`: they have no
+/// closed form, and guesses or look back; apart from the others, which this would cost time.
+template <bool Elsewhere>
 class StraightStep : BlockStep {
  public:
   StraightStep(const ImpactJob& job, ImpactBlock& block)
@@ -26,7 +28,7 @@ class StraightStep : BlockStep {
     look_.between = p_.start + p_.travel * p_.time;
     look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
-    if (has_closed_form(tables_.a.kind, tables_.b.kind)) {
+    if (!Elsewhere && has_closed_form(tables_.a.kind, tables_.b.kind)) {
       look_.closest = closest_by_form(pair, bits(active_));
       settled_ = active_;
       judge();
@@ -77,14 +79,13 @@ class StraightStep : BlockStep {
     square_ = dot(v, v);
     closest.between = v;
     closest.upper = sqrt(square_);
+    guessed_ = active_ & !active_;
     Vector direction = v;
     Doubles size = closest.upper;
-    if (guesses_) {
+    if (Elsewhere && guesses_) {
       guessed_ = active_ & p_.tried.is_next();
       direction = select(guessed_, p_.tried.guess, v);
       size = select(guessed_, length(direction), size);
-    } else {
-      guessed_ = active_ & !active_;
     }
     Vector own_a;
     Vector own_b;
@@ -97,10 +98,12 @@ class StraightStep : BlockStep {
     const Doubles over = Doubles(1.0) / size;
     closest.axis = direction * over;
     closest.lower = reach * over;
-    Truth elsewhere = guessed_;
-    if (guesses_) tried_ = closest.axis;
-    if (looks_back_) elsewhere = elsewhere | take_best();
-    const Doubles gain = square_ - select(elsewhere, closest.lower * closest.upper, reach);
+    Doubles gain = square_ - reach;
+    if (Elsewhere) {
+      tried_ = closest.axis;
+      const Truth known = looks_back_ ? take_best() : guessed_;
+      gain = select(guessed_ | known, square_ - closest.lower * closest.upper, gain);
+    }
     const Doubles left = closest.upper - p_.roundings;
     const Truth ends =
         (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already() & !guessed_;
@@ -210,7 +213,7 @@ class StraightStep : BlockStep {
     const Truth moves = active_ & !stuck;
     keep(nearest, moves);
     p_.axis = select(moves, nearest.point, p_.axis);
-    if (guesses_) {
+    if (Elsewhere && guesses_) {
       SmoothGuess(look_.between, p_.axis, p_.tried).note({tried_, way_, guessed_}, active_);
     }
   }
@@ -230,7 +233,7 @@ class StraightStep : BlockStep {
 
   bool guesses_;
   bool looks_back_;
-  /// Where what was tried was a guess; and if some are, the direction, unit.
+  /// Where what was tried was a guess; and the direction, unit.
   Truth guessed_;
   Vector tried_;
   /// No direction shows more than the one that was tried.
