@@ -74,16 +74,16 @@ class StartDistances {
     ++job_.count;
   }
 
-  /// Calls take(query, impact) for those that surely overlap, and forgets all.
-  template <typename Take>
-  void run(Take&& take) noexcept {
-    if (job_.count != 0) answer(take);
+  /// Puts impacts of those that surely overlap where known(query) says, and forgets all.
+  template <typename Known>
+  void run(Known&& known) noexcept {
+    if (job_.count != 0) answer(known);
     job_.count = 0;
   }
 
  private:
-  template <typename Take>
-  void answer(Take& take) noexcept {
+  template <typename Known>
+  void answer(Known& known) noexcept {
     const NarrowKernels* const kernels =
         narrow_kernels(shapes_[pairs_[0].a].kind(), shapes_[pairs_[0].b].kind());
     if (kernels == nullptr) return;
@@ -91,14 +91,14 @@ class StartDistances {
     for (std::uint32_t i = 0; i < left; ++i) distance_[uncertified_[i]] = 1.0;
     for (std::size_t i = 0; i < job_.count; ++i) {
       if (!(distance_[i] <= 0.0)) continue;
-      Impact impact{true,
-                    0.0,
-                    distance_[i],
-                    error_bound_[i],
-                    {normal_[0][i], normal_[1][i], normal_[2][i]},
-                    {point_[0][i], point_[1][i], point_[2][i]}};
-      if (mirrored_) mirror_impact(*asked_[i]->motion[0], *asked_[i]->motion[1], impact);
-      take(queries_[i], impact);
+      Impact& found = known(queries_[i]);
+      found = {true,
+               0.0,
+               distance_[i],
+               error_bound_[i],
+               {normal_[0][i], normal_[1][i], normal_[2][i]},
+               {point_[0][i], point_[1][i], point_[2][i]}};
+      if (mirrored_) mirror_impact(*asked_[i]->motion[0], *asked_[i]->motion[1], found);
     }
   }
 
@@ -173,16 +173,16 @@ void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
   };
   if (std::ranges::none_of(asked, at_start)) return;
   StartDistances starts(tables_);
-  const auto take = [&](std::size_t query, const Impact& impact) {
-    found_[query] = impact;
+  const auto known = [&](std::size_t query) -> Impact& {
     verdicts_[query] = ImpactVerdict::known;
+    return found_[query];
   };
   for (const std::uint16_t query : asked) {
     if (!at_start(query)) continue;
-    if (starts.is_full()) starts.run(take);
+    if (starts.is_full()) starts.run(known);
     starts.add(query, queries_[query]);
   }
-  starts.run(take);
+  starts.run(known);
 }
 
 void ImpactBatch::search(std::size_t i) noexcept {
