@@ -28,6 +28,10 @@ struct Meridian {
   Doubles z;
 };
 
+[[gnu::always_inline]] inline Meridian nearest_of_cylinder(const Vector& half, const Meridian& p) {
+  return {min(p.away, half.x), round::clamp(p.z, -half.z, half.z)};
+}
+
 /// The nearest point of a cone's side or base.
 [[gnu::always_inline]] inline Meridian nearest_of_cone(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
@@ -86,30 +90,29 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
       radius, {facing(p.x, outward.x), facing(p.y, outward.y), facing(p.z, outward.z)});
 }
 
+/// Of a shape that is round about z.
+[[gnu::always_inline]] inline Vector nearest_of_spun(const CoreTable& table, const Vector& half,
+                                                     const Vector& p) {
+  const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
+  const Meridian nearest = table.kind == ShapeKind::cylinder ? nearest_of_cylinder(half, here)
+                           : table.kind == ShapeKind::cone   ? nearest_of_cone(half, here)
+                                                             : nearest_of_taper(half, here);
+  const Doubles share = select(here.away > Doubles(1e-150), nearest.away / here.away, Doubles(0.0));
+  return {p.x * share, p.y * share, nearest.z};
+}
+
 /// The point of a core that is closest to `p`, which is outside, both in its own frame.
 [[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
                                                 const Vector& p) {
-  const Doubles zero(0.0);
-  const auto within = [](const Doubles& x, const Doubles& reach) {
-    return min(max(x, -reach), reach);
-  };
   switch (table.kind) {
     case ShapeKind::box:
-      return {within(p.x, core.half.x), within(p.y, core.half.y), within(p.z, core.half.z)};
-    case ShapeKind::cylinder: {
-      const Doubles across = sqrt(p.x * p.x + p.y * p.y);
-      const Doubles share = select(across > core.half.x, core.half.x / across, Doubles(1.0));
-      return {p.x * share, p.y * share, within(p.z, core.half.z)};
-    }
+      return {round::clamp(p.x, -core.half.x, core.half.x),
+              round::clamp(p.y, -core.half.y, core.half.y),
+              round::clamp(p.z, -core.half.z, core.half.z)};
+    case ShapeKind::cylinder:
     case ShapeKind::cone:
-    case ShapeKind::tapered_capsule: {
-      const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
-      const Meridian nearest = table.kind == ShapeKind::cone ? nearest_of_cone(core.half, here)
-                                                             : nearest_of_taper(core.half, here);
-      const Doubles share =
-          select(here.away > Doubles(1e-150), nearest.away / here.away, Doubles(0.0));
-      return {p.x * share, p.y * share, nearest.z};
-    }
+    case ShapeKind::tapered_capsule:
+      return nearest_of_spun(table, core.half, p);
     case ShapeKind::ellipsoid:
       return nearest_of_ellipsoid(core.half, p);
     default:

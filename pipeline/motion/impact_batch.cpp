@@ -15,12 +15,10 @@ WINNOW_DEFINE_KERNELS(ImpactLaneKernels, impact_lane_kernels)
 namespace impact {
 namespace {
 
-/// Numbers of kinds are below.
-constexpr std::size_t kKinds = 14;
 /// Ways to move, which ImpactMotion names.
 constexpr std::size_t kMotions = 3;
 /// Of pairs without lanes.
-constexpr std::uint16_t kNoLanes = kMotions * kKinds * kKinds;
+constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
 
 [[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
   const double(&turn)[3] = query.motion[side]->turn;
@@ -39,7 +37,7 @@ constexpr std::uint16_t kNoLanes = kMotions * kKinds * kKinds;
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
   if (a == ShapeKind::half_space) return kNoLanes;
-  const std::size_t kinds = static_cast<std::size_t>(a) * kKinds + static_cast<std::size_t>(b);
+  const std::size_t kinds = static_cast<std::size_t>(a) * kShapeKinds + static_cast<std::size_t>(b);
   return static_cast<std::uint16_t>(kMotions * kinds + static_cast<std::size_t>(motion_of(query)));
 }
 

@@ -82,12 +82,12 @@ struct ImpactBlock {
 
 /// Whether earlier directions are of use: the way between points that nearly touch is short, and
 /// rounding turns it by much. Rims are hit so at any tolerance, other shapes at small ones.
-[[nodiscard]] inline bool looks_back(const ImpactJob& job, const PairBlockTables& tables) {
+[[nodiscard]] inline bool looks_back(const ImpactJob& job, ShapeKind a, ShapeKind b) {
   constexpr double kSmall = 2e-7;
   const auto has_rim = [](ShapeKind kind) {
     return kind == ShapeKind::cylinder || kind == ShapeKind::cone || kind == ShapeKind::support;
   };
-  return job.tolerance < kSmall || has_rim(tables.a.kind) || has_rim(tables.b.kind);
+  return job.tolerance < kSmall || has_rim(a) || has_rim(b);
 }
 
 /// What the lanes show where they are placed.

@@ -546,7 +546,8 @@ inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned la
     if (is_straight(job)) {
       const bool guesses = has_guesses(tables.a.kind, tables.b.kind);
       if (guesses) move_members<kTried, kBest>(source, lane_from, target, lane_to);
-      if (looks_back(job, tables)) move_members<kBest, kLook>(source, lane_from, target, lane_to);
+      const bool back = looks_back(job, tables.a.kind, tables.b.kind);
+      if (back) move_members<kBest, kLook>(source, lane_from, target, lane_to);
     }
   }
   if (!is_straight(job)) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
@@ -560,7 +561,13 @@ inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned la
 /// All queries of a job.
 class ImpactRounds {
  public:
-  explicit ImpactRounds(const ImpactJob& job) : job_(job), searches_(searches()) {}
+  explicit ImpactRounds(const ImpactJob& job) : job_(job) {
+    const ImpactQuery& query = job.queries[job.order[0]];
+    const ShapeKind a = query.shape[0].kind();
+    const ShapeKind b = query.shape[1].kind();
+    searches_ = !has_closed_form(a, b);
+    tries_elsewhere_ = searches_ && (has_guesses(a, b) || looks_back(job, a, b));
+  }
 
   void run() {
     for (fill(); count_ > 0;) {
@@ -575,11 +582,6 @@ class ImpactRounds {
  private:
   /// What is needed of them stays in the cache.
   static constexpr std::uint32_t kBlocks = 6;
-
-  [[nodiscard]] bool searches() const {
-    const ImpactQuery& query = job_.queries[job_.order[0]];
-    return !has_closed_form(query.shape[0].kind(), query.shape[1].kind());
-  }
 
   /// Lanes are moved less often if many blocks are filled at once. A search for closest points
   /// costs less where simplices of all lanes have few points, as those of pairs have that began
@@ -607,8 +609,7 @@ class ImpactRounds {
     ImpactBlock& block = block_[i];
     if (!is_straight(job_)) {
       active_[i] = ImpactStep(job_, block, first).run();
-    } else if (searches_ && (has_guesses(block.tables.a.kind, block.tables.b.kind) ||
-                             looks_back(job_, block.tables))) {
+    } else if (tries_elsewhere_) {
       active_[i] = StraightStep<true>(job_, block).run();
     } else {
       active_[i] = StraightStep<false>(job_, block).run();
@@ -636,6 +637,8 @@ class ImpactRounds {
 
   const ImpactJob& job_;
   bool searches_;
+  /// Steps of pairs that do not turn are StraightStep<true>.
+  bool tries_elsewhere_;
   /// The first query that is not loaded.
   std::uint32_t next_ = 0;
   std::uint32_t count_ = 0;

@@ -21,7 +21,7 @@ class StraightStep : BlockStep {
   StraightStep(const ImpactJob& job, ImpactBlock& block)
       : BlockStep(job, block),
         guesses_(has_guesses(tables_.a.kind, tables_.b.kind)),
-        looks_back_(looks_back(job, tables_)) {}
+        looks_back_(looks_back(job, tables_.a.kind, tables_.b.kind)) {}
 
   /// Returns the lanes that go on.
   [[nodiscard]] Mask16 run() {
