@@ -1,0 +1,265 @@
+// The impacts of candidates: what balls around the bodies allow is judged exactly, a round of pairs
+// after the other, as long as a pair may have the first impact of a body.
+
+#include "core/sort/radix_sort.h"
+#include "pipeline/motion/impact_batch.h"
+#include "pipeline/scene/sweep_state.h"
+#include "pipeline/shapes/difference.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <numeric>
+#include <tuple>
+
+namespace winnow {
+namespace {
+
+constexpr std::size_t kCandidatesPerStretch = 256;
+/// So many pairs are looked at before what they say spares others.
+constexpr std::size_t kPairsPerRound = 1024;
+/// To so many bits pairs are ordered by when they may meet, in steps of time.
+constexpr unsigned kTimeBits = 11;
+constexpr double kTimeSteps = (1U << kTimeBits) - 1U;
+/// Of a candidate whose balls do not meet.
+constexpr std::uint64_t kNoChance = ~std::uint64_t{0};
+constexpr std::size_t kFetchAhead = 16;
+/// More than rounding changes times by, and the sizes of balls as a share of them.
+constexpr double kRounding = 1e-9;
+
+/// Room for a motion, which nothing is written to before there is one.
+union MotionRoom {
+  MotionRoom() noexcept {}
+  RigidMotion motion;
+};
+
+}  // namespace
+
+Approach SweepState::approach_of(std::uint32_t a, std::uint32_t b,
+                                 double tolerance) const noexcept {
+  MovingBall room[2];
+  const MovingBall& of_a = ball_of(a, room[0]);
+  const MovingBall& of_b = ball_of(b, room[1]);
+  return {Eigen::Vector3d::Map(difference(of_b.start, of_a.start).difference),
+          Eigen::Vector3d::Map(of_b.travel) - Eigen::Vector3d::Map(of_a.travel),
+          (of_a.radius + of_b.radius) * (1.0 + tolerance)};
+}
+
+/// The first impacts of no more pairs than fit into a batch; `impacts_of` gets one of each, which
+/// is to be looked at where `hits_of` is 1.
+void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
+                              impact::BodyImpact* impacts_of,
+                              std::uint8_t* hits_of) const noexcept {
+  const auto answer = [&](std::size_t i, const impact::BodyImpact& found_impact) {
+    const impact::Impact& impact = found_impact.impact;
+    const bool touches_before = impact.time == 0.0 && impact.gap <= 0.0;
+    hits_of[i] = impact.hit && (options.touching || !touches_before) ? 1 : 0;
+    if (hits_of[i] != 0) impacts_of[i] = found_impact;
+  };
+  impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
+  std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const auto [a, b] = bodies_of(asked[i].candidate);
+    const Approach approach = approach_of(a, b, 0.0);
+    hits_of[i] = 0;
+    if (approach.begin() == kNever) continue;
+    // At most one of the two stands.
+    const auto motion = [&](std::uint32_t body) -> const RigidMotion& {
+      if (mover_of[body] != kNoMover) return motions[mover_of[body]];
+      return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
+    };
+    const RigidMotion& of_a = motion(a);
+    const RigidMotion& of_b = motion(b);
+    if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
+      batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].until);
+    } else {
+      answer(i,
+             impact::find_impact_of_balls(parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b},
+                                          options.tolerance, approach.window()));
+    }
+  }
+  batch.run([&](std::size_t i, const impact::Impact& impact, bool) { answer(i, {impact}); });
+}
+
+/// The first impact of every pair.
+Status SweepState::find_all(const SweepOptions& options) {
+  if (!found.resize(candidates.size()) || !hits.resize(candidates.size())) {
+    return Status::out_of_memory;
+  }
+  for_stretches(bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
+                [&](std::size_t begin, std::size_t end) {
+                  std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
+                  for (std::size_t i = begin; i < end; ++i) {
+                    asked[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
+                  }
+                  find_impacts({asked.data(), end - begin}, options, found.data() + begin,
+                               hits.data() + begin);
+                });
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+    if (hits[i] != 0 && !order.push_back({found[i].impact.time, i, i})) {
+      return Status::out_of_memory;
+    }
+  }
+  return Status::ok;
+}
+
+/// No impact of the candidate is found before.
+std::uint64_t SweepState::chance_of(std::size_t candidate, double tolerance) const noexcept {
+  const auto [a, b] = bodies_of(candidate);
+  // A gap of the tolerance is an impact, and rounding may find it a little sooner.
+  const double meets = approach_of(a, b, tolerance + kRounding).begin();
+  if (meets == kNever) return kNoChance;
+  const double soonest = std::max(0.0, meets - kRounding);
+  return static_cast<std::uint64_t>(soonest * kTimeSteps) << 32U | candidate;
+}
+
+/// Lists the candidates whose balls meet, the first that do first.
+Status SweepState::list_chances(double tolerance) {
+  const std::size_t count = candidates.size();
+  if (!chances.resize(count)) return Status::out_of_memory;
+  for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) {
+                    if (i + kFetchAhead < end) fetch_ball(i + kFetchAhead);
+                    chances[i] = chance_of(i, tolerance);
+                  }
+                });
+  std::uint64_t* const end = std::remove(chances.begin(), chances.end(), kNoChance);
+  const auto size = static_cast<std::size_t>(end - chances.begin());
+  const std::uint64_t* const sorted =
+      radix_sort(chances.data(), spare.data(), size, kTimeBits, bodies.options.execution);
+  if (sorted != chances.data()) std::copy_n(sorted, size, chances.data());
+  chances.set_size(size);
+  return Status::ok;
+}
+
+/// Fills a round with chances from `at` on: those that may be the first one of a body. False if
+/// memory was refused.
+bool SweepState::list_round(std::size_t& at) noexcept {
+  listed.clear();
+  for (; at < chances.size() && listed.size() < kPairsPerRound; ++at) {
+    if (at + kFetchAhead < chances.size()) {
+      __builtin_prefetch(&candidates[static_cast<std::uint32_t>(chances[at + kFetchAhead])]);
+    }
+    const auto candidate = static_cast<std::uint32_t>(chances[at]);
+    double latest = 0.0;
+    for (const std::uint32_t body : bodies_of(candidate)) {
+      const std::uint32_t mover = mover_of[body];
+      if (mover != kNoMover) latest = std::max(latest, first_time[mover]);
+    }
+    // In whole steps, and one more for what rounding takes.
+    if (static_cast<double>(chances[at] >> 32U) > latest * kTimeSteps + 1.0) continue;
+    if (!listed.push_back({candidate, latest})) return false;
+  }
+  return sort_round() && answers.resize(round.size()) && hits.resize(round.size());
+}
+
+/// Pairs of the same kinds are next to each other, so that batches have few kinds.
+bool SweepState::sort_round() noexcept {
+  constexpr std::size_t kKinds = 16;
+  const auto kinds_of = [&](const SweptPair& pair) {
+    const auto [a, b] = bodies_of(pair.candidate);
+    const auto kind = [&](std::uint32_t body) {
+      return static_cast<std::size_t>(bodies.shape[body].kind()) % kKinds;
+    };
+    return std::min(kind(a), kind(b)) * kKinds + std::max(kind(a), kind(b));
+  };
+  if (!round.resize(listed.size())) return false;
+  std::array<std::uint32_t, kKinds * kKinds + 1> place{};
+  for (const SweptPair& pair : listed) ++place[kinds_of(pair) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  for (const SweptPair& pair : listed) round[place[kinds_of(pair)]++] = pair;
+  return true;
+}
+
+/// For each of the two whose first impact it is so far.
+void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept {
+  for (const std::uint32_t body : bodies_of(candidate)) {
+    const std::uint32_t mover = mover_of[body];
+    if (mover == kNoMover) continue;
+    if (first[mover] != kNoImpact &&
+        std::tuple(first_time[mover], first[mover]) <= std::tuple(impact.impact.time, candidate)) {
+      continue;
+    }
+    found[mover] = impact;
+    first_time[mover] = impact.impact.time;
+    first[mover] = candidate;
+  }
+}
+
+Status SweepState::find_first(const SweepOptions& options) {
+  if (const Status status = list_chances(options.tolerance); status != Status::ok) return status;
+  const std::size_t count = movers.size();
+  if (!found.resize(count) || !first_time.resize(count)) return Status::out_of_memory;
+  std::fill(first_time.begin(), first_time.end(), 1.0);
+  std::fill(first.begin(), first.end(), kNoImpact);
+  for (std::size_t at = 0; at < chances.size();) {
+    if (!list_round(at)) return Status::out_of_memory;
+    for_stretches(bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
+                  [&](std::size_t begin, std::size_t end) {
+                    find_impacts({round.data() + begin, end - begin}, options,
+                                 answers.data() + begin, hits.data() + begin);
+                  });
+    for (std::size_t i = 0; i < round.size(); ++i) {
+      if (hits[i] != 0) keep_first(round[i].candidate, answers[i]);
+    }
+  }
+  for (std::uint32_t mover = 0; mover < count; ++mover) {
+    if (first[mover] == kNoImpact) continue;
+    // What is the first impact of both is shown once.
+    const bool shown_before = std::ranges::any_of(bodies_of(first[mover]), [&](std::uint32_t body) {
+      const std::uint32_t other = mover_of[body];
+      return other < mover && first[other] == first[mover];
+    });
+    if (shown_before) continue;
+    if (!order.push_back({first_time[mover], first[mover], mover})) return Status::out_of_memory;
+  }
+  return Status::ok;
+}
+
+SceneImpact SweepState::shown(std::uint64_t candidate,
+                              const impact::BodyImpact& of_bodies) const noexcept {
+  const impact::Impact& impact = of_bodies.impact;
+  SceneImpact result;
+  result.a = bodies.keys.key_of(static_cast<std::uint32_t>(candidate >> 32U));
+  result.b = bodies.keys.key_of(static_cast<std::uint32_t>(candidate));
+  result.data_a = bodies.keys.client_data(result.a.id);
+  result.data_b = bodies.keys.client_data(result.b.id);
+  result.part_a = of_bodies.part_a;
+  result.part_b = of_bodies.part_b;
+  result.time = impact.time;
+  result.gap = impact.gap;
+  result.error_bound = impact.error_bound;
+  const RigidMotion of_a = motion_of(result.a.id);
+  for (int i = 0; i < 3; ++i) {
+    result.normal[i] = impact.normal[i];
+    result.point[i] = of_a.start.position[i] + impact.time * of_a.travel[i] + impact.point[i];
+  }
+  return result;
+}
+
+/// Puts the impacts in order, and tells each mover which its first one is. False if memory was
+/// refused.
+bool SweepState::show_impacts() noexcept {
+  // Candidates are in the order of their bodies.
+  std::sort(order.begin(), order.end(), [](const FoundImpact& a, const FoundImpact& b) {
+    return std::tuple(a.time, a.candidate) < std::tuple(b.time, b.candidate);
+  });
+  if (!impacts.resize(order.size())) return false;
+  for_stretches(bodies.options.execution, order.size(), kMoversPerStretch,
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) {
+                    impacts[i] = shown(candidates[order[i].candidate], found[order[i].at]);
+                  }
+                });
+  std::fill(first.begin(), first.end(), kNoImpact);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    for (const std::uint32_t body : bodies_of(order[i].candidate)) {
+      const std::uint32_t mover = mover_of[body];
+      if (mover != kNoMover) first[mover] = std::min(first[mover], i);
+    }
+  }
+  return true;
+}
+
+}  // namespace winnow
