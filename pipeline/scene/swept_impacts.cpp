@@ -23,7 +23,7 @@ constexpr unsigned kTimeBits = 11;
 constexpr double kTimeSteps = (1U << kTimeBits) - 1U;
 /// Of a candidate whose balls do not meet.
 constexpr std::uint64_t kNoChance = ~std::uint64_t{0};
-constexpr std::size_t kFetchAhead = 16;
+constexpr std::size_t kPairsAhead = 16;
 /// More than rounding changes times by, and the sizes of balls as a share of them.
 constexpr double kRounding = 1e-9;
 
@@ -120,7 +120,7 @@ Status SweepState::list_chances(double tolerance) {
   for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t i = begin; i < end; ++i) {
-                    if (i + kFetchAhead < end) fetch_ball(i + kFetchAhead);
+                    if (i + kPairsAhead < end) fetch_ball(i + kPairsAhead);
                     chances[i] = chance_of(i, tolerance);
                   }
                 });
@@ -138,8 +138,8 @@ Status SweepState::list_chances(double tolerance) {
 bool SweepState::list_round(std::size_t& at) noexcept {
   listed.clear();
   for (; at < chances.size() && listed.size() < kPairsPerRound; ++at) {
-    if (at + kFetchAhead < chances.size()) {
-      __builtin_prefetch(&candidates[static_cast<std::uint32_t>(chances[at + kFetchAhead])]);
+    if (at + kPairsAhead < chances.size()) {
+      __builtin_prefetch(&candidates[static_cast<std::uint32_t>(chances[at + kPairsAhead])]);
     }
     const auto candidate = static_cast<std::uint32_t>(chances[at]);
     double latest = 0.0;
