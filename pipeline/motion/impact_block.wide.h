@@ -12,6 +12,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 inline constexpr double kMostLooksWithin = 64.0;
 /// What takes more looks takes the search that has one pair alone.
 inline constexpr double kMostLaneLooks = 256.0;
+/// Of the tolerance: pairs that do not turn are not brought nearer.
+inline constexpr double kNearEnough = 0.375;
 /// Gaps are not seen to be smaller than some noise.
 inline constexpr double kClosedNoise = 6.0;
 /// Of the noise: what distances need not be better than.
@@ -100,6 +102,15 @@ struct LookLanes {
   Doubles slope;
   Truth parted;
 };
+
+/// Until when pairs that do not turn are apart along an axis.
+[[nodiscard]] inline Doubles free_along(const PairLanes& p, const LookLanes& look) {
+  const Doubles target = min(p.tolerance * Doubles(0.25), look.gap * Doubles(0.5));
+  const Truth closes = look.slope < Doubles(0.0);
+  const Doubles step = (look.gap - target) / select(closes, -look.slope, Doubles(1.0));
+  const Doubles until = p.time + step * Doubles(1.0 - 8.0 * kPlace);
+  return select(closes & (until < p.last), until, p.last);
+}
 
 /// Writes answers of some lanes.
 class Answers {

@@ -7,6 +7,7 @@
 #include "pipeline/motion/impact_lanes.kernel.h"
 
 #include "pipeline/motion/impact_block.wide.h"
+#include "pipeline/motion/straight_start.wide.h"
 #include "pipeline/motion/straight_step.wide.h"
 
 namespace winnow {
@@ -566,6 +567,7 @@ class ImpactRounds {
     const ShapeKind a = query.shape[0].kind();
     const ShapeKind b = query.shape[1].kind();
     searches_ = !has_closed_form(a, b);
+    has_start_ = has_start(a, b);
     tries_elsewhere_ = searches_ && (has_guesses(a, b) || looks_back(job, a, b));
   }
 
@@ -609,6 +611,8 @@ class ImpactRounds {
     ImpactBlock& block = block_[i];
     if (!is_straight(job_)) {
       active_[i] = ImpactStep(job_, block, first).run();
+    } else if (first && has_start_) {
+      active_[i] = StraightStart(job_, block).run();
     } else if (tries_elsewhere_) {
       active_[i] = StraightStep<true>(job_, block).run();
     } else {
@@ -637,6 +641,8 @@ class ImpactRounds {
 
   const ImpactJob& job_;
   bool searches_;
+  /// Of pairs that do not turn StraightStart is the first step.
+  bool has_start_;
   /// Steps of pairs that do not turn are StraightStep<true>.
   bool tries_elsewhere_;
   /// The first query that is not loaded.

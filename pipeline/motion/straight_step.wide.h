@@ -141,22 +141,14 @@ class StraightStep : BlockStep {
     const Truth met = active_ & near & (meets | (p_.within > Doubles(kMostLooksWithin)));
     if (bits(met) != 0) meet(met);
     if (bits(active_) == 0) return;
-    const Doubles free = free_until();
+    const Doubles free = free_along(p_, look_);
     end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
     // Touching, too near for double to tell, or no number left between.
     end_unsure(settled_ & ((!look_.parted) | (free <= p_.time)));
     // What is within the tolerance, or has come near enough for it, is first known as well as can
     // be.
-    const Truth far = (!within) & (look_.gap > p_.tolerance * Doubles(0.375));
+    const Truth far = (!within) & (look_.gap > p_.tolerance * Doubles(kNearEnough));
     p_.time = select(active_ & look_.parted & (far | settled_), free, p_.time);
-  }
-
-  [[nodiscard]] Doubles free_until() const {
-    const Doubles target = min(p_.tolerance * Doubles(0.25), look_.gap * Doubles(0.5));
-    const Truth closes = look_.slope < Doubles(0.0);
-    const Doubles step = (look_.gap - target) / select(closes, -look_.slope, Doubles(1.0));
-    const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
-    return select(closes & (until < p_.last), until, p_.last);
   }
 
   /// A lane that was brought ahead of what was proved is apart all the way there if it comes nearer

@@ -4,10 +4,30 @@
 #include "pipeline/motion/impact_batch.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 namespace winnow {
 namespace {
+
+/// Says quickly of most convex shapes that they are in a pool.
+class KnownShapes {
+ public:
+  explicit KnownShapes(const ShapePool& pool) noexcept {
+    for (const ShapeKind kind : kConvexKinds) {
+      const auto index = static_cast<std::size_t>(kind);
+      const std::uint32_t count = pool.tables().count[index];
+      // Where none was removed all are there.
+      if (pool.size(kind) == count) count_[index] = count;
+    }
+  }
+  /// False of some that are.
+  [[nodiscard]] bool surely_contain(ShapeId shape) const noexcept {
+    return shape.kind_index() < kShapeKinds && shape.index() < count_[shape.kind_index()];
+  }
+
+ private:
+  std::array<std::uint32_t, kShapeKinds> count_{};
+};
 
 /// But for motions of convex shapes, which are judged with their impacts.
 [[nodiscard]] Status status_of(const PartTraversal& parts, const MovingBodies& bodies,
@@ -78,11 +98,14 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
                                 std::span<const BodyPair> pairs, const ImpactOptions& options,
                                 std::size_t first, std::size_t end) {
   impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
+  const KnownShapes known(parts.shapes());
   impact::Impact none;
   none.time = 0.0;
   for (std::size_t i = first; i < end; ++i) {
     const auto [a, b] = pairs[i];
-    status_[i] = status_of(parts, bodies, options, pairs[i]);
+    const bool known_both =
+        known.surely_contain(bodies.shapes[a]) && known.surely_contain(bodies.shapes[b]);
+    status_[i] = known_both ? Status::ok : status_of(parts, bodies, options, pairs[i]);
     if (status_[i] != Status::ok) {
       write(i, none, kWholeShape, kWholeShape);
     } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {

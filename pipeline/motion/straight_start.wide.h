@@ -1,0 +1,289 @@
+#pragma once
+
+// The first look at pairs that do not turn. Two convex polyhedra are apart along the normal of a
+// face or along the cross product of an edge of each (Gottschalk, Lin, Manocha, "OBBTree", 1996).
+// Along each of these the gap falls or grows evenly: the last one that closes tells when they meet,
+// and one that opens before it that they do not. Round shapes meet along other directions too, and
+// what theirs tell is a good place to go on from. Any direction may be tried: what it shows is
+// true.
+
+#include "pipeline/motion/closed_forms.wide.h"
+#include "pipeline/motion/impact_block.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+/// Pairs of kinds, in their order, of which such a look saves more than it costs.
+[[nodiscard]] constexpr bool has_start(ShapeKind a, ShapeKind b) {
+  const auto has_edges = [](ShapeKind kind) {
+    return kind == ShapeKind::box || kind == ShapeKind::triangle || kind == ShapeKind::capsule ||
+           kind == ShapeKind::cylinder;
+  };
+  if (has_closed_form(a, b)) return false;
+  return (has_edges(a) && has_edges(b)) || (a == ShapeKind::box && b == ShapeKind::cone);
+}
+
+/// The faces and edges of a core, in the world and of any length; of one that is round its axis.
+struct AxisCore {
+  const CoreTable& table;
+  const MovingCore& core;
+  Vector normal[3];
+  int normals;
+  Vector edge[3];
+  int edges;
+
+  AxisCore(const CoreTable& of_table, const MovingCore& of_core) : table(of_table), core(of_core) {
+    const Rotation<double>& axes = core.axes;
+    if (table.kind == ShapeKind::box) {
+      normals = edges = 3;
+      normal[0] = edge[0] = axes.x;
+      normal[1] = edge[1] = axes.y;
+      normal[2] = edge[2] = axes.z;
+    } else if (table.kind == ShapeKind::triangle) {
+      edges = 3;
+      for (int i = 0; i < 3; ++i) edge[i] = core.corner[(i + 1) % 3] - core.corner[i];
+      normals = 1;
+      normal[0] = cross(edge[0], edge[1]);
+    } else {
+      normals = table.kind == ShapeKind::capsule ? 0 : 1;
+      edges = 1;
+      normal[0] = edge[0] = axes.z;
+    }
+  }
+
+  /// How far it reaches along a direction and back, from its middle.
+  [[gnu::always_inline]] void reach(const Vector& n, Doubles& high, Doubles& low) const {
+    if (table.kind == ShapeKind::triangle) {
+      const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]),
+                             dot(n, core.corner[2])};
+      high = max(max(on[0], on[1]), on[2]);
+      low = min(min(on[0], on[1]), on[2]);
+      return;
+    }
+    const Doubles along = dot(n, core.axes.z);
+    const Doubles up = along * core.half.z;
+    if (table.kind == ShapeKind::box) {
+      high =
+          abs(dot(n, core.axes.x)) * core.half.x + abs(dot(n, core.axes.y)) * core.half.y + abs(up);
+    } else if (table.kind == ShapeKind::capsule) {
+      high = abs(up);
+    } else {
+      const Doubles rim = core.half.x * sqrt(positive_part(dot(n, n) - along * along));
+      high = table.kind == ShapeKind::cone ? max(up, rim - up) : abs(up) + rim;
+      if (table.kind == ShapeKind::cone) {
+        low = min(up, -rim - up);
+        return;
+      }
+    }
+    low = -high;
+  }
+
+  /// Its point that is nearest to another, from its middle.
+  [[nodiscard]] Vector nearest(const Vector& p) const {
+    switch (table.kind) {
+      case ShapeKind::triangle:
+        return p + nearest_of_triangle(core, -p, zero_vector(), Doubles(0.0), true).w;
+      case ShapeKind::capsule:
+        return core.axes.z * round::clamp(dot(p, core.axes.z), -core.half.z, core.half.z);
+      default:
+        return core.axes.to_world(nearest_to(table, core, core.axes.to_local(p)));
+    }
+  }
+};
+
+/// A gap along a direction, and how fast it changes, both times the direction's length.
+struct ChangingGap {
+  Vector along;
+  Doubles gap;
+  Doubles rate;
+};
+
+/// The directions of faces and edges along which two cores may first touch.
+class SeparatingAxes {
+ public:
+  SeparatingAxes(const AxisCore& a, const AxisCore& b, const Vector& between, const PairLanes& p)
+      : a_(a),
+        b_(b),
+        between_(between),
+        travel_(p.travel),
+        roundings_(p.roundings),
+        is_rounded_(bits(p.roundings > Doubles(0.0)) != 0) {
+    const Doubles zero(0.0);
+    closing = {zero_vector(), zero, Doubles(1.0)};
+    opening = {zero_vector(), Doubles(-1.0), zero};
+    edge_a = edge_b = zero_vector();
+    is_face_of_a = is_of_edges = zero > zero;
+    for (int i = 0; i < a.normals; ++i) is_face_of_a = is_face_of_a | closes_last(a.normal[i]);
+    for (int i = 0; i < b.normals; ++i) is_face_of_a = is_face_of_a & !closes_last(b.normal[i]);
+    for (int i = 0; i < a.edges; ++i) {
+      for (int k = 0; k < b.edges; ++k) {
+        const Truth last = closes_last(cross(a.edge[i], b.edge[k]));
+        is_of_edges = is_of_edges | last;
+        edge_a = select(last, a.edge[i], edge_a);
+        edge_b = select(last, b.edge[k], edge_b);
+      }
+    }
+  }
+
+  /// Where a gap opens before the last of the others has closed.
+  [[nodiscard]] Truth pass() const {
+    return opening.gap * closing.rate + closing.gap * opening.rate > Doubles(0.0);
+  }
+
+  /// What closes last, of gaps that are open, and what opens first. None: a gap of 0 that closes,
+  /// and one that is closed and stays.
+  ChangingGap closing;
+  ChangingGap opening;
+  /// Of what closes last, if it is not of edges: it is the normal of a face of a.
+  Truth is_face_of_a;
+  /// It is square to these.
+  Truth is_of_edges;
+  Vector edge_a;
+  Vector edge_b;
+
+ private:
+  /// Looks both ways along a direction: one way the gap closes, the other way it opens. Returns
+  /// where it closes later than those before.
+  [[gnu::always_inline]] Truth closes_last(const Vector& n) {
+    Doubles high_a;
+    Doubles low_a;
+    Doubles high_b;
+    Doubles low_b;
+    a_.reach(n, high_a, low_a);
+    b_.reach(n, high_b, low_b);
+    const Doubles rounding = is_rounded_ ? roundings_ * length(n) : Doubles(0.0);
+    const Doubles between = dot(n, between_);
+    const Doubles ahead = between + low_b - high_a - rounding;
+    const Doubles behind = low_a - high_b - between - rounding;
+    const Doubles speed = dot(n, travel_);
+    const Truth comes = speed < Doubles(0.0);
+    const Doubles rate = abs(speed);
+    const ChangingGap closes{select(comes, n, -n), select(comes, ahead, behind), rate};
+    const ChangingGap opens{select(comes, -n, n), select(comes, behind, ahead), rate};
+    take(opens.gap * opening.rate > opening.gap * rate, opens, opening);
+    const Truth last = closes.gap * closing.rate > closing.gap * rate;
+    take(last, closes, closing);
+    return last;
+  }
+  [[gnu::always_inline]] static void take(const Truth& where, const ChangingGap& gap,
+                                          ChangingGap& kept) {
+    kept.along = select(where, gap.along, kept.along);
+    kept.gap = select(where, gap.gap, kept.gap);
+    kept.rate = select(where, gap.rate, kept.rate);
+  }
+
+  const AxisCore& a_;
+  const AxisCore& b_;
+  const Vector& between_;
+  const Vector& travel_;
+  const Doubles& roundings_;
+  bool is_rounded_;
+};
+
+/// The first step of a block. Lanes that it does not end go on from where it has brought them.
+class StraightStart : BlockStep {
+ public:
+  StraightStart(const ImpactJob& job, ImpactBlock& block)
+      : BlockStep(job, block), a_(tables_.a, p_.a), b_(tables_.b, p_.b) {}
+
+  /// Returns the lanes that go on.
+  [[nodiscard]] Mask16 run() {
+    look_.between = p_.start + p_.travel * p_.time;
+    const SeparatingAxes axes(a_, b_, look_.between, p_);
+    const Truth closes = active_ & (axes.closing.gap > Doubles(0.0));
+    try_along(axes.closing.along);
+    apart_ = closes & look_.parted;
+    move_on();
+    if (bits(active_ & axes.pass()) != 0) part(axes);
+    if (bits(active_ & apart_) != 0) touch(axes);
+    return go_on();
+  }
+
+ private:
+  /// What a direction shows.
+  void try_along(const Vector& direction) {
+    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
+    Vector own_a;
+    Vector own_b;
+    pair.facing(direction, bits(active_), own_a, own_b);
+    ClosestLanes& closest = look_.closest;
+    closest.on_a = pair.on_a(own_a);
+    closest.on_b = pair.on_b(own_b);
+    closest.axis = direction * (Doubles(1.0) / length(direction));
+    look_.slope = dot(closest.axis, p_.travel);
+    judge();
+  }
+  /// The same where the lanes are now.
+  void judge() {
+    ClosestLanes& closest = look_.closest;
+    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
+    closest.lower = dot(closest.axis, look_.between + closest.on_b - closest.on_a);
+    look_.gap = closest.lower - p_.roundings - look_.noise;
+    look_.parted = look_.gap > Doubles(0.0);
+  }
+
+  /// To where the direction that was tried shows a gap no longer.
+  void move_on() {
+    const Doubles free = free_along(p_, look_);
+    end_apart(apart_ & ((free >= p_.last) | (free > p_.until)));
+    const Truth far = look_.gap > p_.tolerance * Doubles(kNearEnough);
+    p_.axis = select(active_ & apart_, look_.closest.axis, p_.axis);
+    p_.time = select(active_ & apart_ & far, free, p_.time);
+    look_.between = p_.start + p_.travel * p_.time;
+  }
+
+  /// Ends lanes that are apart from now on along the direction that opens.
+  void part(const SeparatingAxes& axes) {
+    const LookLanes closing = look_;
+    try_along(axes.opening.along);
+    end_apart(axes.pass() & look_.parted & (look_.slope >= Doubles(0.0)));
+    look_ = closing;
+  }
+
+  /// Ends lanes in which points near where they seem to meet are within the tolerance.
+  void touch(const SeparatingAxes& axes) {
+    judge();
+    ClosestLanes& closest = look_.closest;
+    find_points(place_of(axes), active_);
+    // Where faces or edges are parallel the first corner need not face the other shape.
+    const Truth again = active_ & apart_ & !is_near();
+    if (bits(again) != 0) find_points(closest.on_a + closest.between, again);
+    const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
+    const Truth met = active_ & apart_ & look_.parted & is_near() & meets;
+    answers_.put_meeting(bits(met), p_, look_);
+    active_ = active_ & !met;
+    p_.axis = select(active_ & apart_ & (closest.upper > Doubles(0.0)), closest.between, p_.axis);
+  }
+
+  /// A corner that meets a face, or where two edges meet; from the middle of a.
+  [[nodiscard]] Vector place_of(const SeparatingAxes& axes) const {
+    const ClosestLanes& closest = look_.closest;
+    const Vector corner_b = look_.between + closest.on_b;
+    const Vector way = corner_b - closest.on_a;
+    const Doubles mixed = dot(axes.edge_a, axes.edge_b);
+    const Doubles square = dot(axes.edge_b, axes.edge_b);
+    const Doubles area = dot(axes.edge_a, axes.edge_a) * square - mixed * mixed;
+    const Doubles share = (dot(axes.edge_a, way) * square - mixed * dot(axes.edge_b, way)) /
+                          select(area > Doubles(0.0), area, Doubles(1.0));
+    const Vector on_edge = closest.on_a + axes.edge_a * share;
+    return select(axes.is_of_edges, on_edge, select(axes.is_face_of_a, corner_b, closest.on_a));
+  }
+
+  /// In some lanes: of a that is closest to a place, and of b that is closest to that.
+  void find_points(const Vector& place, const Truth& lanes) {
+    ClosestLanes& closest = look_.closest;
+    const Vector on_a = a_.nearest(place);
+    const Vector between = look_.between + b_.nearest(on_a - look_.between) - on_a;
+    closest.on_a = select(lanes, on_a, closest.on_a);
+    closest.between = select(lanes, between, closest.between);
+    closest.upper = length(closest.between);
+    look_.most = closest.upper - p_.roundings + look_.noise;
+  }
+  [[nodiscard]] Truth is_near() const { return look_.most <= closed(); }
+
+  AxisCore a_;
+  AxisCore b_;
+  /// The direction that closes last shows a gap.
+  Truth apart_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact
