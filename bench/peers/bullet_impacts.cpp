@@ -25,10 +25,9 @@ class BulletImpacts final : public ImpactEngine {
     return kTurns ? "Bullet continuous" : "Bullet sub-simplex";
   }
   [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
-    // It casts convex shapes, of which ellipsoids are none.
-    for (const ShapeKind missing : {ShapeKind::ellipsoid, ShapeKind::half_space}) {
-      if (kind.a == missing || kind.b == missing) return false;
-    }
+    // It casts convex shapes, of which ellipsoids are none, and the first also onto planes.
+    if (kind.a == ShapeKind::ellipsoid || kind.b == ShapeKind::ellipsoid) return false;
+    if (!kTurns && kind.b == ShapeKind::half_space) return false;
     return turn == PairTurn::none || (kTurns && turn == PairTurn::little);
   }
 
@@ -36,8 +35,14 @@ class BulletImpacts final : public ImpactEngine {
     const PairSet& middle = *set.middle;
     for (std::size_t i = 0; i < middle.shapes.size(); ++i) {
       const ShapeId id = middle.shapes[i];
-      Body body{make_shape(middle.pool.tables(), id, 0.0), transform_of(set.motions[i].at(0.0)),
-                transform_of(set.motions[i].at(1.0))};
+      const btTransform from = transform_of(set.motions[i].at(0.0));
+      const btTransform to = transform_of(set.motions[i].at(1.0));
+      const ShapeTables& tables = middle.pool.tables();
+      if (id.kind() == ShapeKind::half_space) {
+        bodies_.push_back({nullptr, make_plane(tables.half_spaces[id.index()]), from, to});
+        continue;
+      }
+      Body body{make_shape(tables, id, 0.0), nullptr, from, to};
       const bool round = id.kind() == ShapeKind::sphere || id.kind() == ShapeKind::capsule ||
                          id.kind() == ShapeKind::tapered_capsule;
       if (!round) body.shape->setMargin(0);
@@ -59,14 +64,20 @@ class BulletImpacts final : public ImpactEngine {
   [[nodiscard]] ImpactAnswer answer(std::size_t i) const override { return answers_[i]; }
 
  private:
+  /// Either a convex shape or a plane.
   struct Body {
     std::unique_ptr<btConvexShape> shape;
+    std::unique_ptr<btStaticPlaneShape> plane;
     btTransform from;
     btTransform to;
   };
 
   bool cast(const Body& a, const Body& b, btConvexCast::CastResult& result) {
     if constexpr (kTurns) {
+      if (b.plane != nullptr) {
+        return Cast(a.shape.get(), b.plane.get())
+            .calcTimeOfImpact(a.from, a.to, b.from, b.to, result);
+      }
       Cast way(a.shape.get(), b.shape.get(), &simplex_, &depth_);
       return way.calcTimeOfImpact(a.from, a.to, b.from, b.to, result);
     } else {

@@ -26,9 +26,7 @@ constexpr btScalar kFar = 1e9F;
 /// Margins are nothing where the shape would grow or lose its corners by them.
 std::unique_ptr<btCollisionShape> make_bare_shape(const ShapeTables& tables, ShapeId id) {
   if (id.kind() == ShapeKind::half_space) {
-    const HalfSpaceShape& half = tables.half_spaces[id.index()];
-    return std::make_unique<btStaticPlaneShape>(to_bullet(half.normal),
-                                                static_cast<btScalar>(half.offset));
+    return make_plane(tables.half_spaces[id.index()]);
   }
   std::unique_ptr<btConvexShape> shape = make_shape(tables, id, 0.0);
   if (id.kind() != ShapeKind::sphere && id.kind() != ShapeKind::capsule) shape->setMargin(0);

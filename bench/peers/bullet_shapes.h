@@ -11,6 +11,7 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
@@ -26,6 +27,11 @@ inline btVector3 to_bullet(const double* v) {
 inline btTransform transform_of(const Pose& pose) {
   const Eigen::Quaternionf q = orientation_of(pose).cast<float>();
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), to_bullet(pose.position));
+}
+
+inline std::unique_ptr<btStaticPlaneShape> make_plane(const HalfSpaceShape& half) {
+  return std::make_unique<btStaticPlaneShape>(to_bullet(half.normal),
+                                              static_cast<btScalar>(half.offset));
 }
 
 /// A convex shape of a program's own, as Bullet takes it.

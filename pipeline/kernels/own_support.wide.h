@@ -21,16 +21,23 @@ static inline void bring_within(double radius, double* point) {
   for (int k = 0; k < 3; ++k) point[k] = share[k] * reach;
 }
 
-/// The point that a program gives of its own set, times `scale`; 0 of a set that is gone.
+/// The point that a program gives of its own set along a unit direction; 0 of a set that is gone.
+static inline void own_point(const SupportShape& shape, const double (&direction)[3],
+                             double (&point)[3]) {
+  for (double& x : point) x = 0.0;
+  if (shape.function != nullptr) shape.function(shape.context, direction, point);
+  if (!(dot3(point, point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
+}
+
+/// The same along any direction, times `scale`.
 template <typename T>
 static inline void own_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),
                          static_cast<double>(d[2])};
   const double length = __builtin_sqrt(dot3(direction, direction));
   for (int k = 0; k < 3; ++k) direction[k] = length > 0.0 ? direction[k] / length : k == 0;
-  double point[3] = {0.0, 0.0, 0.0};
-  if (shape.function != nullptr) shape.function(shape.context, direction, point);
-  if (!(dot3(point, point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
+  double point[3];
+  own_point(shape, direction, point);
   for (int k = 0; k < 3; ++k) x[k] = static_cast<T>(point[k]) * scale;
 }
 

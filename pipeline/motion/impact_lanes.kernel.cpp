@@ -528,6 +528,16 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   if (!table.turns && !table.in_world) move_members<kAxes, kExtent>(from, lane_from, to, lane_to);
 }
 
+inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, unsigned lane_to) {
+  to.hull[lane_to] = from.hull[lane_from];
+  if (to.kind != ShapeKind::hull || to.rows == 0) return;
+  if (static_cast<int>(to.hull[lane_to]->vertex_count) > to.rows) {
+    to.rows = 0;
+  } else {
+    copy_vertices(to, lane_to);
+  }
+}
+
 /// Gives the place of a lane to another one, as far as more than the next look is made of it.
 inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned lane_from,
                       ImpactBlock& to, unsigned lane_to) {
@@ -552,8 +562,8 @@ inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned la
     }
   }
   if (!is_straight(job)) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
-  to.tables.a.hull[lane_to] = tables.a.hull[lane_from];
-  to.tables.b.hull[lane_to] = tables.b.hull[lane_from];
+  move_hull(tables.a, lane_from, to.tables.a, lane_to);
+  move_hull(tables.b, lane_from, to.tables.b, lane_to);
   to.tables.a.own[lane_to] = tables.a.own[lane_from];
   to.tables.b.own[lane_to] = tables.b.own[lane_from];
   to.tables.query[lane_to] = tables.query[lane_from];

@@ -19,6 +19,8 @@ inline constexpr double kPlace = 0x1p-52;
 inline constexpr double kAxisDoubt = 16.0 * kPlace;
 /// Radians.
 inline constexpr double kFarTurn = 2.0;
+/// Of a hull, which are copied to lanes.
+inline constexpr int kFewVertices = 2 * kWidth;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
   const Doubles zero(0.0);
@@ -141,7 +143,61 @@ struct CoreTable {
   bool turns;
   const HullShape* hull[kWidth];
   const SupportShape* own[kWidth];
+  /// Of hulls none of which has more than kFewVertices: how many rows of vertices there are, of
+  /// which the last ones may repeat others; else 0.
+  int rows;
+  alignas(64) double vertex[kFewVertices][3][kWidth];
 };
+
+/// Copies the vertices of a lane's hull to `rows` rows.
+inline void copy_vertices(CoreTable& table, unsigned lane) {
+  const HullShape& hull = *table.hull[lane];
+  for (int row = 0; row < table.rows; ++row) {
+    const int i = row < static_cast<int>(hull.vertex_count) ? row : 0;
+    for (int k = 0; k < 3; ++k) table.vertex[row][k][lane] = hull.vertex[k][i];
+  }
+}
+
+/// Copies those of all lanes, where they are few.
+static inline void copy_few_vertices(CoreTable& table) {
+  std::uint32_t most = 0;
+  for (const HullShape* hull : table.hull) {
+    most = hull->vertex_count > most ? hull->vertex_count : most;
+  }
+  table.rows = most > kFewVertices ? 0 : most > kWidth ? kFewVertices : kWidth;
+  for (int k = 0; k < 3; ++k) {
+    for (int row = 0; row < table.rows; row += 4) {
+      const double* from[kWidth];
+      for (int lane = 0; lane < kWidth; ++lane) {
+        const HullShape& hull = *table.hull[lane];
+        // Padding to a multiple of kWidth repeats vertex 0.
+        const bool has = (row & kWidth) < static_cast<int>(hull.vertex_count);
+        from[lane] = hull.vertex[k] + (has ? row : 0);
+      }
+      Doubles four[4];
+      load_rows4([&](int lane) { return from[lane]; }, four);
+      for (int i = 0; i < 4; ++i) four[i].store(table.vertex[row + i][k]);
+    }
+  }
+}
+
+/// A point of each lane's hull that is farthest along a direction, both in the hull's frame, of
+/// hulls of few vertices: of several that are as far the one that farthest_of_hulls finds.
+static inline Vector farthest_of_few(const CoreTable& table, const Vector& d) {
+  Doubles most(-__builtin_inf());
+  Vector point = zero_vector();
+  for (int place = 0; place < kWidth; ++place) {
+    for (int row = place; row < table.rows; row += kWidth) {
+      const Vector v{Doubles::load(table.vertex[row][0]), Doubles::load(table.vertex[row][1]),
+                     Doubles::load(table.vertex[row][2])};
+      const Doubles value = v.x * d.x + v.y * d.y + v.z * d.z;
+      const Truth higher = value > most;
+      most = select(higher, value, most);
+      point = select(higher, v, point);
+    }
+  }
+  return point;
+}
 
 /// A point of each lane's hull that is farthest along a direction, both in the hull's frame.
 static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& direction,
@@ -214,14 +270,16 @@ static inline Vector farthest_of_own(const CoreTable& table, const Vector& direc
                                      Mask16 lanes) {
   alignas(64) double d[3][kWidth];
   alignas(64) double point[3][kWidth] = {};
-  direction.x.store(d[0]);
-  direction.y.store(d[1]);
-  direction.z.store(d[2]);
+  const Doubles size = length(direction);
+  const Truth has_size = size > Doubles(0.0);
+  select(has_size, direction.x / size, Doubles(1.0)).store(d[0]);
+  select(has_size, direction.y / size, Doubles(0.0)).store(d[1]);
+  select(has_size, direction.z / size, Doubles(0.0)).store(d[2]);
   for (; lanes != 0; lanes &= lanes - 1) {
     const unsigned lane = first(lanes);
     const double along[3] = {d[0][lane], d[1][lane], d[2][lane]};
     double x[3];
-    own_support(*table.own[lane], along, 1.0, x);
+    own_point(*table.own[lane], along, x);
     for (int k = 0; k < 3; ++k) point[k][lane] = x[k];
   }
   return {Doubles::load(point[0]), Doubles::load(point[1]), Doubles::load(point[2])};
@@ -298,7 +356,7 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
     case ShapeKind::support:
       return farthest_of_own(table, d, lanes);
     default:
-      return farthest_of_hulls(table, d, lanes);
+      return table.rows > 0 ? farthest_of_few(table, d) : farthest_of_hulls(table, d, lanes);
   }
 }
 
@@ -506,6 +564,7 @@ template <typename Index>
       load_rows4([&](int lane) { return table.hull[lane]->center; }, middle);
       core.half = {middle[0], middle[1], middle[2]};
       core.rounding = load_rows1([&](int lane) { return &table.hull[lane]->rounding; });
+      copy_few_vertices(table);
       break;
     }
   }
