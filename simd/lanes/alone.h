@@ -115,6 +115,11 @@ struct Lanes<Alone, 1> {
   }
 };
 
+/// Without a branch, which would be as often wrong as not. Of -0 it is 1, too.
+[[gnu::always_inline]] inline Lanes<Alone> sign_or_one(const Lanes<Alone>& a) {
+  return Lanes<Alone>(opaque(__builtin_copysign(1.0, opaque(a.part[0] + 0.0))));
+}
+
 [[gnu::always_inline]] inline Mask16 bits(const LaneMask<Alone, 1>& mask) {
   return mask.part[0] ? 1U : 0U;
 }

@@ -61,7 +61,7 @@ struct LanesOps {
   void (*not_alone)(double a, double b, double* out);
   const char* isa_name;
 };
-inline constexpr int kAloneResults = 19;
+inline constexpr int kAloneResults = 20;
 
 WINNOW_KERNELS(LanesOps, lanes_ops);
 

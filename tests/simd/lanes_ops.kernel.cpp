@@ -101,6 +101,7 @@ void do_all(double first, double second, double* out) {
   sum += b;
   sum *= b;
   put(sum);
+  put(sign_or_one(a));
 }
 unsigned count_bits(std::uint32_t mask) {
   return count(mask);

@@ -35,11 +35,28 @@ struct CapsuleFeet {
     sort_two(feet, 0, 1);
     return feet;
   }
+
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane<SideB>(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
+    const Vec3<T> arm = axis_z(turn) * a.half_length;
+    const Lanes<T> rise = dot(plane.normal, arm);
+    return {{arm * sign_or_one(-rise)},
+            {plane.height - abs(rise)},
+            {},
+            a.radius,
+            plane.normal,
+            plane.scale + a.radius + a.half_length + doubt(turn)};
+  }
 };
 
 struct TriangleFeet {
+  /// As the vertices are.
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::always_inline]] static Feet<T, 3> in_order(const NarrowJob& job,
+                                                    const PairBlock<T>& block) {
     const Plane<T> plane = load_plane<SideB>(job, block);
     const Turn<T> turn = load_turn<SideA>(job, block);
     const TriangleLanes<T> a = load_triangle<SideA>(job, block);
@@ -52,13 +69,48 @@ struct TriangleFeet {
       feet.feature[i] = Lanes<T>(T(1 + i));
       reach = max(reach, taxicab(a.vertex[i]));
     }
-    sort_two(feet, 0, 1);
-    sort_two(feet, 1, 2);
-    sort_two(feet, 0, 1);
     feet.rounding = a.rounding;
     feet.normal = plane.normal;
     feet.scale = plane.scale + a.rounding + reach + doubt(turn);
     return feet;
+  }
+
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
+    Feet<T, 3> feet = in_order(job, block);
+    sort_two(feet, 0, 1);
+    sort_two(feet, 1, 2);
+    sort_two(feet, 0, 1);
+    return feet;
+  }
+
+  template <typename T>
+  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
+    const Feet<T, 3> all = in_order(job, block);
+    Vec3<T> foot = all.foot[0];
+    Lanes<T> height = all.height[0];
+    for (int i = 1; i < 3; ++i) {
+      const LaneMask<T> lower = all.height[i] < height;
+      foot = select(lower, all.foot[i], foot);
+      height = min(all.height[i], height);
+    }
+    return {{foot}, {height}, {}, all.rounding, all.normal, all.scale};
+  }
+
+  template <typename T>
+  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane<SideB>(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const TriangleLanes<T> a = load_triangle<SideA>(job, block);
+    const Vec3<T> normal = rotation(turn).to_local(plane.normal);
+    Lanes<T> rise[3];
+    Lanes<T> reach(T(0));
+    for (int i = 0; i < 3; ++i) {
+      rise[i] = dot(normal, a.vertex[i]);
+      reach = max(reach, taxicab(a.vertex[i]));
+    }
+    return {plane.height + min(min(rise[0], rise[1]), rise[2]), a.rounding,
+            plane.scale + a.rounding + reach + doubt(turn)};
   }
 };
 
@@ -83,10 +135,11 @@ struct BoxOverPlane {
     cosine[0] = local.x;
     cosine[1] = local.y;
     cosine[2] = local.z;
+    const Lanes<T> half[3] = {a.half.x, a.half.y, a.half.z};
     for (int i = 0; i < 3; ++i) {
-      const Lanes<T> rises = dot(plane.normal, arm[i]);
+      const Lanes<T> rises = cosine[i] * half[i];
       negative[i] = rises > Lanes<T>(T(0));
-      down[i] = select(negative[i], -arm[i], arm[i]);
+      down[i] = arm[i] * sign_or_one(-rises);
       rise[i] = abs(rises);
     }
     rounding = a.rounding;
@@ -151,6 +204,18 @@ struct BoxFeet {
   [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
     const BoxOverPlane<T> box(job, block);
     return {{box.lowest()}, {box.height()}, {}, box.rounding, box.plane.normal, box.scale};
+  }
+
+  template <typename T>
+  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+    const Plane<T> plane = load_plane<SideB>(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const BoxLanes<T> a = load_box<SideA>(job, block);
+    const Vec3<T> normal = rotation(turn).to_local(plane.normal);
+    const Lanes<T> rise =
+        abs(normal.x) * a.half.x + abs(normal.y) * a.half.y + abs(normal.z) * a.half.z;
+    return {plane.height - rise, a.rounding,
+            plane.scale + a.rounding + taxicab(a.half) + doubt(turn)};
   }
 };
 

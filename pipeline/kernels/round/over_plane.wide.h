@@ -31,6 +31,19 @@ template <typename Side, typename T>
   return {normal, other - plane.offset, taxicab(c) + abs(plane.offset) + doubt(turn), c};
 }
 
+/// How high the lowest point of a shape's core is over a plane.
+template <typename T>
+struct LeastHeight {
+  Lanes<T> height;
+  Lanes<T> rounding;
+  Lanes<T> scale;
+
+  [[gnu::always_inline]] Lanes<T> distance() const { return height - rounding; }
+  [[gnu::always_inline]] Lanes<T> bound() const {
+    return scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  }
+};
+
 /// Points of a shape's core over a plane, relative to body a, in the axes of the world.
 template <typename T, int Count>
 struct Feet {
@@ -41,6 +54,8 @@ struct Feet {
   Lanes<T> rounding;
   Vec3<T> normal;
   Lanes<T> scale;
+
+  [[gnu::always_inline]] LeastHeight<T> least() const { return {height[0], rounding, scale}; }
 };
 
 /// Exchanges two feet if the second is lower.
@@ -66,13 +81,13 @@ struct FeetAnswers {
   template <int L, typename T, int Count>
   [[gnu::always_inline]] static Mask16 write(NarrowJob& job, const PairBlock<T>& block,
                                              const Feet<T, Count>& feet) {
-    const Lanes<T> distance = feet.height[0] - feet.rounding;
-    const Lanes<T> bound = feet.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+    const LeastHeight<T> least = feet.least();
     if constexpr (L == kBoolean) {
-      return answer_sign(job, block, distance, bound, feet.scale);
+      return write(job, block, least);
     } else {
       const Vec3<T> normal = kPlaneFirst ? feet.normal : -feet.normal;
-      const CertifiedLanes<T> answer = answer_along(normal, distance, bound, feet.scale);
+      const CertifiedLanes<T> answer =
+          answer_along(normal, least.distance(), least.bound(), feet.scale);
       if constexpr (kPlaneFirst) {
         const Vec3<T> under = feet.foot[0] - feet.normal * feet.height[0];
         write_certified<L>(job, block, answer, under, Lanes<T>(T(0)));
@@ -82,6 +97,13 @@ struct FeetAnswers {
       if constexpr (L == kManifold) write_touches(job, block, feet, answer.certified);
       return ~answer.certified;
     }
+  }
+
+  /// Level boolean.
+  template <typename T>
+  [[gnu::always_inline]] static Mask16 write(NarrowJob& job, const PairBlock<T>& block,
+                                             const LeastHeight<T>& least) {
+    return answer_sign(job, block, least.distance(), least.bound(), least.scale);
   }
 
   template <typename T, int Count>
@@ -102,14 +124,17 @@ struct FeetAnswers {
   }
 };
 
-/// The kernels of a class that finds the feet, and maybe the lowest alone, which is all that levels
-/// but manifold ask for; levels share these parts, not inlined, as they take long to compile.
+/// The kernels of a class that finds the feet, and maybe the lowest alone, which is all that level
+/// distance asks for, and its height alone, all that level boolean asks for; levels share these
+/// parts, not inlined, as they take long to compile.
 template <typename Source, int Contacts>
 struct OverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     using Answers = FeetAnswers<Contacts>;
-    if constexpr (L != kManifold && requires { Source::template lowest<T>(job, block); }) {
+    if constexpr (L == kBoolean && requires { Source::template least<T>(job, block); }) {
+      return Answers::write(job, block, Source::template least<T>(job, block));
+    } else if constexpr (L != kManifold && requires { Source::template lowest<T>(job, block); }) {
       return Answers::template write<L>(job, block, Source::template lowest<T>(job, block));
     } else {
       return Answers::template write<L>(job, block, Source::template feet<T>(job, block));
