@@ -168,6 +168,74 @@ TEST_F(Batches, the_function_for_one_pair_answers_as_a_narrow_phase_does) {
   }
 }
 
+void expect_same_verdicts(const PairScene& scene) {
+  const NarrowOptions options{.level = ContactLevel::boolean};
+  const std::vector<PairAnswers> together = ask(scene, options);
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    if (ask_one(scene, i, options).overlap == together[i].overlap) continue;
+    ADD_FAILURE() << "together they " << (together[i].overlap ? "overlap" : "are apart") << "\n"
+                  << reproduction(scene, scene.pairs[i]);
+    return;
+  }
+}
+
+TEST(OnePair, has_the_verdict_that_it_has_among_others) {
+  Random random(18);
+  for (const PairStyle style : kPairStyles) {
+    for (const ShapeKind a : kConvexKinds) {
+      for (const ShapeKind b : kConvexKinds) {
+        SCOPED_TRACE(testing::Message()
+                     << to_string(style) << " " << to_string(a) << " " << to_string(b));
+        PairScene scene;
+        add_pairs(scene, a, b, style, scaled(60), random);
+        expect_same_verdicts(scene);
+      }
+    }
+  }
+}
+
+/// Pairs of a shape at random places near the first `others` bodies.
+void add_near(PairScene& scene, ShapeId shape, std::size_t others, std::size_t count,
+              Random& random) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto other = static_cast<std::uint32_t>(i % others);
+    const auto body = static_cast<std::uint32_t>(scene.shapes.size());
+    scene.shapes.push_back(shape);
+    Pose pose;
+    for (double& x : pose.position) x = random.uniform(-1.5, 1.5);
+    for (double& x : pose.orientation) x = random.uniform(-1, 1);
+    scene.poses.push_back(pose);
+    scene.pairs.push_back({body, other});
+  }
+}
+
+// A set need not hold the origin of its frame, nor a ball of a tapered capsule within the other
+// one.
+TEST(OnePair, has_that_verdict_if_its_middle_is_no_point_of_it) {
+  Random random(19);
+  PairScene scene;
+  const auto add = [&](const auto& shape) {
+    ShapeId id;
+    ASSERT_EQ(scene.pool.add(shape, id), Status::ok);
+    scene.shapes.push_back(id);
+    scene.poses.push_back({});
+  };
+  add(BoxShape{{0.3, 0.2, 0.4}});
+  add(CylinderShape{0.3, 0.4});
+  add(ConeShape{0.3, 0.4, 0.05});
+  add(EllipsoidShape{{0.3, 0.2, 0.4}});
+  add(CapsuleShape{0.2, 0.4});
+  const OwnSet& aside = scene.own.emplace_back(
+      OwnSet{OwnSet::corners, {}, {1.0, 0.0, 0.0, 1.2, 0.1, 0.0, 1.1, -0.2, 0.1, 1.0, 0.1, 0.3}});
+  ShapeId own;
+  ASSERT_EQ(scene.pool.add(shape_of(aside, 0.01), own), Status::ok);
+  ShapeId nested;
+  ASSERT_EQ(scene.pool.add(TaperedCapsuleShape{{0.9, 0.1}, 0.3}, nested), Status::ok);
+  const std::size_t others = scene.shapes.size();
+  for (const ShapeId shape : {own, nested}) add_near(scene, shape, others, scaled(2000), random);
+  expect_same_verdicts(scene);
+}
+
 TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
   constexpr std::size_t kMany = 50000;  // several tasks sort them
   const std::size_t few = scene_.pairs.size();

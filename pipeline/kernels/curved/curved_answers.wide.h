@@ -6,8 +6,8 @@
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
+#include "pipeline/kernels/curved/one_verdict.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
-#include "pipeline/kernels/hull/verdicts.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
@@ -86,7 +86,7 @@ class CurvedAnswers {
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
       // Float is sure about most.
-      return hull::answer_in_doubt<CurvedAnswers>(job, hull::Verdicts::run(job));
+      return hull::answer_in_doubt<CurvedAnswers>(job, verdicts(job));
     } else {
       CurvedAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {

@@ -142,6 +142,7 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
       form.number[0] = is_ball ? 0.0 : more;
       form.number[1] = end;
       form.number[2] = is_ball ? end : -end;
+      form.center[2] = is_ball ? end : 0.0;
       form.rounding = (s.radius[1] > s.radius[0]) == is_ball ? s.radius[1] : s.radius[0];
       return form.number[0] + s.half_length;
     }

@@ -2,10 +2,10 @@
 
 // Jobs of the hull kernels: pairs are placed, searched in float lanes and finished one by one.
 
+#include "pipeline/kernels/curved/one_verdict.wide.h"
 #include "pipeline/kernels/hull/hull_contacts.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/hull_search.wide.h"
-#include "pipeline/kernels/hull/verdicts.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -21,7 +21,7 @@ class HullAnswers {
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
       // Most need no more.
-      return answer_in_doubt<HullAnswers>(job, Verdicts::run(job));
+      return answer_in_doubt<HullAnswers>(job, curved::verdicts(job));
     } else {
       HullAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {

@@ -1,0 +1,225 @@
+#pragma once
+
+// Whether two convex shapes overlap, of a pair alone and in double: the search of Gilbert, Johnson
+// and Keerthi (1988), which ends as soon as a direction parts the shapes or points of them do not.
+// Lanes that one pair does not fill take several times as long.
+
+#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/hull/verdicts.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::curved {
+
+class OneVerdict {
+ public:
+  /// Answers a job of one pair, or lists it in `uncertified`; returns how many are listed.
+  [[gnu::noinline]] static std::uint32_t run(NarrowJob& job) {
+    CurvedPair pair;
+    if (place_pair(job, job.pairs[0], pair)) {
+      OneVerdict verdict(pair);
+      const Verdict found = verdict.find();
+      job.overlap[0] = found == Verdict::meet ? 1 : 0;
+      if (found != Verdict::unsure) return 0;
+    }
+    job.uncertified[0] = 0;
+    return 1;
+  }
+
+ private:
+  enum class Verdict : std::uint8_t { unsure, apart, meet };
+  using Point = double[3];
+
+  /// Of lengths, which are below 2: a hundred times what rounding takes; of a program's own set,
+  /// whose points are as good as it makes them.
+  static constexpr double kDoubt = 1e-12;
+  static constexpr double kOwnDoubt = 1.6e-5;
+  /// Steps find nothing new where they gain less of the square.
+  static constexpr double kNoGain = 1e-14;
+  static constexpr int kMostSteps = 48;
+  /// Of a nearest point that has no direction.
+  static constexpr double kNowhere = 1e-15;
+
+  explicit OneVerdict(const CurvedPair& pair)
+      : pair_(pair), doubt_(has_own(pair) ? kOwnDoubt : kDoubt) {}
+
+  [[nodiscard]] Verdict find() {
+    begin();
+    const double near = pair_.rounding - doubt_;
+    const double far = pair_.rounding + doubt_;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const double square = dot3(nearest_, nearest_);
+      if (count_ > 0 && near > 0.0 && square < near * near) return Verdict::meet;
+      if (!(square > kNowhere * kNowhere)) return Verdict::unsure;
+      const Point towards{-nearest_[0], -nearest_[1], -nearest_[2]};
+      Point mine;
+      Point found;
+      difference_point(pair_, towards, found, mine);
+      const double height = dot3(nearest_, found);
+      if (height > 0.0 && height * height > far * far * square) return Verdict::apart;
+      if (count_ > 0 && square - height <= kNoGain * square) return Verdict::unsure;
+      if (holds_origin(found)) return Verdict::meet;
+    }
+    return Verdict::unsure;
+  }
+
+  /// From inner points of both, whose difference is one of the points that are searched; of a
+  /// program's own set none is known, and it is but a direction.
+  void begin() {
+    Point theirs;
+    turn3(pair_.turn, pair_.second.center, theirs);
+    for (int k = 0; k < 3; ++k) {
+      nearest_[k] = pair_.first.center[k] - (theirs[k] + pair_.shift[k]);
+    }
+    if (!has_own(pair_)) put(nearest_);
+  }
+
+  /// Adds a point and brings `nearest_` to the point of the simplex that is nearest to the origin;
+  /// true if the simplex holds the origin beyond doubt.
+  [[nodiscard]] bool holds_origin(const Point& w) {
+    switch (count_) {
+      case 0:
+        put(w);
+        for (int k = 0; k < 3; ++k) nearest_[k] = w[k];
+        return false;
+      case 1:
+        to_segment(w);
+        return false;
+      case 2: {
+        const Nearest nearest = of_triangle(w, point_[0], point_[1]);
+        take(w, nearest, point_[0], point_[1]);
+        return false;
+      }
+      default:
+        return tetrahedron_holds_origin(w);
+    }
+  }
+
+  void to_segment(const Point& w) {
+    Point edge;
+    for (int k = 0; k < 3; ++k) edge[k] = point_[0][k] - w[k];
+    const double place = -dot3(edge, w);
+    const double square = dot3(edge, edge);
+    const double share = place <= 0.0 ? 0.0 : place < square ? place / square : 1.0;
+    take(
+        w,
+        {share, 0.0, {w[0] + share * edge[0], w[1] + share * edge[1], w[2] + share * edge[2]}, 0.0},
+        point_[0], point_[0]);
+  }
+
+  /// A point of a triangle w, a, b: w + s (a - w) + t (b - w), and how far it is away, squared.
+  struct Nearest {
+    double s;
+    double t;
+    Point at;
+    double square;
+  };
+
+  /// The point nearest to the origin, by the regions of its features (Ericson, "Real-time collision
+  /// detection", 5.1.5).
+  [[nodiscard]] static Nearest of_triangle(const Point& w, const Point& a, const Point& b) {
+    Point to_a;
+    Point to_b;
+    for (int k = 0; k < 3; ++k) {
+      to_a[k] = a[k] - w[k];
+      to_b[k] = b[k] - w[k];
+    }
+    const double a_at_w = -dot3(to_a, w);
+    const double b_at_w = -dot3(to_b, w);
+    const double a_at_a = -dot3(to_a, a);
+    const double b_at_a = -dot3(to_b, a);
+    const double a_at_b = -dot3(to_a, b);
+    const double b_at_b = -dot3(to_b, b);
+    const double across_b = a_at_w * b_at_a - a_at_a * b_at_w;
+    const double across_a = a_at_b * b_at_w - a_at_w * b_at_b;
+    const double across_w = a_at_a * b_at_b - a_at_b * b_at_a;
+    Nearest r{0.0, 0.0, {}, 0.0};
+    if (a_at_w <= 0.0 && b_at_w <= 0.0) {
+      // w itself.
+    } else if (a_at_a >= 0.0 && b_at_a <= a_at_a) {
+      r.s = 1.0;
+    } else if (b_at_b >= 0.0 && a_at_b <= b_at_b) {
+      r.t = 1.0;
+    } else if (across_b <= 0.0 && a_at_w >= 0.0 && a_at_a <= 0.0) {
+      r.s = a_at_w / (a_at_w - a_at_a);
+    } else if (across_a <= 0.0 && b_at_w >= 0.0 && b_at_b <= 0.0) {
+      r.t = b_at_w / (b_at_w - b_at_b);
+    } else if (across_w <= 0.0 && b_at_a >= a_at_a && a_at_b >= b_at_b) {
+      const double from_a = b_at_a - a_at_a;
+      r.t = from_a / (from_a + (a_at_b - b_at_b));
+      r.s = 1.0 - r.t;
+    } else {
+      const double over = 1.0 / (across_w + across_a + across_b);
+      r.s = across_a * over;
+      r.t = across_b * over;
+    }
+    for (int k = 0; k < 3; ++k) r.at[k] = w[k] + r.s * to_a[k] + r.t * to_b[k];
+    r.square = dot3(r.at, r.at);
+    return r;
+  }
+
+  /// The feature that the point is on becomes the simplex.
+  void take(const Point& w, const Nearest& nearest, const Point& a, const Point& b) {
+    const Point old[2] = {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+    for (int k = 0; k < 3; ++k) nearest_[k] = nearest.at[k];
+    count_ = 0;
+    if (nearest.s + nearest.t < 1.0) put(w);
+    if (nearest.s > 0.0) put(old[0]);
+    if (nearest.t > 0.0) put(old[1]);
+  }
+  void put(const Point& p) {
+    for (int k = 0; k < 3; ++k) point_[count_][k] = p[k];
+    ++count_;
+  }
+
+  [[nodiscard]] bool tetrahedron_holds_origin(const Point& w) {
+    // The sides at w, and the corner across from each.
+    constexpr int kSide[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
+    bool holds = is_inside(point_[0], point_[1], point_[2], w);
+    Nearest best{0.0, 0.0, {}, __builtin_inf()};
+    int at = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int* const side = kSide[i];
+      if (is_inside(w, point_[side[0]], point_[side[1]], point_[side[2]])) continue;
+      holds = false;
+      const Nearest nearest = of_triangle(w, point_[side[0]], point_[side[1]]);
+      if (nearest.square >= best.square) continue;
+      best = nearest;
+      at = i;
+    }
+    if (holds || !(best.square < __builtin_inf())) return holds;
+    take(w, best, point_[kSide[at][0]], point_[kSide[at][1]]);
+    return false;
+  }
+
+  /// The origin is on the side of a triangle's plane where the fourth point is, beyond doubt.
+  [[nodiscard]] bool is_inside(const Point& p, const Point& q, const Point& r,
+                               const Point& fourth) const {
+    Point to_q;
+    Point to_r;
+    Point to_fourth;
+    Point n;
+    for (int k = 0; k < 3; ++k) {
+      to_q[k] = q[k] - p[k];
+      to_r[k] = r[k] - p[k];
+      to_fourth[k] = fourth[k] - p[k];
+    }
+    cross3(to_q, to_r, n);
+    const double origin = -dot3(n, p);
+    const double height = dot3(n, to_fourth);
+    const double limit = doubt_ * doubt_ * dot3(n, n);
+    return origin * origin > limit && height * height > limit && (origin > 0.0) == (height > 0.0);
+  }
+
+  const CurvedPair& pair_;
+  double doubt_;
+  /// Points of the difference, and the nearest to the origin of what they span.
+  int count_ = 0;
+  Point point_[3];
+  Point nearest_;
+};
+
+/// Decides pairs that are beyond doubt and lists the others in `uncertified`; returns how many.
+static inline std::uint32_t verdicts(NarrowJob& job) {
+  return job.count == 1 ? OneVerdict::run(job) : hull::Verdicts::run(job);
+}
+
+}  // namespace winnow::WINNOW_ISA_NAME::curved
