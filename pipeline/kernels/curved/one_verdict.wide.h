@@ -28,23 +28,23 @@ class OneVerdict {
   enum class Verdict : std::uint8_t { unsure, apart, meet };
   using Point = double[3];
 
-  /// Of lengths, which are below 2: a hundred times what rounding takes; of a program's own set,
-  /// whose points are as good as it makes them.
-  static constexpr double kDoubt = 1e-12;
-  static constexpr double kOwnDoubt = 1.6e-5;
+  /// Of lengths, which are below 2: far more than rounding takes, and what any way to answer is
+  /// sure of, so that a pair alone is answered as among others.
+  static constexpr double kDoubt = 1.6e-5;
+  /// Of the product of a length and two edges.
+  static constexpr double kPlaneDoubt = 1e-14;
   /// Steps find nothing new where they gain less of the square.
   static constexpr double kNoGain = 1e-14;
   static constexpr int kMostSteps = 48;
   /// Of a nearest point that has no direction.
   static constexpr double kNowhere = 1e-15;
 
-  explicit OneVerdict(const CurvedPair& pair)
-      : pair_(pair), doubt_(has_own(pair) ? kOwnDoubt : kDoubt) {}
+  explicit OneVerdict(const CurvedPair& pair) : pair_(pair) {}
 
   [[nodiscard]] Verdict find() {
     begin();
-    const double near = pair_.rounding - doubt_;
-    const double far = pair_.rounding + doubt_;
+    const double near = pair_.rounding - kDoubt;
+    const double far = pair_.rounding + kDoubt;
     for (int step = 0; step < kMostSteps; ++step) {
       const double square = dot3(nearest_, nearest_);
       if (count_ > 0 && near > 0.0 && square < near * near) return Verdict::meet;
@@ -205,12 +205,14 @@ class OneVerdict {
     cross3(to_q, to_r, n);
     const double origin = -dot3(n, p);
     const double height = dot3(n, to_fourth);
-    const double limit = doubt_ * doubt_ * dot3(n, n);
-    return origin * origin > limit && height * height > limit && (origin > 0.0) == (height > 0.0);
+    // What rounding leaves of the normal of a sliver has another length than its edges say.
+    const double edges = __builtin_sqrt(dot3(to_q, to_q) * dot3(to_r, to_r));
+    const double limit = kDoubt * __builtin_sqrt(dot3(n, n)) + kPlaneDoubt * edges;
+    return __builtin_fabs(origin) > limit && __builtin_fabs(height) > limit &&
+           (origin > 0.0) == (height > 0.0);
   }
 
   const CurvedPair& pair_;
-  double doubt_;
   /// Points of the difference, and the nearest to the origin of what they span.
   int count_ = 0;
   Point point_[3];
