@@ -6,8 +6,8 @@
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
-#include "pipeline/kernels/curved/one_verdict.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
+#include "pipeline/kernels/hull/one_verdict.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

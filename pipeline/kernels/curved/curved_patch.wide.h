@@ -3,7 +3,7 @@
 // The features of two cores that meet along a normal, as patches for contact_patch; numbered as the
 // solver numbers them.
 
-#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/hull/farthest_points.wide.h"
 #include "pipeline/kernels/hull/hull_features.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 

@@ -1,7 +1,7 @@
 // Half-spaces against a program's own convex sets: the lowest point over the plane and, for
 // contacts, the points that the set has in directions a little off.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/hull/curved_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
 

@@ -3,7 +3,7 @@
 // What the difference of two cores is near its least depth, as simple as it often is there, and the
 // points of each core that tell so.
 
-#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/hull/farthest_points.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

@@ -2,10 +2,10 @@
 
 // Jobs of the hull kernels: pairs are placed, searched in float lanes and finished one by one.
 
-#include "pipeline/kernels/curved/one_verdict.wide.h"
 #include "pipeline/kernels/hull/hull_contacts.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/hull_search.wide.h"
+#include "pipeline/kernels/hull/one_verdict.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {

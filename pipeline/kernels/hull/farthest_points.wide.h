@@ -2,7 +2,7 @@
 
 // Points of cores, and of their differences, that are farthest along directions, one at a time.
 
-#include "pipeline/kernels/curved/curved_pair.wide.h"
+#include "pipeline/kernels/hull/curved_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

@@ -4,7 +4,7 @@
 // and Keerthi (1988), which ends as soon as a direction parts the shapes or points of them do not.
 // Lanes that one pair does not fill take several times as long.
 
-#include "pipeline/kernels/curved/farthest_points.wide.h"
+#include "pipeline/kernels/hull/farthest_points.wide.h"
 #include "pipeline/kernels/hull/verdicts.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

@@ -1,8 +1,8 @@
 #pragma once
 
-// A pair of convex shapes of which one has a curved side, as the curved kernels pass it from stage
-// to stage, and the points of its shapes that lie farthest along directions, one per lane. Lengths
-// are multiplied by a power of two that brings the largest into [1, 2).
+// A pair of convex shapes by itself, in double: as the curved kernels pass it from stage to stage,
+// and as a pair alone is judged. Lengths are multiplied by a power of two that brings the largest
+// into [1, 2).
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
