@@ -18,37 +18,49 @@ struct SphereFeet {
   }
 };
 
+template <typename T>
+struct CapsuleOverPlane {
+  Plane<T> plane;
+  Lanes<T> radius;
+  /// From the middle to the upper end of the core, and how much that rises.
+  Vec3<T> arm;
+  Lanes<T> rise;
+  Lanes<T> scale;
+
+  [[gnu::always_inline]] CapsuleOverPlane(const NarrowJob& job, const PairBlock<T>& block) {
+    plane = load_plane<SideB>(job, block);
+    const Turn<T> turn = load_turn<SideA>(job, block);
+    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
+    radius = a.radius;
+    arm = axis_z(turn) * a.half_length;
+    rise = dot(plane.normal, arm);
+    scale = plane.scale + a.radius + a.half_length + doubt(turn);
+  }
+};
+
 struct CapsuleFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 2> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
-    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
-    const Vec3<T> arm = axis_z(turn) * a.half_length;
-    const Lanes<T> rise = dot(plane.normal, arm);
-    Feet<T, 2> feet{{arm, -arm},
-                    {plane.height + rise, plane.height - rise},
+    const CapsuleOverPlane<T> a(job, block);
+    Feet<T, 2> feet{{a.arm, -a.arm},
+                    {a.plane.height + a.rise, a.plane.height - a.rise},
                     {Lanes<T>(T(1)), Lanes<T>(T(2))},
                     a.radius,
-                    plane.normal,
-                    plane.scale + a.radius + a.half_length + doubt(turn)};
+                    a.plane.normal,
+                    a.scale};
     sort_two(feet, 0, 1);
     return feet;
   }
 
   template <typename T>
   [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
-    const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
-    const Vec3<T> arm = axis_z(turn) * a.half_length;
-    const Lanes<T> rise = dot(plane.normal, arm);
-    return {{arm * sign_or_one(-rise)},
-            {plane.height - abs(rise)},
+    const CapsuleOverPlane<T> a(job, block);
+    return {{a.arm * sign_or_one(-a.rise)},
+            {a.plane.height - abs(a.rise)},
             {},
             a.radius,
-            plane.normal,
-            plane.scale + a.radius + a.half_length + doubt(turn)};
+            a.plane.normal,
+            a.scale};
   }
 };
 
@@ -99,18 +111,8 @@ struct TriangleFeet {
 
   template <typename T>
   [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
-    const TriangleLanes<T> a = load_triangle<SideA>(job, block);
-    const Vec3<T> normal = rotation(turn).to_local(plane.normal);
-    Lanes<T> rise[3];
-    Lanes<T> reach(T(0));
-    for (int i = 0; i < 3; ++i) {
-      rise[i] = dot(normal, a.vertex[i]);
-      reach = max(reach, taxicab(a.vertex[i]));
-    }
-    return {plane.height + min(min(rise[0], rise[1]), rise[2]), a.rounding,
-            plane.scale + a.rounding + reach + doubt(turn)};
+    const Feet<T, 3> all = in_order(job, block);
+    return {min(min(all.height[0], all.height[1]), all.height[2]), all.rounding, all.scale};
   }
 };
 
@@ -208,14 +210,8 @@ struct BoxFeet {
 
   template <typename T>
   [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
-    const BoxLanes<T> a = load_box<SideA>(job, block);
-    const Vec3<T> normal = rotation(turn).to_local(plane.normal);
-    const Lanes<T> rise =
-        abs(normal.x) * a.half.x + abs(normal.y) * a.half.y + abs(normal.z) * a.half.z;
-    return {plane.height - rise, a.rounding,
-            plane.scale + a.rounding + taxicab(a.half) + doubt(turn)};
+    const BoxOverPlane<T> box(job, block);
+    return {box.height(), box.rounding, box.scale};
   }
 };
 

@@ -74,32 +74,6 @@ template <typename T>
   feet.scale = s.scale;
 }
 
-/// How much a shape's end and its rim rise over its middle, and what is known of the least height.
-template <typename T>
-struct SpunRise {
-  Plane<T> plane;
-  Lanes<T> along;
-  Lanes<T> across;
-  LeastHeight<T> least;
-};
-
-template <typename T, typename Shape>
-[[gnu::always_inline]] inline SpunRise<T> rise_of_spun(const NarrowJob& job,
-                                                       const PairBlock<T>& block,
-                                                       const Shape* table) {
-  SpunRise<T> r;
-  r.plane = load_plane<SideB>(job, block);
-  const Turn<T> turn = load_turn<SideA>(job, block);
-  const SpunLanes<T> shape = load_spun<SideA, T>(job, block, table);
-  const Vec3<T> axis = axis_z(turn);
-  const Vec3<T> level = cross(r.plane.normal, axis);
-  r.along = dot(r.plane.normal, axis) * shape.half_length;
-  r.across = sqrt(dot(level, level)) * shape.radius;
-  r.least.rounding = shape.rounding;
-  r.least.scale = r.plane.scale + shape.radius + shape.half_length + shape.rounding + doubt(turn);
-  return r;
-}
-
 /// Where `side` holds, the feet become the two given, the second higher than the first, and no
 /// others.
 template <typename T>
@@ -124,12 +98,11 @@ struct CylinderFeet {
     const Lanes<T> rise = s.shape.half_length * abs(s.along);
     Feet<T, 4> feet;
     set_cap(feet, s, low, -rise, select(upper, zero, Lanes<T>(T{kRimCorners})));
-    const Lanes<T> drop = s.shape.radius * s.across;
     const LaneMask<T> side = abs(s.along) <= Lanes<T>(T(kCapCosine));
     const Lanes<T> top(T{kSideLine});
     const Lanes<T> end(T{kSideLine + 1});
     set_side(feet, side, {s.down + low, s.down - low},
-             {s.plane.height - rise - drop, s.plane.height + rise - drop},
+             {least_height(s), s.plane.height + rise - s.shape.radius * s.across},
              {select(upper, top, end), select(upper, end, top)});
     return feet;
   }
@@ -137,21 +110,20 @@ struct CylinderFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
     const SpunOverPlane<T> s = place_spun(job, block, job.tables->cylinders);
-    const Lanes<T> rise = s.shape.half_length * abs(s.along);
     const Vec3<T> low = s.half * -sign_or_one(s.along);
-    return {{low + s.down},
-            {s.plane.height - rise - s.shape.radius * s.across},
-            {},
-            s.shape.rounding,
-            s.plane.normal,
-            s.scale};
+    return {{low + s.down}, {least_height(s)}, {}, s.shape.rounding, s.plane.normal, s.scale};
   }
 
   template <typename T>
   [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
-    SpunRise<T> rise = rise_of_spun(job, block, job.tables->cylinders);
-    rise.least.height = rise.plane.height - abs(rise.along) - rise.across;
-    return rise.least;
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables->cylinders);
+    return {least_height(s), s.shape.rounding, s.scale};
+  }
+
+ private:
+  template <typename T>
+  [[gnu::always_inline]] static Lanes<T> least_height(const SpunOverPlane<T>& s) {
+    return s.plane.height - s.shape.half_length * abs(s.along) - s.shape.radius * s.across;
   }
 };
 
@@ -162,8 +134,8 @@ struct ConeFeet {
     const Lanes<T> rise = s.shape.half_length * s.along;
     Feet<T, 4> feet;
     set_cap(feet, s, -s.half, -rise, Lanes<T>(T{kRimCorners}));
-    const Lanes<T> tip = s.plane.height + rise;
-    const Lanes<T> rim = s.plane.height - rise - s.shape.radius * s.across;
+    const Lanes<T> tip = tip_of(s);
+    const Lanes<T> rim = rim_of(s);
     const LaneMask<T> side = s.along <= Lanes<T>(T(kCapCosine));
     const LaneMask<T> tip_first = tip <= rim;
     const Vec3<T> foot = s.down - s.half;
@@ -180,9 +152,8 @@ struct ConeFeet {
   template <typename T>
   [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
     const SpunOverPlane<T> s = place_spun(job, block, job.tables->cones);
-    const Lanes<T> rise = s.shape.half_length * s.along;
-    const Lanes<T> tip = s.plane.height + rise;
-    const Lanes<T> rim = s.plane.height - rise - s.shape.radius * s.across;
+    const Lanes<T> tip = tip_of(s);
+    const Lanes<T> rim = rim_of(s);
     return {{select(tip <= rim, s.half, s.down - s.half)},
             {min(tip, rim)},
             {},
@@ -193,9 +164,19 @@ struct ConeFeet {
 
   template <typename T>
   [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
-    SpunRise<T> rise = rise_of_spun(job, block, job.tables->cones);
-    rise.least.height = rise.plane.height + min(rise.along, -rise.along - rise.across);
-    return rise.least;
+    const SpunOverPlane<T> s = place_spun(job, block, job.tables->cones);
+    return {min(tip_of(s), rim_of(s)), s.shape.rounding, s.scale};
+  }
+
+ private:
+  // How high they are.
+  template <typename T>
+  [[gnu::always_inline]] static Lanes<T> tip_of(const SpunOverPlane<T>& s) {
+    return s.plane.height + s.shape.half_length * s.along;
+  }
+  template <typename T>
+  [[gnu::always_inline]] static Lanes<T> rim_of(const SpunOverPlane<T>& s) {
+    return s.plane.height - s.shape.half_length * s.along - s.shape.radius * s.across;
   }
 };
 
