@@ -62,6 +62,12 @@ struct CapsuleFeet {
             a.plane.normal,
             a.scale};
   }
+
+  template <typename T>
+  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+    const CapsuleOverPlane<T> a(job, block);
+    return {a.plane.height - abs(a.rise), a.radius, a.scale};
+  }
 };
 
 struct TriangleFeet {
