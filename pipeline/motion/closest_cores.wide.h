@@ -19,6 +19,18 @@ struct WitnessLanes {
   Doubles present[kSlots];
 };
 
+/// How far a segment or a box reaches along a direction, and back, from its middle.
+[[gnu::always_inline]] inline Doubles height_of_segment(const MovingCore& core,
+                                                        const Vector& direction) {
+  return abs(dot(direction, core.axes.z)) * core.half.z;
+}
+[[gnu::always_inline]] inline Doubles height_of_box(const MovingCore& core,
+                                                    const Vector& direction) {
+  return abs(dot(direction, core.axes.x)) * core.half.x +
+         abs(dot(direction, core.axes.y)) * core.half.y +
+         abs(dot(direction, core.axes.z)) * core.half.z;
+}
+
 /// Two cores as they are placed.
 struct CorePair {
   const CoreTable& table_a;
@@ -50,17 +62,13 @@ struct CorePair {
   /// How far a core reaches along a direction from its middle.
   [[gnu::always_inline]] Doubles height(const CoreTable& table, const MovingCore& core,
                                         const Vector& direction, Mask16 lanes) const {
-    const auto share = [&](const Vector& axis, const Doubles& half) {
-      return abs(dot(direction, axis)) * half;
-    };
     switch (table.kind) {
       case ShapeKind::sphere:
         return Doubles(0.0);
       case ShapeKind::capsule:
-        return share(core.axes.z, core.half.z);
+        return height_of_segment(core, direction);
       case ShapeKind::box:
-        return share(core.axes.x, core.half.x) + share(core.axes.y, core.half.y) +
-               share(core.axes.z, core.half.z);
+        return height_of_box(core, direction);
       default:
         break;
     }

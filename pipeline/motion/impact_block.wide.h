@@ -185,6 +185,10 @@ class BlockStep {
   [[nodiscard]] Doubles closed() const {
     return max(p_.tolerance, look_.noise * Doubles(kClosedNoise));
   }
+  /// Of gaps where they are `between` from each other.
+  [[nodiscard]] Doubles noise_at(const Vector& between) const {
+    return p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(between) + p_.sizes);
+  }
   void end_unsure(const Truth& lanes) {
     answers_.put_unsure(bits(active_ & lanes), p_.time);
     active_ = active_ & !lanes;

@@ -118,7 +118,7 @@ class ImpactStep : BlockStep {
     place(tables_.a, p_.next, p_.a);
     place(tables_.b, p_.next, p_.b);
     look_.between = p_.start + p_.travel * p_.next;
-    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
+    look_.noise = noise_at(look_.between);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     if (!has_plane_) then_ = gap_along(pair);
     look_.closest = closest_points(pair);
@@ -528,6 +528,7 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   if (!table.turns && !table.in_world) move_members<kAxes, kExtent>(from, lane_from, to, lane_to);
 }
 
+/// Where the target has rows of vertices, the lane gets those of its new hull.
 inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, unsigned lane_to) {
   to.hull[lane_to] = from.hull[lane_from];
   if (to.kind != ShapeKind::hull || to.rows == 0) return;

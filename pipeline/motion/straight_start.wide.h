@@ -52,26 +52,30 @@ struct AxisCore {
 
   /// How far it reaches along a direction and back, from its middle.
   [[gnu::always_inline]] void reach(const Vector& n, Doubles& high, Doubles& low) const {
-    if (table.kind == ShapeKind::triangle) {
-      const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]),
-                             dot(n, core.corner[2])};
-      high = max(max(on[0], on[1]), on[2]);
-      low = min(min(on[0], on[1]), on[2]);
-      return;
-    }
-    const Doubles along = dot(n, core.axes.z);
-    const Doubles up = along * core.half.z;
-    if (table.kind == ShapeKind::box) {
-      high =
-          abs(dot(n, core.axes.x)) * core.half.x + abs(dot(n, core.axes.y)) * core.half.y + abs(up);
-    } else if (table.kind == ShapeKind::capsule) {
-      high = abs(up);
-    } else {
-      const Doubles rim = core.half.x * sqrt(positive_part(dot(n, n) - along * along));
-      high = table.kind == ShapeKind::cone ? max(up, rim - up) : abs(up) + rim;
-      if (table.kind == ShapeKind::cone) {
-        low = min(up, -rim - up);
+    switch (table.kind) {
+      case ShapeKind::triangle: {
+        const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]),
+                               dot(n, core.corner[2])};
+        high = max(max(on[0], on[1]), on[2]);
+        low = min(min(on[0], on[1]), on[2]);
         return;
+      }
+      case ShapeKind::box:
+        high = height_of_box(core, n);
+        break;
+      case ShapeKind::capsule:
+        high = height_of_segment(core, n);
+        break;
+      default: {
+        const Doubles along = dot(n, core.axes.z);
+        const Doubles up = along * core.half.z;
+        const Doubles rim = core.half.x * sqrt(positive_part(dot(n, n) - along * along));
+        if (table.kind == ShapeKind::cone) {
+          high = max(up, rim - up);
+          low = min(up, -rim - up);
+          return;
+        }
+        high = abs(up) + rim;
       }
     }
     low = -high;
@@ -215,7 +219,7 @@ class StraightStart : BlockStep {
   /// The same where the lanes are now.
   void judge() {
     ClosestLanes& closest = look_.closest;
-    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
+    look_.noise = noise_at(look_.between);
     closest.lower = dot(closest.axis, look_.between + closest.on_b - closest.on_a);
     look_.gap = closest.lower - p_.roundings - look_.noise;
     look_.parted = look_.gap > Doubles(0.0);

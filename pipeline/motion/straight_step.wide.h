@@ -26,7 +26,7 @@ class StraightStep : BlockStep {
   /// Returns the lanes that go on.
   [[nodiscard]] Mask16 run() {
     look_.between = p_.start + p_.travel * p_.time;
-    look_.noise = p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(look_.between) + p_.sizes);
+    look_.noise = noise_at(look_.between);
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     if (!Elsewhere && has_closed_form(tables_.a.kind, tables_.b.kind)) {
       look_.closest = closest_by_form(pair, bits(active_));

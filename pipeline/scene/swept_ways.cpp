@@ -106,17 +106,17 @@ Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> 
 /// that.
 bool SweepState::choose_drift() noexcept {
   drift.setZero();
-  const std::size_t count = movers.size();
-  if (!along_axis.resize(count)) return false;
-  Eigen::Vector3d common;
   double as_they_are = 0.0;
-  double shortened = 0.0;
   double radii = 0.0;
   for (const MovingBall& ball : balls) {
     as_they_are += Eigen::Vector3d::Map(ball.travel).lpNorm<1>();
     radii += ball.radius;
   }
   if (!(as_they_are > kLongWay * radii)) return true;
+  const std::size_t count = movers.size();
+  if (!along_axis.resize(count)) return false;
+  Eigen::Vector3d common;
+  double shortened = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < count; ++i) along_axis[i] = balls[i].travel[axis];
     double* const middle = along_axis.data() + count / 2;

@@ -28,9 +28,9 @@ class OneVerdict {
   enum class Verdict : std::uint8_t { unsure, apart, meet };
   using Point = double[3];
 
-  /// Of lengths, which are below 2: far more than rounding takes, and what any way to answer is
-  /// sure of, so that a pair alone is answered as among others.
-  static constexpr double kDoubt = 1.6e-5;
+  /// Of lengths, which are below 2: far more than rounding takes, and what lanes are not sure of,
+  /// so that a pair alone is answered as among others.
+  static constexpr double kDoubt = static_cast<double>(hull::Verdicts::kDoubt);
   /// Of the product of a length and two edges.
   static constexpr double kPlaneDoubt = 1e-14;
   /// Steps find nothing new where they gain less of the square.

@@ -15,6 +15,9 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 class Verdicts {
  public:
+  /// Some 90 roundings make up a height: this is three times as much.
+  static constexpr float kDoubt = 1.6e-5F;
+
   /// Answers a job, but for pairs that it lists in `uncertified`; returns how many.
   [[gnu::noinline]] static std::uint32_t run(NarrowJob& job) {
     if (job.count == 0) return 0;
@@ -31,8 +34,6 @@ class Verdicts {
  private:
   using Search = SearchLanes<float, false>;
   static constexpr int kWidth = Search::kWidth;
-  /// Some 90 roundings make up a height: this is three times as much.
-  static constexpr float kDoubt = 1.6e-5F;
   static constexpr float kSmallest = 1e-20F;
   static constexpr float kLargest = 1e20F;
 
