@@ -8,7 +8,8 @@
   let engine, count = 0, pointer = null, running = true, last = 0;
   const spent = [], steps = [];
 
-  // What a library for programs asks of a system: an environment, which is empty here.
+  // What a library for programs asks of a system: an environment, which is empty here, and folders,
+  // of which there is none: no such number.
   const system = memory => new Proxy({
     environ_sizes_get(variables, bytes) {
       const view = new DataView(memory().buffer);
@@ -17,6 +18,7 @@
       return 0;
     },
     environ_get: () => 0,
+    fd_prestat_get: () => 8,
     proc_exit(status) { throw new Error(`winnow ended with ${status}`); },
   }, { get: (known, name) => known[name] ?? (() => 52) });
 
