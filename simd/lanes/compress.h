@@ -98,10 +98,23 @@ inline void interleave4(Uints::Part a, Uints::Part b, std::uint32_t* out) {
 
 #endif
 
+#if defined(WINNOW_ISA_IS_avx512)
+
+/// The set lanes of `v` in front, zeros behind them. They are merged with a zero that the compiler
+/// must make anew each time: on AMD's cores the form that writes zeros itself waits for what its
+/// target register held, and loops run at its latency.
+inline __m512i pack16(Mask16 mask, __m512i v) {
+  __m512i zero = _mm512_setzero_si512();
+  asm("" : "+v"(zero));
+  return _mm512_mask_compress_epi32(zero, static_cast<__mmask16>(mask), v);
+}
+
+#endif
+
 /// Writes the set lanes of `v` to `out`, in order; returns how many. Room for 16 is needed.
 inline unsigned compress_store(Mask16 mask, const Uints& v, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
-  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), v.part[0]));
+  _mm512_storeu_si512(out, pack16(mask, v.part[0]));
 #elif defined(WINNOW_ISA_IS_avx2)
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), pack8(v.part[0], mask & 0xFFU));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + count(mask & 0xFFU)),
@@ -120,7 +133,7 @@ inline unsigned compress_store(Mask16 mask, const Uints& v, std::uint32_t* out) 
 /// The same for floats.
 inline unsigned compress_store(Mask16 mask, const Floats& v, float* out) {
 #if defined(WINNOW_ISA_IS_avx512)
-  _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(mask), v.part[0]));
+  _mm512_storeu_si512(out, pack16(mask, _mm512_castps_si512(v.part[0])));
 #elif defined(WINNOW_ISA_IS_avx2)
   const auto pack = [](__m256 part, unsigned m) {
     return _mm256_castsi256_ps(pack8(_mm256_castps_si256(part), m));
@@ -147,7 +160,7 @@ inline unsigned compress_store(Mask16 mask, const Floats& v, float* out) {
 template <bool Sorted>
 inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
-  const __m512i packed = _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), v.part[0]);
+  const __m512i packed = pack16(mask, v.part[0]);
   const __m512i query = _mm512_set1_epi32(static_cast<int>(q));
   const __m512i a = Sorted ? _mm512_min_epu32(query, packed) : query;
   const __m512i b = Sorted ? _mm512_max_epu32(query, packed) : packed;
@@ -194,8 +207,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
 [[gnu::always_inline]] inline void compress_words(Mask16 mask, const Floats& low,
                                                   const Floats& high, std::uint64_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
-  const auto m = static_cast<__mmask16>(mask);
-  const auto pack = [m](__m512 v) { return _mm512_maskz_compress_epi32(m, _mm512_cvtps_epi32(v)); };
+  const auto pack = [mask](__m512 v) { return pack16(mask, _mm512_cvtps_epi32(v)); };
   const __m512i a = pack(high.part[0]);
   const __m512i b = pack(low.part[0]);
   const __m512i first_half =
