@@ -192,7 +192,7 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
-/// What filters say of a leaf in a tree of one environment and the nodes that it meets.
+/// What filters say of a leaf in a tree of one environment and the leaves that it meets.
 template <bool Filtered>
 class LeafFilter {
  public:
@@ -209,13 +209,12 @@ class LeafFilter {
   /// than looking at them takes.
   [[nodiscard]] bool decides() const { return Filtered && !meets_all_; }
 
-  /// Those of the nodes `met` among 16 that may hold something to meet. What lies above the groups
-  /// is told apart by place: looking at each costs more.
-  [[nodiscard]] Mask16 let_through(std::uint32_t level, std::uint32_t first_node,
-                                   Mask16 met) const {
-    if (!decides() || level > 1) return met;
-    const NodeFilters& nodes = tree_.filters[level];
-    return met & matching_lanes(nodes.layers, nodes.mask, first_node, own_);
+  /// Those of the leaves `met` among 16 that may hold something to meet. What lies above is told
+  /// apart by place: looking at each costs more.
+  [[nodiscard]] Mask16 let_through(std::uint32_t first_leaf, Mask16 met) const {
+    if (!decides()) return met;
+    const NodeFilters& leaves = tree_.filters[0];
+    return met & matching_lanes(leaves.layers, leaves.mask, first_leaf, own_);
   }
 
  private:
@@ -224,29 +223,97 @@ class LeafFilter {
   bool meets_all_ = false;
 };
 
+/// The groups of leaves that the leaves of one group may meet, with their boxes side by side: each
+/// leaf asks these instead of going down the tree by itself, where each step waits for the one
+/// before.
+class NearGroups {
+ public:
+  NearGroups(const TreeView& tree, PairSink& sink) : tree_(tree), sink_(sink) {}
+
+  /// Finds those of a group from itself on.
+  void find(std::uint32_t group) {
+    count_ = 0;
+    first_ = group;
+    if (tree_.levels == 1) {
+      group_[count_++] = 0;
+      return;
+    }
+    const QueryBox own(tree_.node[1], group);
+    complete_ = traverse_from(
+        tree_, 1, group,
+        [&](std::uint32_t level, std::uint32_t first_node) {
+          ++sink_.tests;
+          return overlap(load_slabs<3>(tree_.node[level], first_node), own.low, own.high);
+        },
+        [&](std::uint32_t node) { return add(node); });
+    for (unsigned k = count_; k % kLanes != 0; ++k) box_[0][k] = __builtin_inff();
+  }
+
+  /// Calls visit(group) for those that may meet a box of the group's, in order. False as soon as
+  /// visit says false.
+  template <typename Visit>
+  bool for_each(const float* low, const float* high, Visit&& visit) {
+    if (tree_.levels == 1) return visit(0);
+    if (!complete_) return ask_tree(low, high, visit);
+    for (unsigned at = 0; at < count_; at += kLanes) {
+      const float* const columns[6] = {box_[0], box_[1], box_[2], box_[3], box_[4], box_[5]};
+      ++sink_.tests;
+      for (Mask16 met = overlap(load_slabs<3>(columns, at), low, high); met != 0; met &= met - 1) {
+        if (!visit(group_[at + first(met)])) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  // A group that meets more is among very large ones: the tree prunes better then.
+  static constexpr unsigned kRoom = 128;
+
+  bool add(std::uint32_t node) {
+    if (count_ == kRoom) return false;
+    for (int c = 0; c < 6; ++c) box_[c][count_] = tree_.node[1][c][node];
+    group_[count_++] = node;
+    return true;
+  }
+
+  template <typename Visit>
+  bool ask_tree(const float* low, const float* high, Visit& visit) {
+    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
+      ++sink_.tests;
+      return overlap(load_slabs<3>(tree_.node[level], first_node), low, high);
+    };
+    return traverse_from(tree_, 1, first_, test, visit);
+  }
+
+  const TreeView& tree_;
+  PairSink& sink_;
+  bool complete_ = true;
+  std::uint32_t first_ = 0;
+  unsigned count_ = 0;
+  std::uint32_t group_[kRoom];
+  alignas(64) float box_[6][kRoom];
+};
+
 /// Pairs of rows without filters, or of one environment, leaf by leaf.
 template <bool Filtered>
 bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
                           PairSink& sink) {
   BlockPairs<Filtered> pairs(tree.rows, sink);
+  NearGroups near(tree, sink);
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
+    if (leaf % kLanes == 0) near.find(leaf / kLanes);
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
     const LeafFilter<Filtered> filter(tree, leaf);
     if (!pairs.start(row, row + kLanes, filter.apart(), filter.decides())) continue;
-    const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
-      ++sink.tests;
-      const Box16 nodes = load_slabs<3>(tree.node[level], first_node);
-      return filter.let_through(level, first_node, overlap(nodes, pairs.low(), pairs.high()));
-    };
     const auto visit = [&](std::uint32_t group) {
-      Mask16 leaves = test(0, group * kLanes);
+      ++sink.tests;
+      const Box16 nodes = load_slabs<3>(tree.node[0], std::size_t{group} * kLanes);
+      Mask16 leaves = filter.let_through(group * kLanes, overlap(nodes, pairs.low(), pairs.high()));
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
-    const bool done =
-        tree.levels == 1 ? visit(0) : traverse_from(tree, 1, leaf / kLanes, test, visit);
-    if (!done || !pairs.finish()) return false;
+    if (!near.for_each(pairs.low(), pairs.high(), visit) || !pairs.finish()) return false;
   }
   return true;
 }
