@@ -98,7 +98,7 @@ class Throughput final : public ScenesCommand {
     declare_frames(results);
     measure_all();
     print("throughput", {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
-                         "bytes_per_object", "frames", "fingerprint"});
+                         "bytes_per_object", "core_distance_ns", "frames", "fingerprint"});
     for (const char* table : {"throughput_threads", "throughput_growth", "throughput_skipped"}) {
       print(table);
     }

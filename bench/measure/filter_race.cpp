@@ -63,7 +63,7 @@ Filter asking(std::size_t setting) {
 }
 
 /// What a question found, in one order: pairs, or for each ray what it hits.
-using Found = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using FoundPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// A partition that follows a scene and is asked one question in every frame.
 class Asked {
@@ -106,16 +106,16 @@ class Asked {
   }
 
   /// What the last one found.
-  [[nodiscard]] Found found() const {
+  [[nodiscard]] FoundPairs found() const {
     if (question_ == rays) return hits_;
-    Found all;
+    FoundPairs all;
     for (const Pair& pair : pairs_) all.emplace_back(pair.first, pair.second);
     std::ranges::sort(all);
     return all;
   }
 
   /// The same by comparing everything with everything.
-  [[nodiscard]] Found truth() const;
+  [[nodiscard]] FoundPairs truth() const;
 
  private:
   template <typename Value>
@@ -205,16 +205,16 @@ class Asked {
   std::vector<ObjectFilter> filters_;
   std::vector<ObjectFilter> other_filters_;
   PairBuffer pairs_;
-  Found hits_;
+  FoundPairs hits_;
 };
 
-Found Asked::truth() const {
+FoundPairs Asked::truth() const {
   // Keys are handed out in order: ids are the objects' numbers.
   Partition all = make_named("BoundsNSquared", {.execution = Execution::serial()});
   std::vector<Key> keys(boxes_.size());
   need(all.insert(boxes_, {}, keys), "objects");
   PairBuffer pairs;
-  Found found;
+  FoundPairs found;
   if (question_ == rays) {
     for (std::uint32_t i = 0; i < asked(kRays); ++i) {
       HitBuffer hits;
@@ -250,8 +250,8 @@ Found Asked::truth() const {
 }
 
 /// Answers that only one of two has.
-std::size_t differences(const Found& a, const Found& b) {
-  Found apart;
+std::size_t differences(const FoundPairs& a, const FoundPairs& b) {
+  FoundPairs apart;
   std::ranges::set_symmetric_difference(a, b, std::back_inserter(apart));
   return apart.size();
 }

@@ -1,6 +1,7 @@
 #include "bench/rows/frame_rows.h"
 
 #include "bench/common/sample.h"
+#include "bench/measure/core_distance.h"
 #include "bench/measure/frame_limit.h"
 #include "bench/measure/key_costs.h"
 #include "bench/peers/yardstick.h"
@@ -32,7 +33,7 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
 }
 
 void add_run(Results& results, const NamedScene& scene, const Measurement& measured, const Run& run,
-             std::string command) {
+             double distance_ns, std::string command) {
   const std::vector<double> ms = without_first(run.frame_ms);
   const std::vector<double> update_ms = without_first(run.update_ms);
   const auto n = static_cast<double>(measured.objects);
@@ -57,6 +58,7 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
     row["worst_ms"] = *std::max_element(settled.begin(), settled.end());
   }
   if (run.bytes != 0) row["bytes_per_object"] = static_cast<double>(run.bytes) / n;
+  if (run.threads > 1) row["core_distance_ns"] = distance_ns;
   results.add("throughput", std::move(row));
 }
 
@@ -182,6 +184,7 @@ void declare_frames(Results& results) {
         {"pairs_per_s", "pairs", "million/s", Better::more},
         {"bytes_per_object", "memory", "bytes/object", Better::less},
         {"frames", "frames", "", Better::neither, Format::count},
+        {"core_distance_ns", "from core to core", "ns"},
         {"fingerprint", "pairs of the first 3 frames", "", Better::neither, Format::text}}});
   results.declare({"throughput_growth",
                    "throughput",
@@ -210,6 +213,9 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
   options.scene = scene.argument;
   options.recording = scene.recording.get();
   Measurement measured = measure(options);
+  const bool shared = std::any_of(measured.runs.begin(), measured.runs.end(),
+                                  [](const Run& run) { return run.threads > 1; });
+  const double distance_ns = shared ? core_distance_ns() : 0.0;
   const auto command = [&](const Run& run, const std::string& partition) {
     return scene.words(measured.objects, options.seed) + " --threads " +
            std::to_string(run.threads) + " --isa " + to_string(run.isa) + " --partition " +
@@ -217,13 +223,14 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
   };
   for (const Run& run : measured.partitions()) {
     if (only_peers) break;
-    add_run(results, scene, measured, run, "bench/run throughput" + command(run, run.engine));
+    add_run(results, scene, measured, run, distance_ns,
+            "bench/run throughput" + command(run, run.engine));
   }
   for (const Run& run : measured.peers()) {
     // Beside a partition whose pairs theirs must equal.
     const std::string beside =
         measured.partition_runs > 0 ? measured.runs.front().engine : std::string("LinearBvh");
-    add_run(results, scene, measured, run,
+    add_run(results, scene, measured, run, distance_ns,
             (run.engine == kYardstickName ? "bench/run throughput --yardstick"
                                           : "bench/run --with-peers throughput --peers") +
                 command(run, beside));

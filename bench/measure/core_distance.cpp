@@ -1,0 +1,55 @@
+#include "bench/measure/core_distance.h"
+
+#include "bench/common/sample.h"
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace winnow::bench {
+namespace {
+
+constexpr int kTries = 11;
+constexpr int kThere = 1000;  // ways there, and as many back, of a try
+
+/// Two threads that wait for each other's number in turns.
+class Rally {
+ public:
+  void answer() noexcept {
+    for (int ball = 1; ball < 2 * kTries * kThere; ball += 2) {
+      wait_for(ball);
+      ball_.store(ball + 1, std::memory_order_release);
+    }
+  }
+  /// Nanoseconds of a way in a try.
+  double serve(int serve) noexcept {
+    const Stopwatch clock;
+    for (int i = 0; i < kThere; ++i) {
+      const int ball = 2 * (serve * kThere + i) + 1;
+      ball_.store(ball, std::memory_order_release);
+      wait_for(ball + 1);
+    }
+    return 1e6 * clock.ms() / (2 * kThere);
+  }
+
+ private:
+  void wait_for(int ball) const noexcept {
+    while (ball_.load(std::memory_order_acquire) != ball) {
+    }
+  }
+  alignas(64) std::atomic<int> ball_{0};
+};
+
+}  // namespace
+
+double core_distance_ns() {
+  if (std::thread::hardware_concurrency() < 2) return 0.0;
+  Rally rally;
+  std::thread other([&] { rally.answer(); });
+  std::vector<double> tries;
+  for (int i = 0; i < kTries; ++i) tries.push_back(rally.serve(i));
+  other.join();
+  return median_of(tries);
+}
+
+}  // namespace winnow::bench
