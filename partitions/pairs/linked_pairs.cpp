@@ -9,8 +9,9 @@
 namespace winnow {
 namespace {
 
-// An object that moved costs about as much as a pass over this many pairs.
-constexpr std::size_t kPairsPassed = 64;
+// Following the pairs of an object that moved costs about as much as a pass over all pairs of so
+// many objects, however many pairs objects have.
+constexpr std::size_t kObjectsPassed = 48;
 // Frames in which all pairs of a buffer get their links.
 constexpr std::size_t kLinkFrames = 4;
 // No pair: both of its ids are kNoObject.
@@ -43,16 +44,16 @@ constexpr std::uint64_t as_number(const Pair& pair) noexcept {
 
 }  // namespace
 
-bool LinkedPairs::pays(std::size_t moved) const noexcept {
-  return kPairsPassed * moved <= out_.size() && can_link();
+bool LinkedPairs::pays(std::size_t moved, std::size_t objects) const noexcept {
+  return kObjectsPassed * moved <= objects && can_link();
 }
 
-bool LinkedPairs::is_due(std::size_t moved) const noexcept {
-  return out_.state_ != PairBuffer::State::loose && pays(moved);
+bool LinkedPairs::is_due(std::size_t moved, std::size_t objects) const noexcept {
+  return out_.state_ != PairBuffer::State::loose && pays(moved, objects);
 }
 
-void LinkedPairs::loosen(std::size_t moved) noexcept {
-  out_.state_ = pays(moved) ? PairBuffer::State::few_moved : PairBuffer::State::loose;
+void LinkedPairs::loosen(std::size_t moved, std::size_t objects) noexcept {
+  out_.state_ = pays(moved, objects) ? PairBuffer::State::few_moved : PairBuffer::State::loose;
 }
 
 bool LinkedPairs::cover_objects(std::size_t slots) noexcept {

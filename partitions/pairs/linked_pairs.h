@@ -29,9 +29,9 @@ class LinkedPairs {
 
   /// The buffer is never linked: for who looks at all pairs in every frame whatever moved.
   void forbid() noexcept { out_.may_link_ = false; }
-  /// True if a frame in which so many objects moved is to update the buffer here: where few do, the
-  /// second of two frames in a row begins to link it.
-  [[nodiscard]] bool is_due(std::size_t moved) const noexcept;
+  /// True if a frame in which so many of the objects moved is to update the buffer here: where few
+  /// do, the second of two frames in a row begins to link it.
+  [[nodiscard]] bool is_due(std::size_t moved, std::size_t objects) const noexcept;
   [[nodiscard]] static bool is_linked(const PairBuffer& out) noexcept {
     return out.state_ == PairBuffer::State::linked;
   }
@@ -44,8 +44,8 @@ class LinkedPairs {
   [[nodiscard]] bool link(std::size_t slots) noexcept;
   /// Links all that is left, once that has begun.
   void link_rest() noexcept { link_next(out_.size()); }
-  /// In this frame, in which so many objects moved, the pairs are changed by other means.
-  void loosen(std::size_t moved) noexcept;
+  /// In this frame, in which so many of the objects moved, the pairs are changed by other means.
+  void loosen(std::size_t moved, std::size_t objects) noexcept;
   /// All pairs were found anew.
   void loosen() noexcept { out_.state_ = PairBuffer::State::loose; }
 
@@ -74,7 +74,7 @@ class LinkedPairs {
  private:
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFU;
 
-  [[nodiscard]] bool pays(std::size_t moved) const noexcept;
+  [[nodiscard]] bool pays(std::size_t moved, std::size_t objects) const noexcept;
   [[nodiscard]] bool cover_objects(std::size_t slots) noexcept;
   [[nodiscard]] static ObjectId object_at(const Pair& pair, std::uint32_t side) noexcept {
     return side == 0 ? pair.first : pair.second;

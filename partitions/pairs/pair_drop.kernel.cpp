@@ -1,39 +1,35 @@
 #include "partitions/pairs/pair_drop.kernel.h"
-#include "simd/lanes/compress.h"
+
+#include <cstring>
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-constexpr std::size_t kPairs = kLanes / 2;
+/// Bit i, before others.
+std::uint64_t from_bit(const std::uint64_t* bits, std::uint32_t i) {
+  return bits[i >> 6U] >> (i & 63U);
+}
 
+/// One by one: gathers of bits take longer, or hardly less. What wider instruction sets bring are
+/// shifts by a variable.
 template <bool KeepDropped>
 std::size_t split(const std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved,
                   std::uint32_t* kept, std::uint32_t* dropped) {
-  // Little-endian: bit i of 64-bit words is bit i of 32-bit words.
-  const auto* const words = reinterpret_cast<const std::uint32_t*>(moved);
   std::uint32_t* out = kept;
-  std::size_t i = 0;
-  for (; i + kPairs <= count; i += kPairs) {
-    // Stores run over by a register at most, up to the end of what has just been read.
-    const Uints ids = Uints::load_unaligned(pairs + 2 * i);
-    const Mask16 hits = test_bits(words, ids);
-    const Mask16 stay = ~(hits | hits >> 1U) & 0x5555U;
-    const Mask16 both = stay | stay << 1U;
-    if constexpr (KeepDropped) dropped += compress_store(~both & kAllRows, ids, dropped);
-    out += compress_store(both, ids, out);
-  }
-  for (; i < count; ++i) {
-    const std::uint32_t a = pairs[2 * i];
-    const std::uint32_t b = pairs[2 * i + 1];
-    const std::uint32_t hit = (words[a >> 5U] >> (a & 31U) | words[b >> 5U] >> (b & 31U)) & 1U;
+  for (std::size_t i = 0; i < count; ++i) {
+    // Both ids in one integer, which compilers leave alone; which of them is first does not matter.
+    std::uint64_t pair;
+    std::memcpy(&pair, pairs + 2 * i, sizeof pair);
+    const auto a = static_cast<std::uint32_t>(pair);
+    const auto b = static_cast<std::uint32_t>(pair >> 32U);
+    // Without a branch: who moved is a coin toss.
+    const std::size_t hit = (from_bit(moved, a) | from_bit(moved, b)) & 1U;
     if constexpr (KeepDropped) {
-      dropped[0] = a;
-      dropped[1] = b;
+      std::memcpy(dropped, &pair, sizeof pair);
       dropped += 2 * hit;
     }
-    out[0] = a;
-    out[1] = b;
+    std::memcpy(out, &pair, sizeof pair);
     out += 2 * (hit ^ 1U);
   }
   return static_cast<std::size_t>(out - kept) / 2;

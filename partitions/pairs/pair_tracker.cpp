@@ -44,13 +44,12 @@ bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
                        Column<Pair>& dropped) noexcept {
   // A piece at a time, so that the list need not have room for all.
   constexpr std::size_t kPiece = 4096;
-  constexpr std::size_t kSlack = 8;
   const std::size_t count = out.pairs_.size();
   auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < count; begin += kPiece) {
     const std::size_t piece = std::min(kPiece, count - begin);
-    if (!dropped.grow(dropped.size() + piece + kSlack)) return false;
+    if (!dropped.grow(dropped.size() + piece + 1)) return false;
     auto* const to = reinterpret_cast<std::uint32_t*>(dropped.data() + dropped.size());
     const std::size_t stayed =
         pair_drop_kernels().part(ids + 2 * begin, piece, moved, ids + 2 * kept, to);

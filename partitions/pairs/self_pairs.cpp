@@ -183,15 +183,22 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
   if (tracked && can_update_in_place(out, options, events) && update_in_place(out)) {
     return linked_self_pairs(out, options.predicate, events);
   }
-  const bool update = tracked && can_update(out) && (events != nullptr || asks_few());
+  const bool update = tracked && can_update(out) && (events != nullptr || asks_few(out));
   return redo_self_pairs(out, options, update, events);
 }
 
-// True if those that moved asking one by one cost less than all asking together: runs of cells are
-// walked faster than cells are found.
-bool PartitionState::asks_few() const noexcept {
+// True if those that moved asking one by one cost less than all asking together. Where nothing
+// prunes, all asking costs the square. Else the more pairs objects have, the more there is to drop
+// and to find again (measured from 1 to 30 pairs each), and runs of cells are walked faster than
+// cells are found.
+bool PartitionState::asks_few(const PairBuffer& out) const noexcept {
+  constexpr std::size_t kFlat = 4;
+  constexpr std::size_t kTree = 8;
+  constexpr std::size_t kCells = 10;
   const StructureCosts* const costs = index.kind().info()->costs;
-  const std::size_t share = costs != nullptr && costs->has_cells ? 7 : 4;
+  const std::size_t alone = costs != nullptr && costs->has_cells ? kCells : kTree;
+  const std::size_t share =
+      index.structure().is_flat() ? kFlat : alone + 3 * out.size() / (4 * rows.size() + 1);
   return share * rows.moved().ids().size() <= rows.size() + 64;
 }
 
@@ -199,7 +206,7 @@ bool PartitionState::asks_few() const noexcept {
 bool PartitionState::update_in_place(PairBuffer& out) const noexcept {
   const std::size_t moved = rows.moved().ids().size();
   LinkedPairs linked(out);
-  return moved == 0 || (linked.is_due(moved) && linked.link(rows.keys().slot_count()));
+  return moved == 0 || (linked.is_due(moved, rows.size()) && linked.link(rows.keys().slot_count()));
 }
 
 Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
@@ -226,7 +233,7 @@ Status PartitionState::redo_self_pairs(PairBuffer& out, const PairOptions& optio
                                        EventWriter* events) const {
   LinkedPairs linked(out);
   if (update) {
-    linked.loosen(rows.moved().ids().size());
+    linked.loosen(rows.moved().ids().size(), rows.size());
   } else {
     linked.loosen();
   }

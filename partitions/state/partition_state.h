@@ -139,7 +139,7 @@ class PartitionState {
                                          const EventWriter* events) const noexcept;
   bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
-  [[nodiscard]] bool asks_few() const noexcept;
+  [[nodiscard]] bool asks_few(const PairBuffer& out) const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
                  SpatialIndex::Asked asked) const noexcept;

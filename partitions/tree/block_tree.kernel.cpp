@@ -192,11 +192,11 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
-/// What filters say of a leaf in a tree of one environment and the leaves that it meets.
+/// What filters say of a leaf in a tree of one environment and the nodes that it meets.
 template <bool Filtered>
 class LeafFilter {
  public:
-  LeafFilter(const TreeView& tree, std::uint32_t leaf) : tree_(tree) {
+  LeafFilter(const TreeView& tree, std::uint32_t leaf) {
     if constexpr (!Filtered) return;
     own_ = range_of(tree.filters[0], leaf);
     meets_all_ = surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
@@ -209,23 +209,22 @@ class LeafFilter {
   /// than looking at them takes.
   [[nodiscard]] bool decides() const { return Filtered && !meets_all_; }
 
-  /// Those of the leaves `met` among 16 that may hold something to meet. What lies above is told
-  /// apart by place: looking at each costs more.
-  [[nodiscard]] Mask16 let_through(std::uint32_t first_leaf, Mask16 met) const {
-    if (!decides()) return met;
-    const NodeFilters& leaves = tree_.filters[0];
-    return met & matching_lanes(leaves.layers, leaves.mask, first_leaf, own_);
+  /// Those of the 16 nodes `met` that may hold something to meet; their layers and masks stand from
+  /// `at` on.
+  [[nodiscard]] Mask16 let_through(const std::uint32_t* layers, const std::uint32_t* mask,
+                                   std::uint32_t at, Mask16 met) const {
+    return decides() ? met & matching_lanes(layers, mask, at, own_) : met;
   }
 
  private:
-  const TreeView& tree_;
   FilterRange own_{};
   bool meets_all_ = false;
 };
 
-/// The groups of leaves that the leaves of one group may meet, with their boxes side by side: each
-/// leaf asks these instead of going down the tree by itself, where each step waits for the one
-/// before.
+/// The groups of leaves that the leaves of one group may meet, with their boxes and filters side by
+/// side: each leaf asks these instead of going down the tree by itself, where each step waits for
+/// the one before.
+template <bool Filtered>
 class NearGroups {
  public:
   NearGroups(const TreeView& tree, PairSink& sink) : tree_(tree), sink_(sink) {}
@@ -234,10 +233,7 @@ class NearGroups {
   void find(std::uint32_t group) {
     count_ = 0;
     first_ = group;
-    if (tree_.levels == 1) {
-      group_[count_++] = 0;
-      return;
-    }
+    if (tree_.levels == 1) return;
     const QueryBox own(tree_.node[1], group);
     complete_ = traverse_from(
         tree_, 1, group,
@@ -246,19 +242,23 @@ class NearGroups {
           return overlap(load_slabs<3>(tree_.node[level], first_node), own.low, own.high);
         },
         [&](std::uint32_t node) { return add(node); });
-    for (unsigned k = count_; k % kLanes != 0; ++k) box_[0][k] = __builtin_inff();
+    for (unsigned k = count_; k % kLanes != 0; ++k) {
+      for (int c = 0; c < 6; ++c) box_[c][k] = c < 3 ? __builtin_inff() : -__builtin_inff();
+    }
   }
 
-  /// Calls visit(group) for those that may meet a box of the group's, in order. False as soon as
-  /// visit says false.
+  /// Calls visit(group) for those that may meet something in a box of the group's, in order. False
+  /// as soon as visit says false.
   template <typename Visit>
-  bool for_each(const float* low, const float* high, Visit&& visit) {
+  bool for_each(const float* low, const float* high, const LeafFilter<Filtered>& filter,
+                Visit&& visit) {
     if (tree_.levels == 1) return visit(0);
-    if (!complete_) return ask_tree(low, high, visit);
+    if (!complete_) return ask_tree(low, high, filter, visit);
     for (unsigned at = 0; at < count_; at += kLanes) {
       const float* const columns[6] = {box_[0], box_[1], box_[2], box_[3], box_[4], box_[5]};
       ++sink_.tests;
-      for (Mask16 met = overlap(load_slabs<3>(columns, at), low, high); met != 0; met &= met - 1) {
+      const Mask16 touched = overlap(load_slabs<3>(columns, at), low, high);
+      for (Mask16 met = filter.let_through(layers_, mask_, at, touched); met != 0; met &= met - 1) {
         if (!visit(group_[at + first(met)])) return false;
       }
     }
@@ -272,15 +272,24 @@ class NearGroups {
   bool add(std::uint32_t node) {
     if (count_ == kRoom) return false;
     for (int c = 0; c < 6; ++c) box_[c][count_] = tree_.node[1][c][node];
+    if constexpr (Filtered) {
+      layers_[count_] = tree_.filters[1].layers[node];
+      mask_[count_] = tree_.filters[1].mask[node];
+    }
     group_[count_++] = node;
     return true;
   }
 
   template <typename Visit>
-  bool ask_tree(const float* low, const float* high, Visit& visit) {
+  bool ask_tree(const float* low, const float* high, const LeafFilter<Filtered>& filter,
+                Visit& visit) {
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       ++sink_.tests;
-      return overlap(load_slabs<3>(tree_.node[level], first_node), low, high);
+      const Mask16 touched = overlap(load_slabs<3>(tree_.node[level], first_node), low, high);
+      // What lies above is told apart by place: looking at each costs more.
+      const NodeFilters& nodes = tree_.filters[1];
+      return level > 1 ? touched
+                       : filter.let_through(nodes.layers, nodes.mask, first_node, touched);
     };
     return traverse_from(tree_, 1, first_, test, visit);
   }
@@ -291,6 +300,8 @@ class NearGroups {
   std::uint32_t first_ = 0;
   unsigned count_ = 0;
   std::uint32_t group_[kRoom];
+  std::uint32_t layers_[kRoom];  // where filters are in use
+  std::uint32_t mask_[kRoom];
   alignas(64) float box_[6][kRoom];
 };
 
@@ -299,7 +310,8 @@ template <bool Filtered>
 bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
                           PairSink& sink) {
   BlockPairs<Filtered> pairs(tree.rows, sink);
-  NearGroups near(tree, sink);
+  NearGroups<Filtered> near(tree, sink);
+  const NodeFilters& filters = tree.filters[0];
   const std::uint32_t last = tree.count[0] < end * kLanes ? tree.count[0] : end * kLanes;
   for (std::uint32_t leaf = begin * kLanes; leaf < last; ++leaf) {
     if (leaf % kLanes == 0) near.find(leaf / kLanes);
@@ -309,11 +321,12 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
     const auto visit = [&](std::uint32_t group) {
       ++sink.tests;
       const Box16 nodes = load_slabs<3>(tree.node[0], std::size_t{group} * kLanes);
-      Mask16 leaves = filter.let_through(group * kLanes, overlap(nodes, pairs.low(), pairs.high()));
+      Mask16 leaves = filter.let_through(filters.layers, filters.mask, group * kLanes,
+                                         overlap(nodes, pairs.low(), pairs.high()));
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
-    if (!near.for_each(pairs.low(), pairs.high(), visit) || !pairs.finish()) return false;
+    if (!near.for_each(pairs.low(), pairs.high(), filter, visit) || !pairs.finish()) return false;
   }
   return true;
 }

@@ -1,42 +1,12 @@
 #pragma once
 
-// Indices from masks, masks from bitmaps, and lanes of two interleaved. The set lanes are packed to
+// Indices from masks, and lanes of two interleaved. The set lanes are packed to
 // the front. Every store writes whole registers, so the destination needs room for 16 elements from
 // where it starts, whatever the mask.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
-
-/// Which lanes' bits are set in a bitmap: bit i is bit i % 32 of words[i / 32].
-inline Mask16 test_bits(const std::uint32_t* words, const Uints& index) {
-#if defined(WINNOW_ISA_IS_avx512)
-  const __m512i i = index.part[0];
-  const __m512i word = _mm512_i32gather_epi32(_mm512_srli_epi32(i, 5), words, 4);
-  const __m512i bit =
-      _mm512_sllv_epi32(_mm512_set1_epi32(1), _mm512_and_si512(i, _mm512_set1_epi32(31)));
-  return _mm512_test_epi32_mask(word, bit);
-#elif defined(WINNOW_ISA_IS_avx2)
-  Mask16 r = 0;
-  for (int p = 0; p < Floats::kParts; ++p) {
-    const __m256i i = index.part[p];
-    const __m256i word =
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(words), _mm256_srli_epi32(i, 5), 4);
-    // The wanted bit becomes the sign bit.
-    const __m256i up =
-        _mm256_sub_epi32(_mm256_set1_epi32(31), _mm256_and_si256(i, _mm256_set1_epi32(31)));
-    const __m256 sign = _mm256_castsi256_ps(_mm256_sllv_epi32(word, up));
-    r |= static_cast<Mask16>(_mm256_movemask_ps(sign)) << (p * Floats::kPartLanes);
-  }
-  return r;
-#else
-  alignas(64) std::uint32_t lane[kLanes];
-  index.store(lane);
-  Mask16 r = 0;
-  for (int i = 0; i < kLanes; ++i) r |= (words[lane[i] >> 5U] >> (lane[i] & 31U) & 1U) << i;
-  return r;
-#endif
-}
 
 #if defined(WINNOW_ISA_IS_avx2)
 
@@ -100,9 +70,9 @@ inline void interleave4(Uints::Part a, Uints::Part b, std::uint32_t* out) {
 
 #if defined(WINNOW_ISA_IS_avx512)
 
-/// The set lanes of `v` in front, zeros behind them. They are merged with a zero that the compiler
+/// The set lanes of `v` in front, zeros behind them. They are merged with a zero that compilers
 /// must make anew each time: on AMD's cores the form that writes zeros itself waits for what its
-/// target register held, and loops run at its latency.
+/// target held, and loops run at its latency.
 inline __m512i pack16(Mask16 mask, __m512i v) {
   __m512i zero = _mm512_setzero_si512();
   asm("" : "+v"(zero));

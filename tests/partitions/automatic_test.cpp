@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
 constexpr std::size_t kMany = 1200;  // and the worst
-constexpr std::size_t kFramesOfEach = 80;
+constexpr std::size_t kFramesOfEach = 120;
 
 // A world whose number of objects changes so much that its structure must.
 class TurningWorld {
