@@ -1,8 +1,8 @@
 #pragma once
 
-// Indices from masks, and lanes of two interleaved. The set lanes are packed to
-// the front. Every store writes whole registers, so the destination needs room for 16 elements from
-// where it starts, whatever the mask.
+// Indices from masks, and lanes of two interleaved. The set lanes are packed to the front. Every
+// store writes whole registers, so the destination needs room for 16 elements from where it starts,
+// whatever the mask.
 
 #include "simd/lanes/lanes.h"
 
