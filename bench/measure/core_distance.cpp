@@ -10,7 +10,8 @@ namespace winnow::bench {
 namespace {
 
 constexpr int kTries = 11;
-constexpr int kThere = 1000;  // ways there, and as many back, of a try
+constexpr int kThere = 1000;      // ways there, and as many back, of a try
+constexpr int kPatience = 10000;  // looks, which take longer than any way between running threads
 
 /// Two threads that wait for each other's number in turns.
 class Rally {
@@ -33,8 +34,10 @@ class Rally {
   }
 
  private:
+  // Where another program has the other core, whoever waits makes room.
   void wait_for(int ball) const noexcept {
-    while (ball_.load(std::memory_order_acquire) != ball) {
+    for (int looks = 0; ball_.load(std::memory_order_acquire) != ball; ++looks) {
+      if (looks > kPatience) std::this_thread::yield();
     }
   }
   alignas(64) std::atomic<int> ball_{0};

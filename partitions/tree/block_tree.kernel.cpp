@@ -221,6 +221,13 @@ class LeafFilter {
   bool meets_all_ = false;
 };
 
+/// Those of the 16 nodes from `first_node` on that a box touches.
+Mask16 touched_nodes(const TreeView& tree, PairSink& sink, std::uint32_t level,
+                     std::uint32_t first_node, const float* low, const float* high) {
+  ++sink.tests;
+  return overlap(load_slabs<3>(tree.node[level], first_node), low, high);
+}
+
 /// The groups of leaves that the leaves of one group may meet, with their boxes and filters side by
 /// side: each leaf asks these instead of going down the tree by itself, where each step waits for
 /// the one before.
@@ -238,8 +245,7 @@ class NearGroups {
     complete_ = traverse_from(
         tree_, 1, group,
         [&](std::uint32_t level, std::uint32_t first_node) {
-          ++sink_.tests;
-          return overlap(load_slabs<3>(tree_.node[level], first_node), own.low, own.high);
+          return touched_nodes(tree_, sink_, level, first_node, own.low, own.high);
         },
         [&](std::uint32_t node) { return add(node); });
     for (unsigned k = count_; k % kLanes != 0; ++k) {
@@ -284,8 +290,7 @@ class NearGroups {
   bool ask_tree(const float* low, const float* high, const LeafFilter<Filtered>& filter,
                 Visit& visit) {
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
-      ++sink_.tests;
-      const Mask16 touched = overlap(load_slabs<3>(tree_.node[level], first_node), low, high);
+      const Mask16 touched = touched_nodes(tree_, sink_, level, first_node, low, high);
       // What lies above is told apart by place: looking at each costs more.
       const NodeFilters& nodes = tree_.filters[1];
       return level > 1 ? touched
@@ -319,10 +324,9 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
     const LeafFilter<Filtered> filter(tree, leaf);
     if (!pairs.start(row, row + kLanes, filter.apart(), filter.decides())) continue;
     const auto visit = [&](std::uint32_t group) {
-      ++sink.tests;
-      const Box16 nodes = load_slabs<3>(tree.node[0], std::size_t{group} * kLanes);
-      Mask16 leaves = filter.let_through(filters.layers, filters.mask, group * kLanes,
-                                         overlap(nodes, pairs.low(), pairs.high()));
+      const Mask16 touched =
+          touched_nodes(tree, sink, 0, group * kLanes, pairs.low(), pairs.high());
+      Mask16 leaves = filter.let_through(filters.layers, filters.mask, group * kLanes, touched);
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
