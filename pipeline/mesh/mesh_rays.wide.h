@@ -347,11 +347,11 @@ class RayWalk {
   }
   /// Nodes that begin behind it wait no longer. Since it comes to a leaf, there are keys at every
   /// place.
-  void set_limit(const MeshView& mesh, double limit) {
+  void set_limit(double limit) {
     set_last(limit);
-    open_ = 0;
-    for (std::uint32_t at = first_place_; at < mesh.levels; ++at) {
-      open_ |= is_open(Floats::load(key_[at]), gone_to_[at]) << at;
+    for (std::uint32_t rest = open_; rest != 0; rest &= rest - 1) {
+      const std::uint32_t at = first(rest);
+      open_ ^= (is_open(Floats::load(key_[at]), gone_to_[at]) ^ 1U) << at;
     }
   }
   /// 1 if some nodes with these keys come after that one and before the end, else 0.
@@ -437,6 +437,9 @@ class RayWalk {
     Floats key;
     const Mask16 hits = find(mesh, level, first_node, 0, key);
     if (hits == 0) return RayNode::none();
+    if (mesh.box == nullptr && (hits & (hits - 1)) == 0) {
+      return {level, first_node + first(hits), 0.0F};
+    }
     const std::uint32_t nearest = reduce_min_positive(key);
     put(mesh.levels - 1 - level, level, first_node, key, hits & ~(1U << nearest % kLanes),
         __builtin_bit_cast(float, nearest));
@@ -530,7 +533,7 @@ class RayWalk {
                                ? visitor.meet(visitor.context, ray_, slot, hit, limit_)
                                : visitor.look(visitor.context, ray_, slot, limit_);
       if (limit < 0.0) return false;
-      if (limit != limit_) set_limit(mesh, limit);
+      if (limit != limit_) set_limit(limit);
     }
     return true;
   }
