@@ -34,8 +34,11 @@ template <typename T>
 static inline void own_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),
                          static_cast<double>(d[2])};
-  const double length = __builtin_sqrt(dot3(direction, direction));
-  for (int k = 0; k < 3; ++k) direction[k] = length > 0.0 ? direction[k] / length : k == 0;
+  const double square = dot3(direction, direction);
+  if (!(__builtin_fabs(square - 1.0) <= 0x1p-51)) {
+    const double over = 1.0 / __builtin_sqrt(square);
+    for (int k = 0; k < 3; ++k) direction[k] = square > 0.0 ? direction[k] * over : k == 0;
+  }
   double point[3];
   own_point(shape, direction, point);
   for (int k = 0; k < 3; ++k) x[k] = static_cast<T>(point[k]) * scale;

@@ -10,6 +10,7 @@
 // is sure, and the polytope grows there until it proves the depth.
 
 #include "pipeline/kernels/curved/curved_tangent.wide.h"
+#include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
@@ -40,12 +41,15 @@ class CurvedDepth {
     sure_ = __builtin_inf();
     is_minimum_ = false;
     next_look_ = kFirstLook;
+    leads_ = true;
+    nearest_ = find_nearest();
     for (;;) {
-      face_ = nearest_face();
+      face_ = nearest_;
       lower_ = open_[face_];
       if (lower_ >= best_height_ - tolerance_) return end_in_minimum();
       if (is_closed(face_)) {
         open_[face_] = __builtin_inf();
+        nearest_ = find_nearest();
         continue;
       }
       if (!own_ || !measure_nearer_to_best()) {
@@ -128,9 +132,10 @@ class CurvedDepth {
         return look_for_minimum() ? Look::again : Look::fails;
       }
     }
-    if (upper_ - lower_ <= next_look_ * upper_) {
-      if (look_for_minimum() && is_closed(face_)) return Look::again;
-      if (own_) look_for_tangent();
+    if (leads_ && upper_ - lower_ <= next_look_ * upper_) {
+      const bool has_minimum = look_for_minimum();
+      if (has_minimum && is_closed(face_)) return Look::again;
+      if (own_) leads_ = look_for_tangent() || has_minimum;
       next_look_ *= kNextLook;
     }
     return Look::grows;
@@ -147,6 +152,7 @@ class CurvedDepth {
       point_[points_][k] = w[k];
       mine_[points_][k] = mine[k];
     }
+    point_[points_][3] = 0.0;
     return points_++;
   }
 
@@ -237,14 +243,17 @@ class CurvedDepth {
     for (std::uint32_t begin = 0; begin < count; begin += kWidth) {
       const std::uint32_t left = count - begin;
       const std::uint32_t batch = left < kWidth ? left : kWidth;
-      for (std::uint32_t i = 0; i < batch; ++i) {
-        for (int k = 0; k < 3; ++k) {
-          from_point_[k][i] = point_[side[begin + i].p][k];
-          to_point_[k][i] = point_[side[begin + i].q][k];
-        }
-      }
-      const Vec3<double> p = load3(from_point_);
-      const Vec3<double> e = load3(to_point_) - p;
+      const auto of_lane = [&](int lane) -> const Side& {
+        const auto i = static_cast<std::uint32_t>(lane);
+        return side[begin + (i < batch ? i : 0)];
+      };
+      const auto start = [&](int lane) { return point_[of_lane(lane).p]; };
+      Doubles from[4];
+      Doubles way[4];
+      load_rows4(start, from);
+      load_differences4([&](int lane) { return point_[of_lane(lane).q]; }, start, way);
+      const Vec3<double> p{from[0], from[1], from[2]};
+      const Vec3<double> e{way[0], way[1], way[2]};
       const Vec3<double> g = Vec3<double>{w[0], w[1], w[2]} - p;
       const Vec3<double> n = cross(e, g);
       const Doubles square = dot(n, n);
@@ -263,16 +272,13 @@ class CurvedDepth {
         for (int k = 0; k < 3; ++k) normal_[k][s.face] = plane[k][i];
         distance_[s.face] = plane[3][i];
         open_[s.face] = plane[3][i];
+        offer_nearest(plane[3][i], s.face);
         vertex_[s.face][0] = s.p;
         vertex_[s.face][1] = s.q;
         vertex_[s.face][2] = to;
       }
     }
     return true;
-  }
-
-  static Vec3<double> load3(const double (*v)[kWidth]) {
-    return {Doubles::load(v[0]), Doubles::load(v[1]), Doubles::load(v[2])};
   }
 
   /// Makes the new faces neighbours of each other and of those across; false unless the sides are
@@ -367,19 +373,20 @@ class CurvedDepth {
 
   /// A minimum near the nearest face, less than the best so far, around which nothing is sure. Its
   /// point takes the place of the one that the polytope was to grow by if it is above the face as
-  /// well.
-  void look_for_tangent() {
+  /// well. False if one is looked for in vain.
+  bool look_for_tangent() {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
-    if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return;
+    if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return true;
     TangentMinimum found;
-    if (!found.find(*pair_, near, reach_)) return;
-    if (!(found.height() < best_height_ - tolerance_)) return;
+    if (!found.find(*pair_, near, reach_)) return false;
+    if (!(found.height() < best_height_ - tolerance_)) return false;
     offer(found.normal(), found.point(), found.height());
-    if (!(dot_normal(face_, found.difference()) > distance_[face_] + kLevel)) return;
+    if (!(dot_normal(face_, found.difference()) > distance_[face_] + kLevel)) return true;
     for (int k = 0; k < 3; ++k) {
       growth_.w[k] = found.difference()[k];
       growth_.mine[k] = found.point()[k];
     }
+    return true;
   }
 
   /// Whether all points on a face that are nearer than the least minimum are in directions in which
@@ -395,16 +402,45 @@ class CurvedDepth {
     return false;
   }
 
-  [[nodiscard]] std::uint32_t nearest_face() const {
-    Doubles least = Doubles::load(open_);
-    for (std::uint32_t row = kWidth; row < faces_; row += kWidth) {
-      least = min(least, Doubles::load(open_ + row));
+  /// Of faces that were open when they were looked at in lanes, row by row, the nearest of each lane
+  /// and the first face of its row.
+  struct NearestInLanes {
+    Doubles least{__builtin_inf()};
+    Doubles row{0.0};
+
+    [[gnu::always_inline]] void add(const Doubles& open, std::uint32_t first_face) {
+      const LaneMask<double> nearer = open < least;
+      least = select(nearer, open, least);
+      row = select(nearer, Doubles(static_cast<double>(first_face)), row);
     }
-    const Doubles smallest(-hull::largest_lane(-least));
-    for (std::uint32_t row = 0;; row += kWidth) {
-      const Mask16 at = bits(Doubles::load(open_ + row) == smallest);
-      if (at != 0) return row + first(at);
+  };
+
+  /// The first of the nearest open faces.
+  [[nodiscard]] std::uint32_t find_nearest() {
+    NearestInLanes nearest;
+    for (std::uint32_t row = 0; row < faces_; row += kWidth) {
+      nearest.add(Doubles::load(open_ + row), row);
     }
+    take_nearest(nearest);
+    return nearest_;
+  }
+  void take_nearest(const NearestInLanes& nearest) {
+    nearest_open_ = -hull::largest_lane(-nearest.least);
+    alignas(64) double row[kWidth];
+    nearest.row.store(row);
+    nearest_ = kMostFaces;
+    for (Mask16 at = bits(nearest.least == Doubles(nearest_open_)); at != 0; at &= at - 1) {
+      const std::uint32_t lane = first(at);
+      const std::uint32_t face = static_cast<std::uint32_t>(row[lane]) + lane;
+      nearest_ = face < nearest_ ? face : nearest_;
+    }
+  }
+  /// A face that was not looked at so: what was just written would be waited for.
+  [[gnu::always_inline]] void offer_nearest(double distance, std::uint32_t face) {
+    const bool nearer =
+        distance < nearest_open_ || (distance == nearest_open_ && face < nearest_);
+    nearest_open_ = nearer ? distance : nearest_open_;
+    nearest_ = nearer ? face : nearest_;
   }
 
   /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
@@ -434,19 +470,25 @@ class CurvedDepth {
     const double* w = point_[by];
     const Vec3<double> x{w[0], w[1], w[2]};
     const Doubles level(kLevel);
+    alignas(64) static constexpr double kNumber[kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const Doubles number = Doubles::load(kNumber);
+    const Doubles near(static_cast<double>(face_));
+    NearestInLanes left;
     std::uint32_t count = 0;
     for (std::uint32_t row = 0; row < faces_; row += kWidth) {
       const Vec3<double> n{Doubles::load(normal_[0] + row), Doubles::load(normal_[1] + row),
                            Doubles::load(normal_[2] + row)};
-      Mask16 sees = bits(dot(n, x) + level > Doubles::load(distance_ + row));
-      if (row == face_ / kWidth * kWidth) sees |= 1U << face_ % kWidth;
-      for (; sees != 0; sees &= sees - 1) {
+      const LaneMask<double> goes = (dot(n, x) + level > Doubles::load(distance_ + row)) |
+                                    (number + Doubles(static_cast<double>(row)) == near);
+      left.add(select(goes, Doubles(__builtin_inf()), Doubles::load(open_ + row)), row);
+      for (Mask16 sees = bits(goes); sees != 0; sees &= sees - 1) {
         if (count == kMostSeen) return 0;
         const std::uint32_t f = row + first(sees);
         seen_by_[f] = by;
         seen_[count++] = f;
       }
     }
+    take_nearest(left);
     return count;
   }
 
@@ -495,6 +537,9 @@ class CurvedDepth {
   bool own_ = false;
   /// What the bounds differ by, over the upper one, when a minimum is looked for next.
   double next_look_ = 0.0;
+  /// Whether looks for minima are worth it: where the points of own sets lead to none at first they
+  /// hardly ever do later, and it takes a dozen of them to find that out.
+  bool leads_ = true;
   /// Of the minima: the least and the first's point in it, its height, a lower bound of all, and
   /// around which directions, up to the angle of which cosine, each is sure.
   double best_normal_[3];
@@ -512,9 +557,13 @@ class CurvedDepth {
   Point growth_;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
+  /// The first of the nearest open faces, and how far it is.
+  std::uint32_t nearest_ = 0;
+  double nearest_open_ = 0.0;
   double upper_ = 0.0;
   double lower_ = 0.0;
-  double point_[kMostPoints][3];
+  /// Padded, so that they are loaded whole.
+  double point_[kMostPoints][4];
   double mine_[kMostPoints][3];
   /// By point: the new face whose first edge begins there, and ends there.
   std::uint32_t from_[kMostPoints];
@@ -531,9 +580,6 @@ class CurvedDepth {
   alignas(64) double distance_[kMostFaces];
   /// The same, but infinite where a face is closed.
   alignas(64) double open_[kMostFaces];
-  /// Ends of the sides of new faces, by lane; lanes without one hold any numbers.
-  alignas(64) double from_point_[3][kWidth] = {};
-  alignas(64) double to_point_[3][kWidth] = {};
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved
