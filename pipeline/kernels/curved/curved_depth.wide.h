@@ -523,7 +523,7 @@ class CurvedDepth {
     if (most >= kInside) return;
     std::uint32_t best = face_;
     for (std::uint32_t f = 0; f < faces_; ++f) {
-      if (!(distance_[f] <= upper_)) continue;
+      if (!(distance_[f] <= upper_ + kLevel)) continue;
       const double here = foot_weights(f, weight);
       if (!(here > most)) continue;
       most = here;
