@@ -29,7 +29,7 @@ static inline void own_point(const SupportShape& shape, const double (&direction
   if (!(dot3(point, point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
 }
 
-/// The same along any direction, times `scale`.
+/// The same along any direction, times `scale`. Most are of unit length, as far as rounding goes.
 template <typename T>
 static inline void own_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),

@@ -12,51 +12,6 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// Weights of the point of a triangle's plane that is nearest to the origin, in terms of its
-/// shortest side, so that thin triangles lose no digits; twice, so that little is left of rounding.
-/// False if it is not between the corners.
-static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight) {
-  int shortest = 0;
-  double least = __builtin_inf();
-  for (int i = 0; i < 3; ++i) {
-    double square = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double d = corner[(i + 1) % 3][k] - corner[i][k];
-      square += d * d;
-    }
-    shortest = square < least ? i : shortest;
-    least = square < least ? square : least;
-  }
-  const int near = shortest;
-  const int beside = (shortest + 1) % 3;
-  const int across = (shortest + 2) % 3;
-  double side[3];
-  double arm[3];
-  double normal[3];
-  double x[3];
-  for (int k = 0; k < 3; ++k) {
-    side[k] = corner[beside][k] - corner[near][k];
-    arm[k] = corner[across][k] - corner[near][k];
-    x[k] = corner[near][k];
-  }
-  cross3(side, arm, normal);
-  const double over = 1.0 / dot3(normal, normal);
-  weight[beside] = 0.0;
-  weight[across] = 0.0;
-  for (int pass = 0; pass < 2; ++pass) {
-    const double along = dot3(x, side);
-    const double off = dot3(x, arm);
-    const double both = dot3(side, arm);
-    const double s = (off * both - along * dot3(arm, arm)) * over;
-    const double t = (along * both - off * dot3(side, side)) * over;
-    for (int k = 0; k < 3; ++k) x[k] += s * side[k] + t * arm[k];
-    weight[beside] += s;
-    weight[across] += t;
-  }
-  weight[near] = 1.0 - weight[beside] - weight[across];
-  return weight[0] >= 0.0 && weight[1] >= 0.0 && weight[2] >= 0.0;
-}
-
 /// Finds the closest points of a pair once more in the triangle that the search ended in, and what
 /// bounds their distance from below; for pairs that rounding has kept the search from ending with.
 static inline void end_in_triangle(CurvedPair& pair) {

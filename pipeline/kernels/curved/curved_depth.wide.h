@@ -402,8 +402,8 @@ class CurvedDepth {
     return false;
   }
 
-  /// Of faces that were open when they were looked at in lanes, row by row, the nearest of each lane
-  /// and the first face of its row.
+  /// Of faces that were open when they were looked at in lanes, row by row, the nearest of each
+  /// lane and the first face of its row.
   struct NearestInLanes {
     Doubles least{__builtin_inf()};
     Doubles row{0.0};
@@ -437,15 +437,14 @@ class CurvedDepth {
   }
   /// A face that was not looked at so: what was just written would be waited for.
   [[gnu::always_inline]] void offer_nearest(double distance, std::uint32_t face) {
-    const bool nearer =
-        distance < nearest_open_ || (distance == nearest_open_ && face < nearest_);
+    const bool nearer = distance < nearest_open_ || (distance == nearest_open_ && face < nearest_);
     nearest_open_ = nearer ? distance : nearest_open_;
     nearest_ = nearer ? face : nearest_;
   }
 
   /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
-  /// their outline. What they leave is a ring of two sides more than there were faces, which take
-  /// their places.
+  /// their outline. What they leave is a ring of two sides more than there were faces, less two for
+  /// each point inside of it, which is level with the new one and its neighbours.
   bool grow(std::uint32_t to) {
     const std::uint32_t count = find_seen(to);
     if (count == 0) return false;
@@ -459,9 +458,27 @@ class CurvedDepth {
         sides += seen_by_[across_[f][e] / 4] != to ? 1U : 0U;
       }
     }
-    if (sides != count + 2 || faces_ + 2 > kMostFaces) return false;
+    if (sides < 3 || sides > count + 2 || faces_ + 2 > kMostFaces) return false;
     for (std::uint32_t i = 0; i < sides; ++i) side[i].face = i < count ? seen_[i] : add_slot();
-    return set_faces(side, sides, to) && join(side, sides);
+    for (std::uint32_t i = sides; i < count; ++i) close_slot(seen_[i]);
+    return set_faces(side, sides, to) && join(side, sides) &&
+           (sides == count + 2 || is_one_ring(side, sides));
+  }
+
+  /// Leaves a place without a face.
+  void close_slot(std::uint32_t face) {
+    distance_[face] = __builtin_inf();
+    open_[face] = __builtin_inf();
+  }
+
+  /// Of sides that are joined.
+  bool is_one_ring(const Side* side, std::uint32_t count) const {
+    std::uint32_t face = side[0].face;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      face = across_[face][1] / 4;
+      if (face == side[0].face) return false;
+    }
+    return true;
   }
 
   /// Lists the faces that a point sees, and the nearest one; returns how many, 0 if they are too
