@@ -6,6 +6,7 @@
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
+#include "pipeline/kernels/curved/parallel_depth.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/one_verdict.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -158,16 +159,25 @@ class CurvedAnswers {
       job_.overlap[pair.index] = 1;
       return true;
     } else {
-      if (!depth_.find(pair)) return false;
       double normal[3];
       double point[3];
-      if (!depth_.answer(normal, point)) return false;
-      const double error = doubt_between(depth_.lower(), depth_.upper()) +
-                           2.0 * kRoundingError * (pair.size + pair.rounding);
-      // The cores' sign is that of the polytope.
-      if (!(error < depth_.upper())) return false;
-      return write(pair, -depth_.upper(), error, normal, point);
+      ParallelDepth parallel;
+      if (parallel.find(pair)) {
+        parallel.answer(normal, point);
+        return write_depth(pair, parallel, normal, point);
+      }
+      return depth_.find(pair) && depth_.answer(normal, point) &&
+             write_depth(pair, depth_, normal, point);
     }
+  }
+
+  template <typename Depth>
+  bool write_depth(const CurvedPair& pair, const Depth& depth, const double* normal,
+                   const double* point) {
+    const double error = doubt_between(depth.lower(), depth.upper()) +
+                         2.0 * kRoundingError * (pair.size + pair.rounding);
+    // The cores' sign is that of the polytope.
+    return error < depth.upper() && write(pair, -depth.upper(), error, normal, point);
   }
 
   /// From the distance of the cores, all scaled.
