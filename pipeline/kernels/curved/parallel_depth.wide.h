@@ -1,8 +1,10 @@
 #pragma once
 
-// Penetration depth of segments, cylinders and cones that stand parallel, as most do that stand on
-// a floor: their difference is a body of revolution. The direction of least depth is in the plane
-// of both axes, where the cores are two polygons: it is a normal of one of these.
+// Penetration depth of segments, cylinders and cones that stand parallel to each other, or to an
+// edge of a box, as most do that stand on a floor. The direction of least depth is in a plane along
+// their axes, where the cores are two polygons: it is a normal of one of these. Between two axes it
+// is the plane of both. Of a box it is the plane from an axis towards the rectangle that the box is
+// from above, which whatever rises at the same slope comes out of soonest.
 
 #include "pipeline/kernels/hull/curved_pair.wide.h"
 
@@ -10,13 +12,12 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class ParallelDepth {
  public:
-  /// Of cores that overlap; false if their axes are not parallel, or they are others.
+  /// Of cores that overlap; false if they do not stand parallel, or are others.
   bool find(const CurvedPair& pair) {
-    const double askew = __builtin_sqrt(pair.turn[2] * pair.turn[2] + pair.turn[5] * pair.turn[5]);
-    if (!(askew <= kParallel)) return false;
-    if (!set_outline(pair.first, 1.0, first_)) return false;
-    if (!set_outline(pair.second, pair.turn[8] > 0.0 ? 1.0 : -1.0, second_)) return false;
-    set_plane(pair);
+    const bool is_placed = pair.first.kind == ShapeKind::box    ? stand_in_box(pair)
+                           : pair.second.kind == ShapeKind::box ? stand_beside_box(pair)
+                                                                : stand_beside(pair);
+    if (!is_placed) return false;
     upper_ = __builtin_inf();
     look(1.0, 0.0);
     look(0.0, 1.0);
@@ -24,7 +25,7 @@ class ParallelDepth {
     look_across(first_, 1.0);
     look_across(second_, -1.0);
     if (!(upper_ >= 0.0)) return false;
-    lower_ = upper_ - 2.0 * askew * second_.size();
+    lower_ = upper_ - 2.0 * askew_ * pair.size;
     return true;
   }
 
@@ -32,94 +33,204 @@ class ParallelDepth {
   [[nodiscard]] double upper() const { return upper_; }
   [[nodiscard]] double lower() const { return lower_; }
 
-  /// As that of CurvedDepth: the point is the middle of what touches in the plane of the axes.
+  /// As that of CurvedDepth: the point is the middle of what touches in the plane.
   void answer(double* direction, double* point) const {
     const double tangent[2] = {-normal_[1], normal_[0]};
-    const double apart = tangent[0] * away_[0] + tangent[1] * away_[1];
-    const Reach mine = first_.touching(normal_, tangent);
     const double back[2] = {-normal_[0], -normal_[1]};
+    const double apart = dot2(tangent, away_);
+    const Reach mine = first_.touching(normal_, tangent);
     const Reach theirs = second_.touching(back, tangent);
-    const double low = largest_of(mine.low, theirs.low + apart);
-    const double high = -largest_of(-mine.high, -(theirs.high + apart));
-    const double middle = 0.5 * (low + high);
+    const double middle =
+        0.5 * (largest_of(mine.low, theirs.low + apart) + least_of(mine.high, theirs.high + apart));
     const double height = first_.height(normal_);
-    const double x = normal_[0] * height + tangent[0] * middle;
-    for (int k = 0; k < 2; ++k) {
-      direction[k] = normal_[0] * across_[k];
-      point[k] = x * across_[k];
+    for (int k = 0; k < 3; ++k) {
+      direction[k] = normal_[0] * across_[k] + normal_[1] * up_[k];
+      point[k] = base_[k] + (normal_[0] * height + tangent[0] * middle) * across_[k] +
+                 (normal_[1] * height + tangent[1] * middle) * up_[k];
     }
-    direction[2] = normal_[1];
-    point[2] = normal_[1] * height + tangent[1] * middle;
   }
 
  private:
-  /// The largest sine of the angle between the axes: what it makes of a depth is below what an
-  /// answer may be wrong by.
+  /// The largest sine of the angle between axes: what it makes of a depth is below what an answer
+  /// may be wrong by.
   static constexpr double kParallel = 1e-11;
   /// Corners that are no more below the highest one touch, lengths being about 1.
   static constexpr double kLevel = 1e-13;
+
+  static double least_of(double a, double b) { return a < b ? a : b; }
+  static double dot2(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1]; }
 
   struct Reach {
     double low;
     double high;
   };
 
-  /// The polygon of a core in a plane of its axis, which is its mirror image: half of how wide it
-  /// is at its lower and its upper end, and half of its height.
+  /// The polygon of a core in the plane: from where to where its lower and its upper end are, and
+  /// half of its height.
   struct Outline {
-    double lower;
-    double upper;
+    double lower[2];
+    double upper[2];
     double half;
 
     /// How far it reaches along a direction.
     [[nodiscard]] double height(const double* n) const {
-      const double wide = __builtin_fabs(n[0]);
-      return largest_of(wide * upper + n[1] * half, wide * lower - n[1] * half);
+      const int side = n[0] > 0.0 ? 1 : 0;
+      return largest_of(n[0] * upper[side] + n[1] * half, n[0] * lower[side] - n[1] * half);
     }
-    [[nodiscard]] double size() const { return largest_of(lower, upper) + half; }
     /// Where, along the tangent, it reaches that far.
     [[nodiscard]] Reach touching(const double* n, const double* tangent) const {
       const double most = height(n) - kLevel;
       Reach reach{__builtin_inf(), -__builtin_inf()};
-      for (const double end : {-1.0, 1.0}) {
-        for (const double side : {-1.0, 1.0}) {
-          const double x[2] = {side * (end < 0.0 ? lower : upper), end * half};
-          if (!(n[0] * x[0] + n[1] * x[1] >= most)) continue;
-          const double along = tangent[0] * x[0] + tangent[1] * x[1];
-          reach.low = -largest_of(-reach.low, -along);
-          reach.high = largest_of(reach.high, along);
-        }
+      for (int corner = 0; corner < 4; ++corner) {
+        const double x[2] = {corner < 2 ? lower[corner] : upper[corner - 2],
+                             corner < 2 ? -half : half};
+        if (!(dot2(n, x) >= most)) continue;
+        reach.low = least_of(reach.low, dot2(tangent, x));
+        reach.high = largest_of(reach.high, dot2(tangent, x));
       }
       return reach;
     }
   };
 
-  /// False for other cores.
-  static bool set_outline(const Form& form, double upright, Outline& outline) {
-    const double* n = form.number;
-    outline = {0.0, 0.0, n[2]};
-    if (form.kind == ShapeKind::capsule) return true;
-    if (form.kind == ShapeKind::cylinder) outline.upper = outline.lower = n[0];
-    if (form.kind == ShapeKind::cone) (upright > 0.0 ? outline.lower : outline.upper) = n[0];
-    return form.kind == ShapeKind::cylinder || form.kind == ShapeKind::cone;
-  }
-
-  /// The plane of both axes, and where the second is in it.
-  void set_plane(const CurvedPair& pair) {
+  /// The plane of two axes.
+  bool stand_beside(const CurvedPair& pair) {
+    const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
+    if (!set_up(axis, 2) || !set_spun(pair.first, 1.0, first_) ||
+        !set_spun(pair.second, axis[2], second_)) {
+      return false;
+    }
     const double* s = pair.shift;
     away_[0] = __builtin_sqrt(s[0] * s[0] + s[1] * s[1]);
     away_[1] = s[2];
     const bool is_beside = away_[0] > 0.0;
     across_[0] = is_beside ? s[0] / away_[0] : 1.0;
     across_[1] = is_beside ? s[1] / away_[0] : 0.0;
+    across_[2] = 0.0;
+    for (double& x : base_) x = 0.0;
+    return true;
   }
 
-  /// A direction in that plane, of length 1.
+  /// The first is a box, which has the second's axis along one of its own.
+  bool stand_in_box(const CurvedPair& pair) {
+    const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
+    const int along = longest(axis);
+    if (!set_up(axis, along) || !set_spun(pair.second, axis[along], second_)) return false;
+    const int side[2] = {(along + 1) % 3, (along + 2) % 3};
+    const double* half = pair.first.number;
+    const Rectangle seen(half[side[0]], half[side[1]], pair.shift[side[0]], pair.shift[side[1]]);
+    away_[0] = seen.distance;
+    away_[1] = pair.shift[along];
+    for (int k = 0; k < 3; ++k) across_[k] = base_[k] = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      across_[side[i]] = seen.outward[i];
+      base_[side[i]] = seen.foot[i];
+    }
+    first_ = {{-seen.chord, 0.0}, {-seen.chord, 0.0}, half[along]};
+    return true;
+  }
+
+  /// The second is a box, which has the first's axis along one of its own.
+  bool stand_beside_box(const CurvedPair& pair) {
+    const double axis[3] = {pair.turn[6], pair.turn[7], pair.turn[8]};
+    const int along = longest(axis);
+    if (!set_up(axis, along) || !set_spun(pair.first, 1.0, first_)) return false;
+    up_[0] = up_[1] = 0.0;
+    up_[2] = 1.0;
+    const int side[2] = {(along + 1) % 3, (along + 2) % 3};
+    const double* half = pair.second.number;
+    double at[2];
+    for (int i = 0; i < 2; ++i) {
+      at[i] = 0.0;
+      for (int k = 0; k < 3; ++k) at[i] -= pair.turn[3 * k + side[i]] * pair.shift[k];
+    }
+    const Rectangle seen(half[side[0]], half[side[1]], at[0], at[1]);
+    away_[0] = seen.distance;
+    away_[1] = pair.shift[2];
+    for (int k = 0; k < 3; ++k) {
+      base_[k] = 0.0;
+      across_[k] = -(seen.outward[0] * pair.turn[3 * k + side[0]] +
+                     seen.outward[1] * pair.turn[3 * k + side[1]]);
+    }
+    second_ = {{0.0, seen.chord}, {0.0, seen.chord}, half[along]};
+    return true;
+  }
+
+  /// A rectangle around the origin, and the point of its outline that is nearest to another one.
+  struct Rectangle {
+    /// Of the point, negative inside.
+    double distance;
+    double foot[2];
+    double outward[2];
+    /// How long the rectangle is from there on, straight back.
+    double chord;
+
+    Rectangle(double half_x, double half_y, double x, double y) {
+      const double half[2] = {half_x, half_y};
+      const double at[2] = {x, y};
+      double off[2];
+      double over[2];
+      for (int i = 0; i < 2; ++i) {
+        over[i] = __builtin_fabs(at[i]) - half[i];
+        foot[i] = over[i] > 0.0 ? with_sign_of(half[i], at[i]) : at[i];
+        off[i] = at[i] - foot[i];
+      }
+      const double square = dot2(off, off);
+      distance = __builtin_sqrt(square);
+      for (int i = 0; i < 2; ++i) outward[i] = off[i] / distance;
+      if (!(distance > kLevel)) turn_to_side(half, at, over);
+      chord = __builtin_inf();
+      for (int i = 0; i < 2; ++i) {
+        const double size = __builtin_fabs(outward[i]);
+        const double room = half[i] + with_sign_of(foot[i], foot[i] * outward[i]);
+        if (size > 0.0) chord = least_of(chord, room / size);
+      }
+    }
+
+   private:
+    static double with_sign_of(double size, double of) {
+      return of < 0.0 ? -__builtin_fabs(size) : __builtin_fabs(size);
+    }
+    /// Of a point inside, or on the outline: to the nearest side.
+    void turn_to_side(const double* half, const double* at, const double* over) {
+      const int i = over[1] > over[0] ? 1 : 0;
+      distance = over[i];
+      outward[i] = at[i] < 0.0 ? -1.0 : 1.0;
+      outward[1 - i] = 0.0;
+      foot[i] = with_sign_of(half[i], at[i]);
+      foot[1 - i] = at[1 - i];
+    }
+  };
+
+  static int longest(const double* v) {
+    const int i = __builtin_fabs(v[1]) > __builtin_fabs(v[0]) ? 1 : 0;
+    return __builtin_fabs(v[2]) > __builtin_fabs(v[i]) ? 2 : i;
+  }
+  /// Up along an axis of the first; false if the other is askew to that.
+  bool set_up(const double* axis, int along) {
+    const double aside[2] = {axis[(along + 1) % 3], axis[(along + 2) % 3]};
+    askew_ = __builtin_sqrt(dot2(aside, aside));
+    for (int k = 0; k < 3; ++k) up_[k] = k == along ? 1.0 : 0.0;
+    return askew_ <= kParallel;
+  }
+
+  /// Of a core around its axis, which goes up or down; false for others.
+  static bool set_spun(const Form& form, double upright, Outline& outline) {
+    const double* n = form.number;
+    const bool is_cone = form.kind == ShapeKind::cone;
+    if (!is_cone && form.kind != ShapeKind::cylinder && form.kind != ShapeKind::capsule) {
+      return false;
+    }
+    const double lower = is_cone && upright < 0.0 ? 0.0 : n[0];
+    const double upper = is_cone && upright > 0.0 ? 0.0 : n[0];
+    outline = {{-lower, lower}, {-upper, upper}, n[2]};
+    return true;
+  }
+
+  /// A direction in the plane, of length 1.
   void look(double aside, double up) {
     const double n[2] = {aside, up};
     const double back[2] = {-aside, -up};
-    const double depth =
-        first_.height(n) + second_.height(back) - (aside * away_[0] + up * away_[1]);
+    const double depth = first_.height(n) + second_.height(back) - dot2(n, away_);
     if (!(depth < upper_)) return;
     upper_ = depth;
     normal_[0] = aside;
@@ -128,17 +239,21 @@ class ParallelDepth {
   /// At right angles to the sloping sides of an outline, away from it or towards it.
   void look_across(const Outline& outline, double sign) {
     const double rise = 2.0 * outline.half;
-    const double slope = outline.lower - outline.upper;
+    const double slope = outline.lower[1] - outline.upper[1];
     const double length = __builtin_sqrt(rise * rise + slope * slope);
     if (length > 0.0) look(rise / length, sign * slope / length);
   }
 
   Outline first_;
   Outline second_;
-  /// A unit vector at right angles to the axes, from the first to the second.
-  double across_[2];
-  /// The middle of the second along it, and along the axes.
+  /// The plane in the first's frame, from the first to the second and up, and a point of it, from
+  /// which the first's outline is measured.
+  double across_[3];
+  double up_[3];
+  double base_[3];
+  /// Where the second's outline is measured from in the plane, and how askew the axes are.
   double away_[2];
+  double askew_;
   double normal_[2];
   double upper_;
   double lower_;
