@@ -3,8 +3,8 @@
 // far from the origin and at other places of a batch.
 
 #include <gtest/gtest.h>
+#include <winnow/core/rotation.h>
 #include <winnow/simd/isa.h>
-#include "core/rotation.h"
 
 #include <algorithm>
 #include <cmath>
