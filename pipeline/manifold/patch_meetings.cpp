@@ -305,7 +305,9 @@ void polygon_meetings(const Outline& reference, const Outline& incident, int r,
   for (std::uint32_t i = 0; i < now->count; ++i) {
     const Corner& c = now->corner[i];
     const std::uint32_t before = now->corner[i == 0 ? now->count - 1 : i - 1].edge;
-    PatchMeeting m = {c.x, c.y, {0.0, 0.0}, {0, 0}};
+    PatchMeeting& m = out.next();
+    m.x = c.x;
+    m.y = c.y;
     m.height[r] = reference.height(c.x, c.y);
     m.height[1 - r] = c.h;
     const bool ref_before = before >= kOutlineVertices;
@@ -320,7 +322,7 @@ void polygon_meetings(const Outline& reference, const Outline& incident, int r,
       m.id[r] = reference.edge_id[(ref_before ? before : c.edge) - kOutlineVertices];
       m.id[1 - r] = incident.edge_id[ref_before ? c.edge : before];
     }
-    out.add(m);
+    out.keep_next();
   }
 }
 

@@ -127,11 +127,20 @@ struct PatchMeetings {
 
   explicit PatchMeetings(double tolerance) noexcept : same(tolerance) {}
 
-  void add(const PatchMeeting& m) noexcept {
+  /// Room for one more, to be written in place: copied from elsewhere it would wait for what was
+  /// just stored there.
+  [[nodiscard]] PatchMeeting& next() noexcept { return point[count]; }
+  /// Keeps the next one, unless it is where the first or the last one is.
+  void keep_next() noexcept {
+    const PatchMeeting& m = point[count];
     for (std::uint32_t i = 0; i<count; i += count> 1 ? count - 1 : 1) {
       if (std::abs(point[i].x - m.x) <= same && std::abs(point[i].y - m.y) <= same) return;
     }
-    point[count++] = m;
+    ++count;
+  }
+  void add(const PatchMeeting& m) noexcept {
+    next() = m;
+    keep_next();
   }
 };
 
