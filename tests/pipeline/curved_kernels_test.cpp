@@ -556,7 +556,7 @@ void stand_up(PairScene& scene, const Quaternion& lean, Random& random) {
 
 TEST_P(CurvedPairs, that_stand_upright_are_answered_as_by_the_solver) {
   Random random(17);
-  for (const PairStyle style : {PairStyle::ordinary, PairStyle::lattice, PairStyle::unequal}) {
+  for (const PairStyle style : kPairStyles) {
     SCOPED_TRACE(to_string(style));
     for (const Quaternion& lean : {Quaternion{1, 0, 0, 0}, Quaternion{0.6, 0.0, 0.8, 0.0},
                                    Quaternion{0.1, 0.7, -0.5, 0.5}}) {
