@@ -2,6 +2,7 @@
 // directions are nearly as good as the best, and bounds must be narrow all the same.
 
 #include <gtest/gtest.h>
+#include <winnow/core/rotation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,63 @@ TEST(CoincidentCentres, of_what_is_turned_by_rounding_leave_narrow_bounds) {
   for (const NarrowTier tier : kTiers) {
     for (const auto& answer : ask(scene, {.level = ContactLevel::distance, .tier = tier})) {
       EXPECT_LE(answer.error_bound, 4e-7);
+    }
+  }
+}
+
+/// Spheres on the segments of capsules, and capsules whose segments are in one line or cross, in a
+/// frame that leans; with how far both are from parting, and whether lanes know the direction.
+void put_on_axes(PairScene& scene, std::vector<double>& depth, Random& random) {
+  const Quaternion lean = normalized({random.uniform(0.5, 1.0), random.uniform(-1.0, 1.0),
+                                      random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
+  const auto length = [&] { return random.uniform(0.5, 1.0); };
+  const auto put = [&](const auto& a, const auto& b, double along, const Quaternion& turn) {
+    put_together(a, b, 0.0, random, scene);
+    Pose& first = scene.poses[scene.poses.size() - 2];
+    Pose& second = scene.poses.back();
+    std::copy_n(lean.begin(), 4, first.orientation);
+    std::copy_n(product(lean, turn).begin(), 4, second.orientation);
+    const auto rotation = rotation_of(lean);
+    for (int k = 0; k < 3; ++k) second.position[k] = rotation(k, 2) * along;
+    depth.push_back(a.radius + b.radius);
+  };
+  const double half_turn = random.uniform(0.05, 1.5);
+  put(CapsuleShape{length(), length()}, SphereShape{length()}, random.uniform(-0.5, 0.5),
+      {1.0, 0.0, 0.0, 0.0});
+  put(CapsuleShape{length(), length()}, CapsuleShape{length(), length()}, random.uniform(0.01, 0.9),
+      {1.0, 0.0, 0.0, 0.0});
+  put(CapsuleShape{length(), length()}, CapsuleShape{length(), length()}, 0.0,
+      {std::cos(half_turn), std::sin(half_turn), 0.0, 0.0});
+}
+
+TEST(CoincidentCentres, of_segments_part_across_them_and_hardly_need_the_solver) {
+  Random random(3);
+  PairScene scene;
+  std::vector<double> depth;
+  for (std::size_t n = scaled(200); n-- != 0;) put_on_axes(scene, depth, random);
+  NarrowPhase narrow;
+  NarrowResult result;
+  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust}) {
+    const NarrowOptions asked{.level = ContactLevel::distance, .tier = tier};
+    ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs, asked, result), Status::ok);
+    EXPECT_LE(narrow.statistics().recomputed, scene.pairs.size() / 50);
+    const auto answers = ask(scene, asked);
+    for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
+    const auto mirrored = ask(scene, asked);
+    for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
+    const double rounding = tier == NarrowTier::fast ? 1e-3 : 1e-12;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      EXPECT_LE(std::abs(answers[i].distance + depth[i]), answers[i].error_bound) << i;
+      for (const std::uint32_t body : {scene.pairs[i].a, scene.pairs[i].b}) {
+        if (scene.shapes[body].kind() != ShapeKind::capsule) continue;
+        const auto rotation = rotation_of(tame(scene.poses[body].orientation));
+        double along = 0.0;
+        for (int k = 0; k < 3; ++k) along += rotation(k, 2) * answers[i].normal[k];
+        EXPECT_NEAR(along, 0.0, rounding) << i;
+      }
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(mirrored[i].normal[k], -answers[i].normal[k], 1e-12) << i;
+      }
     }
   }
 }

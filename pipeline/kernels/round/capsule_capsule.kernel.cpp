@@ -131,6 +131,20 @@ template <typename T>
   write_contacts(job, block, contacts);
 }
 
+/// Segments that cross or lie in one line part at right angles to both. Of two at one place, that
+/// are parallel, neither is the first.
+template <typename T>
+[[gnu::noinline]] CertifiedLanes<T> part_couple(Couple<T> p, CertifiedLanes<T> answer) {
+  const Lanes<T> square = dot(p.across, p.across);
+  const LaneMask<T> crosses = square > Lanes<T>(kLeastSine<T> * kLeastSine<T>);
+  const LaneMask<T> in_line =
+      (square <= Lanes<T>(kNoSineSquare<T>)) & (dot(p.c, p.c) > Lanes<T>(T(0)));
+  const Vec3<T> across =
+      select(crosses, p.across * (Lanes<T>(T(1)) / sqrt(square)), any_across(p.axis[0]));
+  part_across(answer, p.witness, across, crosses | in_line);
+  return answer;
+}
+
 struct CapsuleCapsule {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
@@ -140,6 +154,9 @@ struct CapsuleCapsule {
     } else {
       CertifiedLanes<T> answer =
           answer_distance(p.witness, p.witness.scale * Lanes<T>(kShortest<T>));
+      if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
+        answer = part_couple(p, answer);
+      }
       answer.normal = select(p.swapped, -answer.normal, answer.normal);
       const Lanes<T> radius = select(p.swapped, p.radius[1], p.radius[0]);
       const Vec3<T> foot = select(p.swapped, p.axis[1] * p.feet.t, p.axis[0] * p.feet.s);

@@ -100,6 +100,29 @@ template <typename T>
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
+/// A unit vector at right angles to a unit vector (Duff et al., "Building an orthonormal basis,
+/// revisited", JCGT 2017).
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> any_across(const Vec3<T>& u) {
+  const Lanes<T> one(T(1));
+  const Lanes<T> sign = sign_or_one(u.z);
+  const Lanes<T> a = -one / (sign + u.z);
+  return {one + sign * u.x * u.x * a, sign * u.x * u.y * a, -(sign * u.x)};
+}
+
+/// Where cores that have no thickness share a point, as far as rounding can tell, and a direction
+/// across both is known, they are apart as soon along it as along any other.
+template <typename T>
+[[gnu::always_inline]] inline void part_across(CertifiedLanes<T>& answer,
+                                               const WitnessLanes<T>& witness,
+                                               const Vec3<T>& across, const LaneMask<T>& known) {
+  const Lanes<T> rounding = answer.error_bound;
+  const LaneMask<T> touch = known & (dot(witness.w, witness.w) <= rounding * rounding);
+  answer.normal = select(touch, across, answer.normal);
+  answer.error_bound = select(touch, rounding + rounding, rounding);
+  answer.certified |= certified_lanes(answer.distance, answer.error_bound, witness.scale, touch);
+}
+
 /// The same along a direction that is always known.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,

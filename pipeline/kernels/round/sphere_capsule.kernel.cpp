@@ -23,6 +23,9 @@ struct SphereCapsule {
       return answer_overlap(job, block, witness);
     } else {
       CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(kShortest<T>));
+      if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
+        part_across(answer, witness, any_across(axis), witness.scale > Lanes<T>(T(0)));
+      }
       return write_ball<L>(job, block, answer, ra, segment_feature(t, capsule.half_length));
     }
   }
