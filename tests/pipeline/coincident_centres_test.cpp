@@ -79,13 +79,14 @@ TEST(CoincidentCentres, of_what_is_turned_by_rounding_leave_narrow_bounds) {
   }
 }
 
-/// Spheres on the segments of capsules, and capsules whose segments are in one line or cross, in a
-/// frame that leans; with how far both are from parting, and whether lanes know the direction.
+/// Spheres on the segments of capsules, on triangles and as near to two sides of a box, and
+/// capsules whose segments are in one line or cross, in a frame that leans; with how deep they are.
 void put_on_axes(PairScene& scene, std::vector<double>& depth, Random& random) {
   const Quaternion lean = normalized({random.uniform(0.5, 1.0), random.uniform(-1.0, 1.0),
                                       random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
   const auto length = [&] { return random.uniform(0.5, 1.0); };
-  const auto put = [&](const auto& a, const auto& b, double along, const Quaternion& turn) {
+  const auto put = [&](const auto& a, const auto& b, double along, const Quaternion& turn,
+                       double deep) {
     put_together(a, b, 0.0, random, scene);
     Pose& first = scene.poses[scene.poses.size() - 2];
     Pose& second = scene.poses.back();
@@ -93,18 +94,24 @@ void put_on_axes(PairScene& scene, std::vector<double>& depth, Random& random) {
     std::copy_n(product(lean, turn).begin(), 4, second.orientation);
     const auto rotation = rotation_of(lean);
     for (int k = 0; k < 3; ++k) second.position[k] = rotation(k, 2) * along;
-    depth.push_back(a.radius + b.radius);
+    depth.push_back(deep);
   };
+  constexpr Quaternion kStraight{1.0, 0.0, 0.0, 0.0};
   const double half_turn = random.uniform(0.05, 1.5);
-  put(CapsuleShape{length(), length()}, SphereShape{length()}, random.uniform(-0.5, 0.5),
-      {1.0, 0.0, 0.0, 0.0});
-  put(CapsuleShape{length(), length()}, CapsuleShape{length(), length()}, random.uniform(0.01, 0.9),
-      {1.0, 0.0, 0.0, 0.0});
-  put(CapsuleShape{length(), length()}, CapsuleShape{length(), length()}, 0.0,
-      {std::cos(half_turn), std::sin(half_turn), 0.0, 0.0});
+  const SphereShape ball{length()};
+  const CapsuleShape capsule[2] = {{length(), length()}, {length(), length()}};
+  const double both = capsule[0].radius + capsule[1].radius;
+  put(capsule[0], ball, random.uniform(-0.5, 0.5), kStraight, capsule[0].radius + ball.radius);
+  put(capsule[0], capsule[1], random.uniform(0.01, 0.9), kStraight, both);
+  put(capsule[0], capsule[1], 0.0, {std::cos(half_turn), std::sin(half_turn), 0.0, 0.0}, both);
+  const double side = random.uniform(0.2, 0.4);
+  put(BoxShape{{side, side, 1.0}, 0.125}, ball, random.uniform(-0.5, 0.5), kStraight,
+      side + 0.125 + ball.radius);
+  put(TriangleShape{{{-1.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 1.0, 0.0}}}, ball, 0.0, kStraight,
+      ball.radius);
 }
 
-TEST(CoincidentCentres, of_segments_part_across_them_and_hardly_need_the_solver) {
+TEST(CoincidentCentres, of_round_shapes_part_across_others_and_hardly_need_the_solver) {
   Random random(3);
   PairScene scene;
   std::vector<double> depth;

@@ -13,6 +13,8 @@ struct BoxView {
   Lanes<T> distance;
   /// Unit, towards the box (inside: away from the nearest face), in the box's frame.
   Vec3<T> towards;
+  /// The same of the first of the nearest faces.
+  Vec3<T> face;
   /// How far the nearest of another direction is behind; the direction is unique if above zero.
   Lanes<T> lead;
 };
@@ -37,7 +39,7 @@ template <typename T>
   const Vec3<T> face{select(is_x, -sign_or_one(p.x), zero), select(is_y, -sign_or_one(p.y), zero),
                      select(is_z, -sign_or_one(p.z), zero)};
   const Lanes<T> beside = select(is_z, abs(p.z), select(is_y, abs(p.y), abs(p.x)));
-  return {select(outside, length, best), select(outside, w * (one / length), face),
+  return {select(outside, length, best), select(outside, w * (one / length), face), face,
           select(outside, length, min(best - second, beside))};
 }
 
@@ -84,10 +86,14 @@ struct SphereBox {
     } else {
       const SphereBoxSolution<T> r = solve_all(job, block);
       const Lanes<T> bound = r.scale * roundings;
-      const LaneMask<T> unique = r.view.lead > r.scale * Lanes<T>(kShortest<T>);
-      const CertifiedLanes<T> answer{r.distance, bound, r.axes.to_world(r.view.towards),
-                                     certified_lanes(r.distance, bound, r.scale, unique)};
-      return write_ball<L>(job, block, answer, r.sphere_radius, box_feature(r.view.towards));
+      // Of directions that are as good as each other, as far as rounding can tell, any will do.
+      const LaneMask<T> tied = r.view.lead <= bound;
+      const LaneMask<T> known = tied | (r.view.lead > r.scale * Lanes<T>(kShortest<T>));
+      const Vec3<T> towards = select(tied, r.view.face, r.view.towards);
+      const Lanes<T> widened = select(tied, bound + bound, bound);
+      const CertifiedLanes<T> answer{r.distance, widened, r.axes.to_world(towards),
+                                     certified_lanes(r.distance, widened, r.scale, known)};
+      return write_ball<L>(job, block, answer, r.sphere_radius, box_feature(towards));
     }
   }
 };

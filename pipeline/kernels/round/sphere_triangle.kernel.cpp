@@ -23,15 +23,16 @@ template <typename T>
 }
 
 /// The direction along which origin and triangle are farthest apart: the normal, or that of the
-/// closest point.
+/// closest point where this `is_away`.
 template <typename T>
 [[gnu::always_inline]] inline Gap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
-                                                const Lanes<T>& length) {
+                                                const Lanes<T>& length,
+                                                const LaneMask<T>& is_away) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const Vec3<T> n = w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n));
-  Gap<T> gap{along, n};
+  Gap<T> gap{select(is_away, along, Lanes<T>(-kNoDistance<T>)), n};
   const Gap<T> flat = gap_along(b, b.normal * (one / sqrt(b.normal_square)), zero);
   widen(gap, has_normal(b), flat.distance, flat.normal);
   return gap;
@@ -58,10 +59,14 @@ template <typename T>
   const TriangleView<T> view = view_triangle(triangle, axes.to_local(c));
   const NearestCandidate<T> nearest = nearest_point(view);
   const Lanes<T> length = sqrt(nearest.square);
-  const Gap<T> gap = widest_gap(view, nearest.w, length);
   const Lanes<T> radius = ra + triangle.rounding;
   const Lanes<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
-  return {{gap.distance - radius, length - radius, scale, length > scale * Lanes<T>(kShortest<T>)},
+  // On the triangle, as far as rounding can tell, its normal is the direction.
+  const LaneMask<T> is_away = length > scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
+  const Gap<T> gap = widest_gap(view, nearest.w, length, is_away);
+  const LaneMask<T> unique =
+      (length > scale * Lanes<T>(kShortest<T>)) | ((!is_away) & has_normal(view));
+  return {{gap.distance - radius, length - radius, scale, unique},
           axes.to_world(gap.normal),
           ra,
           nearest.feature};
