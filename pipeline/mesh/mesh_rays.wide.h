@@ -211,12 +211,10 @@ class RayWalk {
     if (mesh.box == nullptr) line_.set(rays, ray);
     set_last(limit);
     open_ = 0;
-    first_place_ = 0;
     // What is below a top level of few nodes is nearly as soon asked.
     const std::uint32_t top = mesh.levels - 1;
     if (top != 0 && mesh.count[top] == 2) return start_between_two(mesh, top - 1);
     if (top == 0 || mesh.count[top] != 1) return meet(mesh, top, 0);
-    first_place_ = 1;
     return meet(mesh, top - 1, 0);
   }
 
@@ -345,8 +343,7 @@ class RayWalk {
     last_key_ =
         __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, last_) | (kNumbers - 1U));
   }
-  /// Nodes that begin behind it wait no longer. Since it comes to a leaf, there are keys at every
-  /// place.
+  /// Nodes that begin behind it wait no longer.
   void set_limit(double limit) {
     set_last(limit);
     for (std::uint32_t rest = open_; rest != 0; rest &= rest - 1) {
@@ -437,6 +434,7 @@ class RayWalk {
     Floats key;
     const Mask16 hits = find(mesh, level, first_node, 0, key);
     if (hits == 0) return RayNode::none();
+    // When it is entered is asked only where triangles have boxes.
     if (mesh.box == nullptr && (hits & (hits - 1)) == 0) {
       return {level, first_node + first(hits), 0.0F};
     }
@@ -558,7 +556,6 @@ class RayWalk {
   /// Nodes that wait, in blocks of sixteen or fewer: one for each level but the top one, of which
   /// there may be two, the lowest level last. A bit is set of each of which some are left.
   std::uint32_t open_;
-  std::uint32_t first_place_;
   std::uint32_t level_[kMaxMeshLevels];
   std::uint32_t first_node_[kMaxMeshLevels];
   float gone_to_[kMaxMeshLevels];

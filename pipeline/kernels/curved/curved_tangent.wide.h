@@ -51,8 +51,6 @@ class TangentMinimum {
   static constexpr double kWidest = 0.7;
   static constexpr double kAside = 0x1p-10;
 
-  static double dot2(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1]; }
-
   /// At tangents of angles from where the search began.
   void look(const double* at) {
     for (int k = 0; k < 3; ++k) {

@@ -57,9 +57,6 @@ class ParallelDepth {
   /// Corners that are no more below the highest one touch, lengths being about 1.
   static constexpr double kLevel = 1e-13;
 
-  static double least_of(double a, double b) { return a < b ? a : b; }
-  static double dot2(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1]; }
-
   struct Reach {
     double low;
     double high;

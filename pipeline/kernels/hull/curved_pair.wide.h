@@ -82,6 +82,12 @@ inline constexpr double kLargestSize = 1e60;
 static inline double largest_of(double a, double b) {
   return a > b ? a : b;
 }
+static inline double least_of(double a, double b) {
+  return a < b ? a : b;
+}
+static inline double dot2(const double* a, const double* b) {
+  return a[0] * b[0] + a[1] * b[1];
+}
 
 /// Unit, across d and each other: the first as near as can be to the axis farthest from d.
 static inline void directions_across(const double* d, double (*across)[3]) {
@@ -128,7 +134,7 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
     case ShapeKind::ellipsoid: {
       const double* r = tables.ellipsoids[i].radius;
       const double most = largest_of(largest_of(r[0], r[1]), r[2]);
-      const double least = -largest_of(largest_of(-r[0], -r[1]), -r[2]);
+      const double least = least_of(least_of(r[0], r[1]), r[2]);
       for (int k = 0; k < 3; ++k) form.number[k] = r[k];
       form.number[3] = most > 0.0 ? least * (least / most) : 0.0;
       form.rounding = tables.ellipsoids[i].rounding + form.number[3];

@@ -100,6 +100,15 @@ template <typename T>
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
+/// The same along a direction that is always known.
+template <typename T>
+[[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,
+                                                             const Lanes<T>& distance,
+                                                             const Lanes<T>& bound,
+                                                             const Lanes<T>& scale) {
+  return {distance, bound, normal, certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)))};
+}
+
 /// A unit vector at right angles to a unit vector (Duff et al., "Building an orthonormal basis,
 /// revisited", JCGT 2017).
 template <typename T>
@@ -121,15 +130,6 @@ template <typename T>
   answer.normal = select(touch, across, answer.normal);
   answer.error_bound = select(touch, rounding + rounding, rounding);
   answer.certified |= certified_lanes(answer.distance, answer.error_bound, witness.scale, touch);
-}
-
-/// The same along a direction that is always known.
-template <typename T>
-[[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,
-                                                             const Lanes<T>& distance,
-                                                             const Lanes<T>& bound,
-                                                             const Lanes<T>& scale) {
-  return {distance, bound, normal, certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)))};
 }
 
 /// Writes the columns of levels distance and manifold. `foot` is the point of core a, `radius` its
