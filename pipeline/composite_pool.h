@@ -140,8 +140,8 @@ class WINNOW_API CompositePool final : public MidPhase {
   Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                 const PairMargins& margins, const Execution& execution,
                 PrimitivePairs& out) const override;
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
-              NarrowResult& result) const override;
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+              const Execution& execution, NarrowResult& result) const override;
   Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
                 const PairMargins& margins, const Execution& execution,
                 ContactRegions& out) const override;

@@ -21,7 +21,7 @@
 
 namespace winnow {
 
-/// Up to which distance pairs of bodies matter: one for all, or one for each.
+/// Up to which distance pairs matter, of bodies or of primitives: one for all, or one for each.
 struct PairMargins {
   /// The same for all pairs: a number does.
   PairMargins(double margin) noexcept : largest(margin) {}
@@ -30,9 +30,9 @@ struct PairMargins {
       : largest(most), each(margins) {}
 
   double largest;                ///< that of no pair is larger
-  std::span<const double> each;  ///< by pair of bodies; empty where all have the largest
+  std::span<const double> each;  ///< by pair; empty if all have the largest
 
-  /// That of a pair of bodies.
+  /// That of a pair.
   [[nodiscard]] double of(std::size_t pair) const noexcept {
     return each.empty() ? largest : each[pair];
   }
@@ -74,8 +74,6 @@ class WINNOW_API PrimitivePairs {
   Column<BodyPair> pairs;
   /// Pairs of primitives of pair i of bodies: [first[i], first[i + 1]).
   Column<std::uint32_t> first;
-  /// The largest that `expand` was given.
-  double margin = 0.0;
   /// What tasks write before it is put in order.
   Column<std::uint32_t> scratch;
 
@@ -182,9 +180,11 @@ class WINNOW_API MidPhase {
                         std::span<const BodyPair> pairs, const PairMargins& margins,
                         const Execution& execution, PrimitivePairs& out) const = 0;
   /// Gives contacts with internal edges of meshes the normal of the face, after the narrow phase
-  /// has answered `pairs` at level distance or manifold.
+  /// has answered `pairs` at level distance or manifold. `margins` are those of pairs of
+  /// primitives that the narrow phase was given.
   virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
-                      const Execution& execution, NarrowResult& result) const = 0;
+                      const PairMargins& margins, const Execution& execution,
+                      NarrowResult& result) const = 0;
   /// Merges the manifolds of each pair of bodies no farther apart than its margin into regions of
   /// contact: the deepest manifold (of equally deep ones the first in the order of `pairs`) and all
   /// whose normals are within 5 degrees of its own (kRegionCosine) are the first region, the

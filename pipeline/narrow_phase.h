@@ -37,6 +37,8 @@ struct NarrowOptions {
   double margin = 0.0;
   /// On whose threads; answers are the same on all.
   Execution execution = Execution::serial();
+  /// A margin for each pair in place of `margin`; empty: the same for all. Finite, >= 0.
+  std::span<const double> margins{};
 };
 
 /// What moves: body i has shape shapes[i] at poses[i].
@@ -85,9 +87,10 @@ class WINNOW_API NarrowPhase {
   NarrowPhase& operator=(NarrowPhase&&) = delete;
 
   /// Answers all pairs. `invalid_argument` for level `pairs`, a bad margin or a body that does not
-  /// exist, `size_mismatch` for spans of different lengths, `invalid_key` for an id that the pool
-  /// does not know, `invalid_pose` if a body of a pair has one (an orientation counts where its
-  /// shape is not a sphere), `out_of_memory`: then `result` is empty and `bad_body` tells.
+  /// exist, `size_mismatch` for spans of different lengths (`margins` may be empty), `invalid_key`
+  /// for an id that the pool does not know, `invalid_pose` if a body of a pair has one (an
+  /// orientation counts where its shape is not a sphere), `out_of_memory`: then `result` is empty
+  /// and `bad_body` tells.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
   /// The same with shapes that lie elsewhere than in a pool.

@@ -70,7 +70,7 @@ FlowTimes FlowPhases::run() {
   times.narrow = narrow.ms();
 
   const Stopwatch smoothing;
-  flow_.composites().smooth(flow_.shapes(), primitives_, execution_, parts_);
+  flow_.composites().smooth(flow_.shapes(), primitives_, options.margin, execution_, parts_);
   times.mid += smoothing.ms();
   return times;
 }

@@ -31,10 +31,10 @@ class TimedMidPhase final : public MidPhase {
     ms_ += clock.ms();
     return status;
   }
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
-              NarrowResult& result) const override {
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+              const Execution& execution, NarrowResult& result) const override {
     const Stopwatch clock;
-    inner_.smooth(shapes, pairs, execution, result);
+    inner_.smooth(shapes, pairs, margins, execution, result);
     ms_ += clock.ms();
   }
   Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,

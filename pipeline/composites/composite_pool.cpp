@@ -476,8 +476,9 @@ Status CompositePool::expand(const ShapePool& shapes, const Bodies& bodies,
 }
 
 void CompositePool::smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
-                           const Execution& execution, NarrowResult& result) const {
-  mid::smooth(shapes, pairs, execution, result);
+                           const PairMargins& margins, const Execution& execution,
+                           NarrowResult& result) const {
+  mid::smooth(shapes, pairs, margins, execution, result);
 }
 
 Status CompositePool::reduce(const ShapePool& shapes, const PrimitivePairs& pairs,

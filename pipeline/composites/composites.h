@@ -245,8 +245,8 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
 /// edges are active is known for the front of a surface only; on its back concave edges, which look
 /// convex from there, are taken for internal ones too, so that a floor is flat whichever way its
 /// triangles are wound.
-void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
-            NarrowResult& result) noexcept;
+void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+            const Execution& execution, NarrowResult& result) noexcept;
 
 /// See MidPhase::reduce.
 Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,

@@ -227,7 +227,6 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
               std::span<const BodyPair> pairs, const PairMargins& margins,
               const Execution& execution, PrimitivePairs& out) {
   out.clear();
-  out.margin = margins.largest;
   if (pairs.empty() || all == nullptr) {
     if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;
     std::fill(out.first.begin(), out.first.end(), 0U);

@@ -159,11 +159,16 @@ constexpr std::size_t kTasksPerWave = 16;
 constexpr double kMostDeeper = 4.0;
 
 /// Writes to a NarrowResult, in waves of chunks: room for the contacts of a wave is made before its
-/// tasks run, and what they do not need of it is taken back.
+/// tasks write, and what they do not need of it is taken back.
 class Smoothing {
  public:
-  Smoothing(const ShapePool& shapes, const PrimitivePairs& pairs, NarrowResult& result) noexcept
-      : tables_(pairs.tables(shapes)), pairs_(pairs), result_(result), columns_(result.columns()) {}
+  Smoothing(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+            NarrowResult& result) noexcept
+      : tables_(pairs.tables(shapes)),
+        pairs_(pairs),
+        margins_(margins),
+        result_(result),
+        columns_(result.columns()) {}
 
   void run(const Execution& execution) noexcept;
 
@@ -185,22 +190,25 @@ class Smoothing {
     std::size_t base = 0;
     std::size_t used = 0;
     bool has_room = false;
-    /// What is left to be clipped once there is room.
+    /// To be clipped once there is room.
     std::bitset<kAnswersPerTask> is_deep{};
+    /// To be dropped.
+    std::bitset<kAnswersPerTask> is_gone{};
     /// How deep they may become.
     std::array<float, kAnswersPerTask> most{};
   };
-  /// Primitive pairs of one pair of bodies, and how deep the deepest of them is.
+  /// Answers [first, end) about one pair of bodies, of one pair of kinds, and the depth of the
+  /// deepest before smoothing.
   struct Together {
-    std::uint32_t first = 0;
-    std::uint32_t end = 0;
+    std::size_t first = 0;
+    std::size_t end = 0;
     double deepest = 0.0;
   };
 
   void run_wave(const Execution& execution, std::span<Chunk> wave) noexcept;
   void look(Chunk& chunk) noexcept;
-  void meet(std::size_t i, Together& bodies) const noexcept;
-  void clip_all(Chunk& chunk) noexcept;
+  void find_together(std::size_t i, Together& bodies) const noexcept;
+  void finish(Chunk& chunk) noexcept;
   void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Found find(std::size_t i) const noexcept;
@@ -225,11 +233,17 @@ class Smoothing {
   [[nodiscard]] const BodyPair& pair(std::size_t i) const noexcept {
     return pairs_.pairs[result_.pair_of(i)];
   }
+  [[nodiscard]] double margin(std::size_t i) const noexcept {
+    return margins_.of(result_.pair_of(i));
+  }
 
   ShapeTables tables_;
   const PrimitivePairs& pairs_;
+  const PairMargins& margins_;
   const NarrowResult& result_;
   NarrowColumns columns_;
+  /// The answers that the last wave's end parts from each other.
+  Together spanning_;
 };
 
 void Smoothing::run(const Execution& execution) noexcept {
@@ -257,22 +271,24 @@ void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noex
     const bool has_room = room == from || columns_.contacts.grow(room);
     for (Chunk& chunk : wave) chunk.has_room = has_room;
   }
-  execution.for_each(wave.size(), [&](std::size_t k) { clip_all(wave[k]); });
+  // The next wave finds smoothed distances in this one.
+  if (wave.back().end < result_.size()) find_together(wave.back().end, spanning_);
+  execution.for_each(wave.size(), [&](std::size_t k) { finish(wave[k]); });
   if (has_contacts()) close_gaps(wave, from);
 }
 
-// Everything that needs no room, and how much the rest needs.
+// Everything that needs no room and changes no distance, and how much room the rest needs.
 void Smoothing::look(Chunk& chunk) noexcept {
-  Together bodies;
+  Together bodies = spanning_;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     const Found found = find(i);
-    if (found.is_gone) drop(i);
+    if (found.is_gone) chunk.is_gone.set(i - chunk.begin);
     if (found.contact == EdgeContact::real) continue;
     set_normal(i, found.normal);
     if (found.contact == EdgeContact::nearly_face) {
       columns_.error_bound[i] += found.off;
     } else if (found.is_deep) {
-      meet(i, bodies);
+      find_together(i, bodies);
       chunk.is_deep.set(i - chunk.begin);
       chunk.most[i - chunk.begin] = static_cast<float>(bodies.deepest);
       chunk.used += kManifoldPoints;
@@ -282,33 +298,35 @@ void Smoothing::look(Chunk& chunk) noexcept {
   }
 }
 
-// Finds the deepest of the answers about the same bodies and kinds, which are next to each other.
-// Smoothing makes none deeper, so that it does not matter which have been smoothed already.
-void Smoothing::meet(std::size_t i, Together& bodies) const noexcept {
+// Finds the answers about the same bodies and kinds as answer i, which lie next to each other. The
+// run bounds them: which kinds come next depends on other bodies.
+void Smoothing::find_together(std::size_t i, Together& bodies) const noexcept {
+  if (i >= bodies.first && i < bodies.end) return;
+  bodies = {i, i + 1, -columns_.distance[i]};
   const std::uint32_t at = result_.pair_of(i);
-  if (at >= bodies.first && at < bodies.end) return;
   const Column<std::uint32_t>& first = pairs_.first;
   const std::uint32_t* const next = std::upper_bound(first.begin(), first.end(), at);
-  bodies = {at, at + 1, -columns_.distance[i]};
   if (next == first.begin() || next == first.end()) return;
-  bodies.first = next[-1];
-  bodies.end = next[0];
-  const auto is_of = [&](std::size_t k) {
-    return result_.pair_of(k) >= bodies.first && result_.pair_of(k) < bodies.end;
+  const auto take = [&](std::size_t k) {
+    const std::uint32_t pair = result_.pair_of(k);
+    if (pair < next[-1] || pair >= next[0]) return false;
+    bodies.deepest = std::max(bodies.deepest, -columns_.distance[k]);
+    return true;
   };
-  for (std::size_t k = i; k < result_.size() && is_of(k); ++k) {
-    bodies.deepest = std::max(bodies.deepest, -columns_.distance[k]);
-  }
-  for (std::size_t k = i; k-- > 0 && is_of(k);) {
-    bodies.deepest = std::max(bodies.deepest, -columns_.distance[k]);
-  }
+  const std::span<const NarrowRun> runs = result_.runs();
+  const auto after = std::ranges::upper_bound(runs, i, {}, &NarrowRun::first);
+  const std::size_t begin = after[-1].first;
+  const std::size_t end = begin + after[-1].count;
+  while (bodies.end < end && take(bodies.end)) ++bodies.end;
+  while (bodies.first > begin && take(bodies.first - 1)) --bodies.first;
 }
 
-void Smoothing::clip_all(Chunk& chunk) noexcept {
-  if (chunk.is_deep.none()) return;
+// Distances change only here: no other task reads them.
+void Smoothing::finish(Chunk& chunk) noexcept {
+  if (chunk.is_deep.none() && chunk.is_gone.none()) return;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-    if (!chunk.is_deep.test(i - chunk.begin)) continue;
-    clip(chunk, i);
+    if (chunk.is_gone.test(i - chunk.begin)) drop(i);
+    if (chunk.is_deep.test(i - chunk.begin)) clip(chunk, i);
   }
 }
 
@@ -335,7 +353,7 @@ void Smoothing::close_gaps(std::span<Chunk> wave, std::size_t from) noexcept {
 
 Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   Found found;
-  if (!(columns_.distance[i] <= pairs_.margin)) return found;
+  if (!(columns_.distance[i] <= margin(i))) return found;
   if (has_contacts() && columns_.contact_count[i] == 0) return found;
   // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
   const BodyPair& bodies = pair(i);
@@ -403,8 +421,8 @@ bool Smoothing::turn_to_front(std::size_t i, Found& found) const noexcept {
 }
 
 void Smoothing::drop(std::size_t i) noexcept {
-  columns_.distance[i] = std::max(
-      columns_.distance[i], std::nextafter(pairs_.margin, std::numeric_limits<double>::max()));
+  columns_.distance[i] =
+      std::max(columns_.distance[i], std::nextafter(margin(i), std::numeric_limits<double>::max()));
   if (has_contacts()) columns_.contact_count[i] = 0;
 }
 
@@ -461,7 +479,7 @@ void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
                        is_mesh_triangle(bodies.b)};
   const double most = kMostDeeper * static_cast<double>(chunk.most[i - chunk.begin]);
   FaceContacts found;
-  if (!clip_to_face(faces, normal, pairs_.margin, -columns_.distance[i], most, found)) return;
+  if (!clip_to_face(faces, normal, margin(i), -columns_.distance[i], most, found)) return;
   columns_.distance[i] = -found.depth;
   columns_.error_bound[i] += found.noise;
   if (has_contacts()) return take(chunk, i, {found.points, found.count});
@@ -492,9 +510,10 @@ void Smoothing::take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> 
 
 }  // namespace
 
-void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
-            NarrowResult& result) noexcept {
-  if (result.level() != ContactLevel::boolean) Smoothing(shapes, pairs, result).run(execution);
+void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+            const Execution& execution, NarrowResult& result) noexcept {
+  if (result.level() == ContactLevel::boolean) return;
+  Smoothing(shapes, pairs, margins, result).run(execution);
 }
 
 }  // namespace winnow::mid

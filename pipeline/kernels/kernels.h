@@ -41,6 +41,8 @@ struct NarrowJob {
   const ShapeTables* tables;
   /// Contacts are made of pairs that are no farther apart.
   double margin;
+  /// A margin for each pair, readable up to a multiple of 16; null: `margin` for all.
+  const double* margins;
 
   /// Level boolean: 1 where the shapes share a point.
   std::uint8_t* overlap;
@@ -65,6 +67,10 @@ struct NarrowJob {
   /// Room for `count` indices of pairs that the kernel could not certify. Nothing of theirs needs
   /// to have been written.
   std::uint32_t* uncertified;
+
+  [[nodiscard]] double margin_of(std::uint32_t pair) const {
+    return margins == nullptr ? margin : margins[pair];
+  }
 };
 
 /// Answers a job; returns the number of uncertified pairs.

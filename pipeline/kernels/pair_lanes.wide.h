@@ -42,6 +42,17 @@ template <typename T, typename Body>
   }
 }
 
+/// The margin of each pair of a block.
+template <typename T>
+[[gnu::always_inline]] inline Lanes<T> margins_of(const NarrowJob& job, const PairBlock<T>& block) {
+  if (job.margins == nullptr) return Lanes<T>(static_cast<T>(job.margin));
+  alignas(64) T each[Lanes<T>::kCount];
+  for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+    each[lane] = static_cast<T>(job.margins[block.first + static_cast<std::uint32_t>(lane)]);
+  }
+  return Lanes<T>::load(each);
+}
+
 /// A plain struct of doubles as an array of them.
 template <typename Plain>
 [[gnu::always_inline]] inline const double* numbers(const Plain& plain) {

@@ -453,7 +453,7 @@ void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
       continue;
     }
     const PairAnswer answer = solve_pair(*job.tables, job.shapes[pair.a], a, job.shapes[pair.b], b,
-                                         level, job.margin, outcome.solver);
+                                         level, job.margin_of(i), outcome.solver);
     write_answer(job, level, i, answer);
   }
   outcome.contacts = job.contacts.size;
@@ -495,6 +495,15 @@ struct Call {
   std::uint32_t& bad_body;
 
   void answer(Chunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
+    // Not set if all pairs have one margin: that would take as long as some answers do.
+    double margins[kJobPairs];
+    if (!options.margins.empty()) {
+      for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
+        margins[i] = options.margins[result.pair_of(chunk.first + i)];
+      }
+      std::fill(margins + chunk.job.count, margins + kJobPairs, 0.0);
+      chunk.job.margins = margins;
+    }
     answer_job(chunk.job, options.level, chunk.kernel, chunk.outcome);
     if (!any_mirrored) return;
     for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
@@ -564,7 +573,9 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
 
 Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   const NarrowOptions& options = call.options;
-  if (call.bodies.shapes.size() != call.bodies.poses.size()) return Status::size_mismatch;
+  const bool are_matched = call.bodies.shapes.size() == call.bodies.poses.size() &&
+                           (options.margins.empty() || options.margins.size() == call.pairs.size());
+  if (!are_matched) return Status::size_mismatch;
   if (!can_be_asked(options)) return Status::invalid_argument;
   const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
                                      result.order_, result.runs_, call.bad_body);
@@ -609,6 +620,7 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.has_many_bodies = call.bodies.poses.size() > kManyBodies;
   job.tables = &call.tables;
   job.margin = call.options.margin;
+  job.margins = nullptr;
   job.overlap = offset(result.overlap_.data(), first);
   job.beyond_doubt = false;
   job.distance = offset(result.distance_.data(), first);

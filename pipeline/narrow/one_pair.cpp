@@ -24,7 +24,8 @@ class OnePair {
     job_.poses = poses_;
     job_.has_many_bodies = false;
     job_.tables = &tables;
-    job_.margin = options.margin;
+    job_.margin = options.margins.empty() ? options.margin : options.margins[0];
+    job_.margins = nullptr;
     job_.beyond_doubt = false;
     job_.uncertified = &uncertified_;
   }
@@ -39,7 +40,7 @@ class OnePair {
     if (!poses_[0].is_valid() || !poses_[1].is_valid()) return false;
     SolverCounts counts;
     answer = solve_pair(*job_.tables, shapes_[0], poses_[0], shapes_[1], poses_[1], options_.level,
-                        options_.margin, counts);
+                        job_.margin, counts);
     return true;
   }
 
@@ -115,6 +116,7 @@ Status collide(const ShapePool& shapes, ShapeId a, const Pose& pose_a, ShapeId b
 
 Status collide(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                const Pose& pose_b, const NarrowOptions& options, PairAnswer& answer) noexcept {
+  if (options.margins.size() > 1) return Status::size_mismatch;
   if (!can_be_asked(options)) return Status::invalid_argument;
   if (!holds(tables, a) || !holds(tables, b)) return Status::invalid_key;
   if (!is_mirrored(a, b)) {

@@ -5,6 +5,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include "pipeline/kernels/kernels.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace winnow {
@@ -12,7 +13,8 @@ namespace winnow {
 [[nodiscard]] inline bool can_be_asked(const NarrowOptions& options) noexcept {
   const bool has_level =
       options.level >= ContactLevel::boolean && options.level <= ContactLevel::manifold;
-  return has_level && std::isfinite(options.margin) && options.margin >= 0.0;
+  const auto is_length = [](double margin) { return std::isfinite(margin) && margin >= 0.0; };
+  return has_level && is_length(options.margin) && std::ranges::all_of(options.margins, is_length);
 }
 
 [[nodiscard]] inline bool holds(const ShapeTables& tables, ShapeId shape) noexcept {

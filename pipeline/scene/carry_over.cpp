@@ -95,25 +95,27 @@ bool Collision::decide() {
 bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
-  const std::uint32_t since = c.clock;
+  CarriedPair& carried = c.carried[record];
+  if (carried.limit == CarriedPair::kNever) return false;
+  const std::uint32_t shown = c.records.shown_of(record);
+  const std::uint32_t since = has_slept(shown) ? carried.looked_at : c.clock;
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
   if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
-  CarriedPair& carried = c.carried[record];
-  const std::uint32_t shown = c.records.shown_of(record);
   const Pose& a = scene_.pose[bodies.a];
   const Pose& b = scene_.pose[bodies.b];
   const Pose now = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
   const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
                        static_cast<double>(carried.drift);
-  if (!(moved <= carried.limit)) return false;
+  const auto limit = static_cast<double>(carried.limit);
+  if (!(moved <= limit)) return false;
   if (shown == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
       turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
   if (moved + turned == 0.0) return true;
-  if (!(moved + turned <= carried.limit)) {
+  if (!(moved + turned <= limit)) {
     const double drift = static_cast<double>(carried.radius_a) * kTurnError;
-    if (!(moved + drift <= carried.limit)) return false;
+    if (!(moved + drift <= limit)) return false;
     carried.drift = round_up(static_cast<double>(carried.drift) + drift);
     turn(carried, shown, unit.orientation);
   }
@@ -143,6 +145,12 @@ void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&t
     }
   }
   std::copy_n(to, 4, carried.turn);
+}
+
+float Collision::carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
+  const double carry_over = scene_.options.carry_over;
+  const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : carry_over;
+  return round_down(origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over));
 }
 
 // How much farther than the margin a pair that does not touch is at least; of composite shapes that
@@ -187,9 +195,7 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   std::copy_n(with_unit_turn(a).orientation, 4, carried.turn);
   carried.radius = round_up(std::min(radius_a, radius_b));
   carried.radius_a = round_up(radius_a);
-  const double carry_over = scene_.options.carry_over;
-  const double clear = shown == kNoEntry ? clearance(pair) : carry_over;
-  carried.limit = origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over);
+  carried.limit = is_carried_over(bodies) ? carry_limit(pair, shown) : CarriedPair::kNever;
   c.carried[pair] = carried;
 }
 

@@ -169,8 +169,8 @@ bool Collision::list_pairs() {
 namespace {
 
 [[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options, ContactLevel level,
-                                           double margin) noexcept {
-  return {level, options.tier, margin, options.execution};
+                                           const PairMargins& margins) noexcept {
+  return {level, options.tier, margins.largest, options.execution, margins.each};
 }
 
 // Where the answer about each pair of the input lies.
@@ -185,11 +185,13 @@ namespace {
 
 Status Collision::answer_convex() {
   if (level_ == ContactLevel::pairs || scene_.convex.empty()) return Status::ok;
+  PairMargins margins = 0.0;
+  if (!find_margins(scene_.convex, 0.0, margins)) return Status::out_of_memory;
   const Status status = scene_.narrow.collide(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.convex.data(), scene_.convex.size()},
-      narrow_options(scene_.options, level_, widest_gap(scene_.convex)), scene_.answers);
+      {scene_.convex.data(), scene_.convex.size()}, narrow_options(scene_.options, level_, margins),
+      scene_.answers);
   if (status != Status::ok) return status;
   scene_.statistics.convex += scene_.narrow.statistics();
   trim_convex();
@@ -203,21 +205,25 @@ Status Collision::answer_composite() {
   if (scene_.parts == nullptr) return Status::out_of_memory;
   PrimitivePairs& parts = scene_.parts->pairs;
   // What is farther apart than this cannot touch before its pair is made anew.
-  double reach = 0.0;
-  if (!find_gaps(carries_ ? options.carry_over : 0.0, reach)) return Status::out_of_memory;
+  PairMargins margins = 0.0;
+  if (!find_margins(scene_.composite, carries_ ? options.carry_over : 0.0, margins)) {
+    return Status::out_of_memory;
+  }
   Status status = options.composites->expand(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.composite.data(), scene_.composite.size()}, margins(reach), options.execution, parts);
+      {scene_.composite.data(), scene_.composite.size()}, margins, options.execution, parts);
   if (status != Status::ok) return status;
+  if (!find_part_margins(margins)) return Status::out_of_memory;
   status = scene_.parts->narrow.collide(
       parts.tables(scene_.shapes),
       {{parts.shapes.data(), parts.shapes.size()}, {parts.poses.data(), parts.poses.size()}},
-      {parts.pairs.data(), parts.pairs.size()},
-      narrow_options(options, level_, widest_gap(scene_.composite)), scene_.parts->answers);
+      {parts.pairs.data(), parts.pairs.size()}, narrow_options(options, level_, margins),
+      scene_.parts->answers);
   if (status != Status::ok) return status;
   if (level_ >= ContactLevel::distance) {
-    options.composites->smooth(scene_.shapes, parts, options.execution, scene_.parts->answers);
+    options.composites->smooth(scene_.shapes, parts, margins, options.execution,
+                               scene_.parts->answers);
   }
   scene_.statistics.parts += scene_.parts->narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();
@@ -232,11 +238,11 @@ Status Collision::answer_composite() {
 
 Status Collision::reduce_composite() {
   if (!reduces_) return Status::ok;
-  double widest = 0.0;
-  if (!find_gaps(0.0, widest)) return Status::out_of_memory;
+  PairMargins margins = 0.0;
+  if (!find_margins(scene_.composite, 0.0, margins)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
   return options.composites->reduce(scene_.shapes, scene_.parts->pairs, scene_.parts->answers,
-                                    margins(widest), options.execution, scene_.parts->regions);
+                                    margins, options.execution, scene_.parts->regions);
 }
 
 }  // namespace winnow

@@ -45,6 +45,11 @@ class Collision {
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
+  /// True if a pair at this place among those of the last frame and those that slept is one of the
+  /// latter, which come last.
+  [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
+    return shown >= shown_last_ && shown != kNoEntry;
+  }
   [[nodiscard]] bool note_bodies();
 
   // Contacts that are carried over (carry_over.cpp).
@@ -53,6 +58,7 @@ class Collision {
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
   void turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept;
   void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
+  [[nodiscard]] float carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
   // Where contacts were (contact_history.cpp).
@@ -73,16 +79,12 @@ class Collision {
   [[nodiscard]] Status reduce_composite();
 
   // Offsets of bodies (contact_offsets.cpp).
-  struct Asked;
   void find_limit() noexcept;
-  /// Of composite pairs, each `more` than it is: none without offsets. False if memory is refused.
-  [[nodiscard]] bool find_gaps(double more, double& widest);
-  [[nodiscard]] PairMargins margins(double widest) const noexcept {
-    if (!scene_.has_offsets()) return widest;
-    return {widest, {scene_.gaps.data(), scene_.gaps.size()}};
-  }
-  [[nodiscard]] double widest_gap(const Column<BodyPair>& pairs) const noexcept;
-  void trim(const Asked& asked, std::uint32_t at, const NarrowColumns& answers) noexcept;
+  /// The gaps of pairs of bodies, each grown by `more`. False if memory is refused.
+  [[nodiscard]] bool find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins);
+  /// The same for the pairs of parts, not grown.
+  [[nodiscard]] bool find_part_margins(PairMargins& margins);
+  void trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void trim_convex() noexcept;
   void trim_parts() noexcept;
   void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
@@ -137,7 +139,7 @@ class Collision {
   void write_composite(std::uint32_t pair, const Place& to) noexcept;
   /// What is told of a pair's place in the last frame: none that slept was shown in it.
   [[nodiscard]] std::uint32_t place_before(std::uint32_t shown) const noexcept {
-    return shown < shown_last_ ? shown : kNoContact;
+    return has_slept(shown) ? kNoContact : shown;
   }
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                       Place& to) noexcept;

@@ -157,12 +157,17 @@ struct KnownBodies {
 
 /// With carry-over, of every pair.
 struct CarriedPair {
+  /// The limit of a pair that is made anew in the next frame, whether it moves or not.
+  static constexpr float kNever = -1.0F;
+
   /// When its manifolds were made: b in the frame of a, or a in that of b if `from_b`.
   Pose relative;
   /// Orientation of a to which normals and points belong.
   double turn[4];
   /// How far it may have moved against `relative` before it must be made anew.
-  double limit;
+  float limit;
+  /// While it sleeps and when it wakes: the call in which it was last looked at.
+  std::uint32_t looked_at;
   /// Of the body that is looked at from the other one; and of body a.
   float radius;
   float radius_a;

@@ -1,11 +1,11 @@
-// Contact and rest offsets of bodies. The narrow phase is asked about all pairs up to the widest
-// gap that any of them has; what is beyond a pair's own gap is then taken out, and what is left is
-// measured from where the bodies rest. None of this runs in a scene without offsets.
+// Contact and rest offsets of bodies. Each pair has a gap of its own, which is its margin in the
+// narrow phase; contacts within it are then measured from where the bodies rest. None of this runs
+// in a scene without offsets.
 
 #include "core/hooks/log.h"
 #include "core/sort/stretches.h"
+#include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
-#include "pipeline/solver/solver.h"
 
 #include <cmath>
 #include <limits>
@@ -17,35 +17,6 @@ constexpr double kLargestLength = std::numeric_limits<double>::max();
 constexpr std::size_t kOffsetPairsPerStretch = 256;
 /// Of a sum of two doubles.
 constexpr double kSumError = 0x1p-52;
-/// What rounding to float does to a depth, as a share; and to the product of two unit normals.
-constexpr double kDepthError = 1e-6;
-constexpr double kSameDirection = 1.0 - 1e-9;
-
-/// The points of one manifold in the columns of all.
-struct ManifoldPoints {
-  ContactColumns& columns;
-  std::uint32_t first;
-
-  void move(std::uint32_t from, std::uint32_t to) const noexcept {
-    for (Column<float>& column : columns.position) column[first + to] = column[first + from];
-    columns.depth[first + to] = columns.depth[first + from];
-    columns.feature[first + to] = columns.feature[first + from];
-  }
-  void put(std::uint32_t to, const ContactPoint& point) const noexcept {
-    for (int k = 0; k < 3; ++k) columns.position[k][first + to] = point.position[k];
-    columns.depth[first + to] = point.depth;
-    columns.feature[first + to] = point.feature;
-  }
-  /// Keeps those no farther apart than `gap`, and returns how many.
-  [[nodiscard]] std::uint32_t keep_within(double gap, std::uint32_t count) const noexcept {
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const bool is_near = -static_cast<double>(columns.depth[first + i]) <= gap;
-      if (is_near) move(i, kept++);
-    }
-    return kept;
-  }
-};
 
 /// The depth and place of a point once the surfaces of both have moved out by their rest offsets.
 void shift(float& depth, float* const (&position)[3], const double (&normal)[3],
@@ -97,8 +68,8 @@ double SceneState::gap_of(const BodyPair& pair) const noexcept {
   return std::min(options.margin + own, kLargestLength);
 }
 
-// Which pairs touch is told by one limit for all: what is beyond its own gap is put as far beyond
-// the limit.
+// One limit for all decides which pairs touch: the distance of a pair that is beyond its own gap is
+// put as far beyond the limit.
 void Collision::find_limit() noexcept {
   limit_ = scene_.options.margin;
   if (!scene_.has_offsets()) return;
@@ -111,58 +82,42 @@ void Collision::find_limit() noexcept {
   }
 }
 
-bool Collision::find_gaps(double more, double& widest) {
-  widest = std::min(scene_.options.margin + more, kLargestLength);
+bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins) {
+  margins = std::min(scene_.options.margin + more, kLargestLength);
   if (!scene_.has_offsets()) return true;
-  const Column<BodyPair>& pairs = scene_.composite;
-  if (!scene_.gaps.resize(pairs.size())) return false;
+  Column<double>& gaps = scene_.gaps;
+  if (!resize_steadily(gaps, pairs.size())) return false;
+  double largest = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    scene_.gaps[i] = std::min(scene_.gap_of(pairs[i]) + more, kLargestLength);
-    widest = std::max(widest, scene_.gaps[i]);
+    gaps[i] = std::min(scene_.gap_of(pairs[i]) + more, kLargestLength);
+    largest = std::max(largest, gaps[i]);
   }
+  margins = {largest, {gaps.data(), gaps.size()}};
   return true;
 }
 
-double Collision::widest_gap(const Column<BodyPair>& pairs) const noexcept {
-  double widest = scene_.options.margin;
-  if (!scene_.has_offsets()) return widest;
-  for (const BodyPair& pair : pairs) widest = std::max(widest, scene_.gap_of(pair));
-  return widest;
+bool Collision::find_part_margins(PairMargins& margins) {
+  margins = scene_.options.margin;
+  if (!scene_.has_offsets()) return true;
+  const PrimitivePairs& parts = scene_.parts->pairs;
+  Column<double>& gaps = scene_.parts->gaps;
+  if (!resize_steadily(gaps, parts.pairs.size())) return false;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < scene_.composite.size(); ++i) {
+    const double gap = scene_.gap_of(scene_.composite[i]);
+    std::fill(gaps.begin() + parts.first[i], gaps.begin() + parts.first[i + 1], gap);
+    largest = std::max(largest, gap);
+  }
+  margins = {largest, {gaps.data(), gaps.size()}};
+  return true;
 }
 
-/// What an answer is about.
-struct Collision::Asked {
-  const ShapeTables& tables;
-  ShapeId shape[2];
-  const Pose* pose[2];
-  /// Of the two bodies.
-  double gap;
-};
-
-// Points within the gap may have given way to some beyond: such a manifold is made anew.
-void Collision::trim(const Asked& asked, std::uint32_t at, const NarrowColumns& answers) noexcept {
+void Collision::trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept {
   double& distance = answers.distance[at];
-  const double beyond = distance - asked.gap;
-  if (beyond > 0.0) {
-    distance =
-        std::min(std::max(limit_ + beyond, std::nextafter(limit_, kLargestLength)), kLargestLength);
-    return;
-  }
-  if (level_ != ContactLevel::manifold) return;
-  const ManifoldPoints points{answers.contacts, answers.contact_first[at]};
-  std::uint32_t& count = answers.contact_count[at];
-  const std::uint32_t room = count;
-  count = points.keep_within(asked.gap * (1.0 + kDepthError), room);
-  if (count == room) return;
-  SolverCounts counts;
-  const PairAnswer again = solve_pair(asked.tables, asked.shape[0], *asked.pose[0], asked.shape[1],
-                                      *asked.pose[1], ContactLevel::manifold, asked.gap, counts);
-  double product = 0.0;
-  for (int k = 0; k < 3; ++k) product += again.normal[k] * answers.normal[k][at];
-  // Where the normal has been smoothed, its manifold was made along another one.
-  if (product < kSameDirection) return;
-  count = std::min(again.contact_count, room);
-  for (std::uint32_t i = 0; i < count; ++i) points.put(i, again.contacts[i]);
+  const double beyond = distance - gap;
+  if (!(beyond > 0.0)) return;
+  distance =
+      std::min(std::max(limit_ + beyond, std::nextafter(limit_, kLargestLength)), kLargestLength);
 }
 
 void Collision::trim_convex() noexcept {
@@ -171,34 +126,20 @@ void Collision::trim_convex() noexcept {
   for_stretches(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerStretch,
                 [&](std::size_t first, std::size_t end) {
                   for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
-                    const BodyPair& pair = scene_.convex[i];
-                    const Asked asked{scene_.shapes.tables(),
-                                      {scene_.shape[pair.a], scene_.shape[pair.b]},
-                                      {&scene_.pose[pair.a], &scene_.pose[pair.b]},
-                                      scene_.gap_of(pair)};
-                    trim(asked, i, answers);
-                    rest(pair, i, answers);
+                    trim(scene_.gaps[i], i, answers);
+                    rest(scene_.convex[i], i, answers);
                   }
                 });
 }
 
 void Collision::trim_parts() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const PrimitivePairs& parts = scene_.parts->pairs;
-  const ShapeTables tables = parts.tables(scene_.shapes);
+  const PartAnswers& parts = *scene_.parts;
   const NarrowColumns answers = scene_.parts->answers.columns();
-  for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
+  for_stretches(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerStretch,
                 [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    const double gap = scene_.gap_of(scene_.composite[i]);
-                    for (std::uint32_t k = parts.first[i]; k < parts.first[i + 1]; ++k) {
-                      const BodyPair& of = parts.pairs[k];
-                      const Asked asked{tables,
-                                        {parts.shapes[of.a], parts.shapes[of.b]},
-                                        {&parts.poses[of.a], &parts.poses[of.b]},
-                                        gap};
-                      trim(asked, scene_.parts->slot[k], answers);
-                    }
+                  for (std::size_t k = first; k < end; ++k) {
+                    trim(parts.gaps[k], parts.slot[k], answers);
                   }
                 });
 }
@@ -245,6 +186,7 @@ void Collision::rest_parts() noexcept {
 
 void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
   const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
+  if (rest[0] == 0.0 && rest[1] == 0.0) return;
   ContactRegions& all = scene_.parts->regions;
   for (ContactRegion& region : std::span(all.regions.data() + all.first[pair], all.count[pair])) {
     region.error_bound += sum_error(region.distance, rest);

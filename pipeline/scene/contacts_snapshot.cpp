@@ -19,7 +19,7 @@ namespace winnow {
 namespace {
 
 constexpr std::string_view kContactsMagic = "WINNOWCT";
-constexpr std::uint32_t kContactsVersion = 1;
+constexpr std::uint32_t kContactsVersion = 2;
 
 /// A record as it is saved.
 struct SavedRecord {
@@ -115,6 +115,7 @@ class ContactsWriter {
       out_.put_bytes(&one.relative, sizeof one.relative);
       out_.put_bytes(one.turn, sizeof one.turn);
       out_.put(one.limit);
+      out_.put(one.looked_at);
       out_.put(one.radius);
       out_.put(one.radius_a);
       out_.put(one.drift);
@@ -265,7 +266,8 @@ class ContactsReader {
     for (CarriedPair& one : carried) {
       (void)in_.get_bytes(&one.relative, sizeof one.relative);
       (void)in_.get_bytes(one.turn, sizeof one.turn);
-      one.limit = in_.get<double>();
+      one.limit = in_.get<float>();
+      one.looked_at = in_.get<std::uint32_t>();
       one.radius = in_.get<float>();
       one.radius_a = in_.get<float>();
       one.drift = in_.get<float>();

@@ -138,7 +138,10 @@ bool Collision::put_to_sleep() {
     c.shown_again[shown] = 1;
     room += c.before.extent(shown);
     slept.push_back_within_room(order, shown);
-    if (carries_) (void)c.dormant_carried.push_back(c.carried_before[r]);
+    if (!carries_) continue;
+    CarriedPair& carried = c.carried_before[r];
+    if (!has_slept(shown)) carried.looked_at = c.clock;
+    (void)c.dormant_carried.push_back(carried);
   }
   if (room.pair == 0) return true;
   c.dormant.with_parts = c.frame.with_parts;
@@ -161,14 +164,14 @@ bool Collision::put_to_sleep() {
 bool Collision::list_ended() {
   ContactsState& c = contacts_;
   c.ended.clear();
-  const PairRecords& known = same_pairs_ ? c.records : c.records_before;
+  const Column<std::uint64_t>& known = same_pairs_ ? c.records.bits : c.records_before.bits;
   const auto list = [&](bool slept) {
     for (std::size_t r = 0; r < known.size(); ++r) {
-      const std::uint32_t shown = known.shown_of(r);
-      if (shown == kNoEntry || (shown >= shown_last_) != slept || c.shown_again[shown] != 0) {
+      const std::uint32_t shown = c.records_before.shown_of(r);
+      if (shown == kNoEntry || has_slept(shown) != slept || c.shown_again[shown] != 0) {
         continue;
       }
-      const auto [a, b] = known.order_of(r).bodies();
+      const auto [a, b] = PairOrder{known[r]}.bodies();
       const EndedContact ended{c.known.key(a), c.known.key(b), c.known.data[a], c.known.data[b]};
       if (!c.ended.push_back(ended)) return false;
     }

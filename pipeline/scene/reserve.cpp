@@ -127,7 +127,7 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
     }
   }
   if (!convex.reserve(Collision::batch_room(options, room.pairs), pages) ||
-      !list_rehearsal(bodies / 2, batch)) {
+      (has_offsets() && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
     return Status::out_of_memory;
   }
   const Status status =

@@ -69,8 +69,8 @@ Bytes SceneFootprint::total() const noexcept {
 Bytes PartAnswers::bytes() const noexcept {
   Bytes sum{sizeof *this, sizeof *this};
   for (const Bytes& part :
-       {pairs.footprint().total(), narrow.footprint().total(), answers.footprint().total(),
-        slot.bytes(), regions.footprint().total()}) {
+       {pairs.footprint().total(), gaps.bytes(), narrow.footprint().total(),
+        answers.footprint().total(), slot.bytes(), regions.footprint().total()}) {
     sum += part;
   }
   return sum;

@@ -47,9 +47,16 @@ struct SceneSet {
 /// What is asked and answered about the parts of pairs with a composite shape.
 struct PartAnswers {
   explicit PartAnswers(std::pmr::memory_resource* memory) noexcept
-      : pairs(memory), narrow(memory), answers(memory), slot(memory), regions(memory) {}
+      : pairs(memory),
+        gaps(memory),
+        narrow(memory),
+        answers(memory),
+        slot(memory),
+        regions(memory) {}
 
   PrimitivePairs pairs;
+  /// By pair of parts, the gap of their bodies. Empty without offsets.
+  Column<double> gaps;
   NarrowPhase narrow;
   NarrowResult answers;
   /// By pair of parts: where its answer lies.
@@ -135,7 +142,7 @@ struct SceneState {
   /// Which pairs of `pairs` are asked about: convex ones, and those with a composite shape.
   Column<BodyPair> convex;
   Column<BodyPair> composite;
-  /// Of `composite`, up to which gap they are asked about. Not used without offsets.
+  /// By pair of `convex` or `composite`, whichever the narrow phase answers. Empty without offsets.
   Column<double> gaps;
   /// Of `composite`; made when there is the first one.
   PartAnswers* parts = nullptr;

@@ -25,8 +25,11 @@ bool Collision::open_frame() {
     // Another level may have left some.
     c.before.clear();
   }
-  // The same pairs keep their records in place.
-  if (!same_pairs_) {
+  if (same_pairs_) {
+    // Records stay in place, but for their places in the frame: tasks read old ones of some pairs
+    // after they wrote new ones of others.
+    c.records.shown.swap(c.records_before.shown);
+  } else {
     c.records.swap(c.records_before);
     c.carried.swap(c.carried_before);
   }
@@ -108,8 +111,7 @@ bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexc
 }
 
 std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
-  if (same_pairs_) return contacts_.records.shown_of(pair);
-  const std::uint32_t record = contacts_.old_record[pair - known_from_];
+  const std::uint32_t record = same_pairs_ ? pair : contacts_.old_record[pair - known_from_];
   return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
 }
 

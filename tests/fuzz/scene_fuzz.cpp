@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/fuzz/bytes.h"
+#include "tests/fuzz/every_shape.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/counting_memory.h"
 
@@ -19,59 +20,6 @@ namespace winnow::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Shapes of every kind.
-struct Shapes {
-  explicit Shapes(Bytes& bytes);
-
-  ShapePool pool;
-  CompositePool composites{pool};
-  std::vector<ShapeId> ids;
-  std::size_t convex = 0;
-};
-
-Shapes::Shapes(Bytes& bytes) {
-  const double r = 0.25 + bytes.extent() * 0.25;
-  bool good = true;
-  const auto take = [&](Status status, ShapeId id) {
-    good = good && status == Status::ok;
-    ids.push_back(id);
-  };
-  const auto add = [&](const auto& shape) {
-    ShapeId id;
-    const Status status = pool.add(shape, id);
-    take(status, id);
-  };
-  add(SphereShape{r});
-  add(CapsuleShape{0.25, r});
-  add(BoxShape{{0.5, 0.25, r}, 0.0});
-  add(CylinderShape{0.5, 0.25, 0.0});
-  add(ConeShape{0.5, r, 0.125});
-  add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, 0.0});
-  const std::vector<Vec3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, r, 0},
-                                   {0, -r, 0}, {0, 0, 1},  {0, 0, -1}};
-  const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
-                                         2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-  const std::vector<std::uint32_t> sizes(8, 3);
-  ShapeId id;
-  take(pool.add_hull(corners, {loops, sizes}, 0.0, id), id);
-  convex = ids.size();
-  add(HalfSpaceShape{{0, 0, 1}, 0.0});
-  const CompoundChild children[] = {{ids[2], Pose::at(0.5, 0, 0)}, {ids[0], Pose::at(-0.5, 0, 0)}};
-  take(composites.add_compound(children, id), id);
-  const std::vector<Vec3f> points{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0.5F}};
-  const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
-  take(composites.add_mesh(std::span(points), std::span(triangles), id), id);
-  take(composites.add_scaled(ids.back(), {1.0, -0.5, 2.0}, id), id);
-  std::vector<float> heights(9);
-  for (float& height : heights) height = static_cast<float>(0.25 * bytes.extent());
-  take(composites.add_height_field({heights, 3, 3, 0, {1.0, 1.0}}, id), id);
-  const CompoundChild surfaces[] = {{ids.back(), Pose::at(-1, 0, 0.5)},
-                                    {ids[1], Pose::at(0, 1, 0)},
-                                    {ids[ids.size() - 2], Pose::at(0.5, 0, -0.5)}};
-  take(composites.add_compound(surfaces, id), id);
-  WINNOW_HOLDS(good);
-}
 
 using KeyOrder = decltype([](const Key& a, const Key& b) {
   return std::pair(a.id, a.stamp) < std::pair(b.id, b.stamp);
@@ -104,7 +52,7 @@ class Play {
   }
 
  private:
-  static SceneOptions some_options(Bytes& bytes, const Shapes& shapes, CountingMemory& memory);
+  static SceneOptions some_options(Bytes& bytes, const EveryShape& shapes, CountingMemory& memory);
 
   void add(Bytes& bytes);
   void change(Bytes& bytes);
@@ -129,7 +77,7 @@ class Play {
   [[nodiscard]] Meeting meeting(Key a, Key b) const;
   [[nodiscard]] double distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) const;
 
-  Shapes shapes_;
+  EveryShape shapes_;
   double far_ = 0.0;
   SceneOptions options_;
   std::unique_ptr<Scene> scene_;
@@ -148,7 +96,7 @@ Play::Play(Bytes& bytes, CountingMemory& memory) : shapes_(bytes), contacts_(&me
   scene_ = std::make_unique<Scene>(shapes_.pool, options_);
 }
 
-SceneOptions Play::some_options(Bytes& bytes, const Shapes& shapes, CountingMemory& memory) {
+SceneOptions Play::some_options(Bytes& bytes, const EveryShape& shapes, CountingMemory& memory) {
   SceneOptions options{.memory = &memory, .composites = &shapes.composites};
   options.execution = bytes.chance(4) ? Execution::parallel() : Execution::serial();
   const auto all = all_structures();

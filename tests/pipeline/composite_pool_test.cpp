@@ -1,10 +1,14 @@
 #include <winnow/core/eigen.h>
+#include <winnow/pipeline/scene.h>
 #include "tests/pipeline/composite_world.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
@@ -220,7 +224,7 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
       Status::ok);
   std::size_t before = 0;
   for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
-  pool.smooth(shapes, pairs, Execution::serial(), result);
+  pool.smooth(shapes, pairs, margin, Execution::serial(), result);
   Landing landing;
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!(result.distance()[i] <= margin)) continue;
@@ -389,7 +393,7 @@ TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_ref
     auto result = std::make_unique<NarrowResult>(memory);
     winnow::test::answer(world.shapes, pairs, {}, *result);
     if (refusing != nullptr) refusing->refuse_after(0);
-    world.composites.smooth(world.shapes, pairs, execution, *result);
+    world.composites.smooth(world.shapes, pairs, 0.0, execution, *result);
     if (refusing != nullptr) refusing->grant_all();
     return result;
   };
@@ -415,6 +419,74 @@ TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_ref
   for (std::size_t i = 0; i < one->size(); ++i) {
     EXPECT_EQ(one->distance()[i], refused->distance()[i]);
     EXPECT_EQ(one->contact_count()[i] == 0, refused->contact_count()[i] == 0);
+  }
+}
+
+/// The manifolds of the first body that was added, which touches nothing but the ground.
+std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId first,
+                                          ShapeId ground, std::span<const ShapeId> others,
+                                          ContactLevel level) {
+  Scene scene(world.shapes, {.structures = {n_squared(), n_squared(), n_squared()},
+                             .composites = &world.composites});
+  std::vector<BodyDefinition> bodies(2);
+  bodies[0] = {.shape = ground, .motion = Motion::fixed, .data = 1};
+  bodies[1] = {.shape = first, .pose = Pose::at(0.01, 0.02, -0.3), .data = 0};
+  Random random(10);
+  for (std::size_t i = 0; i < 60 && !others.empty(); ++i) {
+    BodyDefinition body{.shape = others[i % others.size()], .data = 2 + i};
+    // Each has its own ground, far away.
+    body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, random.uniform(-0.4, 0.1));
+    bodies.push_back(body);
+    body = {.shape = ground, .motion = Motion::fixed, .data = 100 + i};
+    body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, 0);
+    bodies.push_back(body);
+  }
+  // The first body is the last of all, so that answers about others come before those about it.
+  std::ranges::rotate(bodies, bodies.begin() + 2);
+  std::vector<Key> keys(bodies.size());
+  EXPECT_EQ(scene.add(bodies, keys), Status::ok);
+  Contacts contacts;
+  EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+  std::vector<ContactPoint> points;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts.data_a()[i] != 0 && contacts.data_b()[i] != 0) continue;
+    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
+      ContactPoint distance{};
+      distance.depth = static_cast<float>(contacts.distance()[m]);
+      points.push_back(distance);
+      if (level != ContactLevel::manifold) continue;
+      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
+        points.push_back(contacts.contact(p));
+      }
+    }
+  }
+  return points;
+}
+
+TEST(InnerEdges, smoothing_does_not_depend_on_other_bodies) {
+  CompositeWorld world;
+  const auto bumps = [](float x, float y) {
+    return 0.15F * std::sin(5.0F * x) * std::cos(4.0F * y);
+  };
+  const ShapeId ground = add(world.composites, grid(70, 0.2F, Cut::random, bumps));
+  const ShapeId box = add(world.shapes, BoxShape{{6.5, 6.5, 0.5}, 0.0});
+  const ShapeId beam = add(world.shapes, CapsuleShape{0.4, 5.0});
+  const ShapeId hull = add_octahedron(world.shapes, 0.7);
+  const CompoundChild parts[] = {
+      {box, Pose{}}, {beam, Pose::at(0, 0, 0.1)}, {hull, Pose::at(0, 3, 0.2)}};
+  ShapeId first;
+  ASSERT_EQ(world.composites.add_compound(parts, first), Status::ok);
+  const ShapeId others[] = {beam, hull, box};
+  for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
+    const auto alone = points_of_first(world, first, ground, {}, level);
+    const auto among = points_of_first(world, first, ground, others, level);
+    ASSERT_GT(alone.size(), 4096U);
+    ASSERT_EQ(alone.size(), among.size());
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      differ += std::memcmp(&alone[i], &among[i], sizeof alone[i]) == 0 ? 0 : 1;
+    }
+    EXPECT_EQ(differ, 0U);
   }
 }
 

@@ -1,4 +1,4 @@
-// Contact and rest offsets of bodies, against each pair asked about by itself.
+// Contact and rest offsets of bodies: each pair against the answer about this pair only.
 
 #include "tests/pipeline/composite_world.h"
 #include "tests/pipeline/scene_world.h"
@@ -26,73 +26,49 @@ void give_offsets(SceneWorld& world) {
   }
 }
 
-/// One pair by itself, shifted as its rest offsets say.
+/// The answer of the function for one pair at the gap of the pair, shifted by the rest offsets.
 struct PairTwin {
   PairTwin(const SceneWorld& world, const BodyDefinition& a, const BodyDefinition& b,
            NarrowTier tier, ContactLevel level)
-      : by_solver(tier == NarrowTier::reference) {
-    const ShapeId shapes[] = {a.shape, b.shape};
-    const Pose poses[] = {a.pose, b.pose};
-    const BodyPair pair[] = {{0, 1}};
-    gap = kMargin + a.offsets.contact + b.offsets.contact;
-    EXPECT_EQ(narrow.collide(world.pool, {shapes, poses}, pair, {level, tier, gap}, result),
+      : rest{a.offsets.rest, b.offsets.rest} {
+    const double gap = kMargin + (a.offsets.contact + b.offsets.contact);
+    EXPECT_EQ(collide(world.pool, a.shape, a.pose, b.shape, b.pose, {level, tier, gap}, answer),
               Status::ok);
-    distance = result.distance()[0];
-    rest = a.offsets.rest + b.offsets.rest;
-    shift = 0.5 * (a.offsets.rest - b.offsets.rest);
-    out = a.offsets.rest;
   }
 
-  NarrowPhase narrow;
-  NarrowResult result;
-  bool by_solver;
-  double gap = 0.0;
-  double distance = 0.0;
-  double rest = 0.0;
-  double shift = 0.0;
-  double out = 0.0;
+  double rest[2];
+  PairAnswer answer;
 };
 
+/// Bit by bit: the points of a manifold depend on the pair and its gap only.
 void expect_points(const Contacts& contacts, std::size_t m, const PairTwin& twin) {
   const std::uint32_t first = contacts.point_first()[m];
-  const std::uint32_t count = contacts.point_first()[m + 1] - first;
-  double deepest = -std::numeric_limits<double>::infinity();
-  for (std::uint32_t p = first; p < first + count; ++p) {
-    const auto depth = static_cast<double>(contacts.contact(p).depth);
-    EXPECT_GE(depth, twin.rest - twin.gap - 1e-5);
-    deepest = std::max(deepest, depth);
-  }
-  EXPECT_NEAR(deepest, -contacts.distance()[m], 1e-4);
-  // Lanes give other points of one face where they are asked about another gap.
-  if (!twin.by_solver) return;
-  ASSERT_EQ(count, twin.result.contact_count()[0]);
-  for (std::uint32_t i = 0; i < count; ++i) {
+  ASSERT_EQ(contacts.point_first()[m + 1] - first, twin.answer.contact_count);
+  const double between = 0.5 * (twin.rest[0] - twin.rest[1]);
+  for (std::uint32_t i = 0; i < twin.answer.contact_count; ++i) {
     const ContactPoint shown = contacts.contact(first + i);
-    // The same points, in any order.
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const ContactPoint alone = twin.result.contact(twin.result.contact_first()[0] + k);
-      double off =
-          std::abs(static_cast<double>(alone.depth) + twin.rest - static_cast<double>(shown.depth));
-      for (int axis = 0; axis < 3; ++axis) {
-        off = std::max(off, std::abs(static_cast<double>(alone.position[axis]) +
-                                     twin.shift * twin.result.normal(axis)[0] -
-                                     static_cast<double>(shown.position[axis])));
-      }
-      nearest = std::min(nearest, off);
+    ContactPoint alone = twin.answer.contacts[i];
+    alone.depth =
+        static_cast<float>(static_cast<double>(alone.depth) + twin.rest[0] + twin.rest[1]);
+    for (int k = 0; k < 3; ++k) {
+      alone.position[k] = static_cast<float>(static_cast<double>(alone.position[k]) +
+                                             between * twin.answer.normal[k]);
+      EXPECT_EQ(shown.position[k], alone.position[k]);
     }
-    EXPECT_LT(nearest, 1e-4);
+    EXPECT_EQ(shown.depth, alone.depth);
+    EXPECT_EQ(shown.feature, alone.feature);
   }
 }
 
 void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t i,
                  const PairTwin& twin) {
   const std::uint32_t m = contacts.manifold_first()[i];
-  const double bound = contacts.error_bound()[m] + twin.result.error_bound()[0];
-  EXPECT_NEAR(contacts.distance()[m], twin.distance - twin.rest, bound + 1e-15);
+  EXPECT_EQ(contacts.distance()[m], twin.answer.distance - (twin.rest[0] + twin.rest[1]));
+  EXPECT_GE(contacts.error_bound()[m], twin.answer.error_bound);
+  EXPECT_LE(contacts.error_bound()[m], twin.answer.error_bound + 1e-15);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(contacts.normal(k)[m], twin.answer.normal[k]);
   for (int k = 0; k < 3 && contacts.level() == ContactLevel::distance; ++k) {
-    EXPECT_NEAR(contacts.point(k)[m], twin.result.point(k)[0] + twin.out * contacts.normal(k)[m],
-                1e-6);
+    EXPECT_EQ(contacts.point(k)[m], twin.answer.point[k] + twin.rest[0] * twin.answer.normal[k]);
   }
   if (contacts.level() == ContactLevel::manifold) expect_points(contacts, m, twin);
   EXPECT_LT(contacts.data_a()[i], world.bodies.size());
@@ -119,7 +95,7 @@ void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTi
   }
 }
 
-TEST(ContactOffsets, every_pair_is_that_of_the_narrow_phase_at_its_own_gap) {
+TEST(ContactOffsets, pairs_of_any_gaps_answer_as_alone) {
   SceneWorld world(scaled(400), 71);
   give_offsets(world);
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
@@ -131,6 +107,29 @@ TEST(ContactOffsets, every_pair_is_that_of_the_narrow_phase_at_its_own_gap) {
       expect_as_alone(world, contacts, tier);
     }
   }
+}
+
+/// Box shapes and meshes, whose contacts are merged into regions.
+TEST(ContactOffsets, rest_of_others_leaves_error_bounds_of_regions) {
+  CompositeWorld world;
+  const ShapeId floor =
+      add(world.composites, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
+  const ShapeId box = add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
+  const auto bounds = [&](bool with_other) {
+    Scene scene(world.shapes, {.contact_reduction = true, .composites = &world.composites});
+    Key key;
+    EXPECT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(0.1, 0.2, 0.2)}, key), Status::ok);
+    const BodyDefinition other{.shape = box, .pose = Pose::at(9, 9, 9), .offsets = {0.2, 0.1}};
+    if (with_other) {
+      EXPECT_EQ(scene.add(other, key), Status::ok);
+    }
+    Contacts contacts;
+    EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    return std::vector(contacts.error_bound().begin(), contacts.error_bound().end());
+  };
+  ASSERT_EQ(bounds(false).size(), 1U);
+  EXPECT_EQ(bounds(false), bounds(true));
 }
 
 TEST(ContactOffsets, shapes_themselves_are_asked_about_at_level_boolean) {

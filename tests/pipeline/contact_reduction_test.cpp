@@ -197,7 +197,7 @@ struct Reduced {
               Status::ok);
     answer(world.shapes, pairs,
            {.level = ContactLevel::manifold, .margin = margin_, .execution = execution}, answers);
-    world.composites.smooth(world.shapes, pairs, execution, answers);
+    world.composites.smooth(world.shapes, pairs, margin_, execution, answers);
     ASSERT_EQ(reduce(execution), Status::ok);
   }
   [[nodiscard]] Status reduce(const Execution& execution) {

@@ -269,7 +269,7 @@ TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
     pairs.pairs.set_size(count);
     NarrowResult result;
     answer(world.shapes, pairs, {.margin = margin}, result);
-    world.composites.smooth(world.shapes, pairs, Execution::serial(), result);
+    world.composites.smooth(world.shapes, pairs, margin, Execution::serial(), result);
     for (const double distance : result.distance()) EXPECT_FALSE(std::isnan(distance));
   }
 }

@@ -153,6 +153,27 @@ PairAnswers ask_one(const PairScene& scene, std::size_t i, const NarrowOptions& 
   return answers;
 }
 
+TEST_F(Batches, pairs_with_own_margins_answer_as_alone) {
+  Random random(18);
+  std::vector<double> margins;
+  for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
+    margins.push_back(random.chance(0.2) ? 0.0 : random.uniform(0.0, 2.0 * kMargin));
+  }
+  for (const NarrowTier tier : kTiers) {
+    for (const ContactLevel level : kLevels) {
+      std::vector<PairAnswers> alone;
+      for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
+        alone.push_back(ask_one(scene_, i, {level, tier, margins[i]}));
+      }
+      for (const Isa isa : available_isas()) {
+        const IsaScope scope(isa);
+        const NarrowOptions options{.level = level, .tier = tier, .margins = margins};
+        expect_same(alone, ask(scene_, options), to_string(isa));
+      }
+    }
+  }
+}
+
 TEST_F(Batches, the_function_for_one_pair_answers_as_a_narrow_phase_does) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {

@@ -74,6 +74,23 @@ TEST_F(NarrowInput, a_bad_margin_is_refused) {
   }
 }
 
+TEST_F(NarrowInput, one_bad_margin_among_many_is_refused) {
+  std::vector<double> margins(scene_.pairs.size(), 0.125);
+  for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
+    margins.back() = margin;
+    ASSERT_EQ(collide(), Status::ok);
+    expect_refused(Status::invalid_argument, {.margins = margins});
+  }
+}
+
+TEST_F(NarrowInput, margins_of_other_pairs_are_refused) {
+  const std::vector<double> margins(scene_.pairs.size() + 1, 0.125);
+  for (const std::size_t count : {std::size_t{1}, margins.size() - 2, margins.size()}) {
+    ASSERT_EQ(collide(), Status::ok);
+    expect_refused(Status::size_mismatch, {.margins = {margins.data(), count}});
+  }
+}
+
 TEST_F(NarrowInput, a_body_that_is_not_there_is_refused) {
   const auto count = static_cast<std::uint32_t>(scene_.shapes.size());
   for (const std::uint32_t body : {count, count + 7, ~0U}) {

@@ -334,7 +334,7 @@ class IdleMidPhase final : public MidPhase {
                 const Execution&, PrimitivePairs&) const override {
     return worked(Status::unsupported);
   }
-  void smooth(const ShapePool&, const PrimitivePairs&, const Execution&,
+  void smooth(const ShapePool&, const PrimitivePairs&, const PairMargins&, const Execution&,
               NarrowResult&) const override {
     ++calls;
   }
@@ -391,9 +391,9 @@ class CountingMidPhase final : public MidPhase {
                 PrimitivePairs& out) const override {
     return pool_.expand(shapes, bodies, pairs, margins, execution, out);
   }
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const Execution& execution,
-              NarrowResult& result) const override {
-    pool_.smooth(shapes, pairs, execution, result);
+  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
+              const Execution& execution, NarrowResult& result) const override {
+    pool_.smooth(shapes, pairs, margins, execution, result);
   }
   Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
                 const PairMargins& margins, const Execution& execution,

@@ -2,155 +2,18 @@
 // each point in all of it.
 
 #include "tests/pipeline/composite_world.h"
+#include "tests/pipeline/history_twin.h"
 #include "tests/pipeline/scene_world.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
-#include <map>
 
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
 namespace winnow::test {
 namespace {
-
-/// Keys of a pair, and the kinds of its shapes: with other kinds it is another pair.
-using PairName = std::array<std::uint32_t, 6>;
-
-/// A point as the twin keeps it.
-struct KeptPoint {
-  std::uint32_t index;
-  std::uint32_t part[2];
-  std::uint64_t feature;
-  /// In the frames of both bodies.
-  Eigen::Vector3d local[2];
-  bool taken;
-};
-
-struct KeptPair {
-  std::uint32_t index;
-  std::vector<KeptPoint> points;
-};
-
-[[nodiscard]] Eigen::Vector3d in_frame_of(const Pose& pose, const Eigen::Vector3d& world) {
-  const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2],
-                             pose.orientation[3]);
-  return q.normalized().inverse() *
-         (world - Eigen::Map<const Eigen::Vector3d>(static_cast<const double*>(pose.position)));
-}
-
-/// Follows what Contacts::previous_point promises, word by word.
-class HistoryTwin {
- public:
-  /// What a frame has to tell, and what it told.
-  void compare(const Scene& scene, const Contacts& contacts, bool reduced, double smallest) {
-    ASSERT_EQ(contacts.previous_pair().size(), contacts.size());
-    ASSERT_EQ(contacts.previous_point().size(), contacts.points());
-    std::map<PairName, KeptPair> now;
-    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
-      const PairName name = name_of(scene, contacts.a()[i], contacts.b()[i]);
-      KeptPair kept = keep(scene, contacts, i);
-      const auto before = kept_.find(name);
-      ASSERT_EQ(contacts.previous_pair()[i],
-                before == kept_.end() ? kNoContact : before->second.index);
-      std::vector<std::uint32_t> expected(kept.points.size(), kNoContact);
-      if (before != kept_.end()) {
-        ++persisted;
-        expected = match(kept.points, before->second.points, reduced, smallest);
-      }
-      for (std::size_t k = 0; k < expected.size(); ++k) {
-        ASSERT_EQ(contacts.previous_point()[kept.points[k].index], expected[k]) << "pair " << i;
-      }
-      now[name] = std::move(kept);
-    }
-    kept_ = std::move(now);
-  }
-  void forget() { kept_.clear(); }
-
-  std::size_t persisted = 0;
-  std::size_t by_feature = 0;
-  std::size_t by_place = 0;
-
- private:
-  [[nodiscard]] static PairName name_of(const Scene& scene, Key a, Key b) {
-    BodyDefinition body[2];
-    EXPECT_EQ(scene.body(a, body[0]), Status::ok);
-    EXPECT_EQ(scene.body(b, body[1]), Status::ok);
-    return {a.id, a.stamp, b.id, b.stamp, body[0].shape.kind_index(), body[1].shape.kind_index()};
-  }
-
-  [[nodiscard]] static KeptPair keep(const Scene& scene, const Contacts& contacts,
-                                     std::uint32_t i) {
-    BodyDefinition body[2];
-    EXPECT_EQ(scene.body(contacts.a()[i], body[0]), Status::ok);
-    EXPECT_EQ(scene.body(contacts.b()[i], body[1]), Status::ok);
-    KeptPair kept{i, {}};
-    if (contacts.point_first().empty()) return kept;
-    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
-      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
-        const ContactPoint point = contacts.contact(p);
-        Eigen::Vector3d world;
-        for (int k = 0; k < 3; ++k) {
-          world[k] = static_cast<double>(point.position[k]) + body[0].pose.position[k];
-        }
-        kept.points.push_back({p,
-                               {contacts.part_a()[m], contacts.part_b()[m]},
-                               point.feature,
-                               {in_frame_of(body[0].pose, world), in_frame_of(body[1].pose, world)},
-                               false});
-      }
-    }
-    return kept;
-  }
-
-  [[nodiscard]] std::vector<std::uint32_t> match(const std::vector<KeptPoint>& points,
-                                                 std::vector<KeptPoint>& before, bool reduced,
-                                                 double smallest) {
-    std::vector<std::uint32_t> found(points.size(), kNoContact);
-    const auto look = [&](auto&& is_it, std::size_t& count) {
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        for (KeptPoint& old : before) {
-          if (found[k] != kNoContact || old.taken || !is_it(points[k], old)) continue;
-          found[k] = old.index;
-          old.taken = true;
-          ++count;
-        }
-      }
-    };
-    look(
-        [](const KeptPoint& now, const KeptPoint& old) {
-          return now.feature == old.feature && now.part[0] == old.part[0] &&
-                 now.part[1] == old.part[1];
-        },
-        by_feature);
-    if (reduced) {
-      look([](const KeptPoint& now, const KeptPoint& old) { return now.feature == old.feature; },
-           by_feature);
-    }
-    const auto apart = [](const KeptPoint& now, const KeptPoint& old) {
-      return std::min((now.local[0] - old.local[0]).norm(), (now.local[1] - old.local[1]).norm());
-    };
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      if (found[k] != kNoContact) continue;
-      KeptPoint* nearest = nullptr;
-      for (KeptPoint& old : before) {
-        if (!old.taken &&
-            (nearest == nullptr || apart(points[k], old) < apart(points[k], *nearest)))
-          nearest = &old;
-      }
-      if (nearest == nullptr || apart(points[k], *nearest) > 0.02 * smallest) continue;
-      found[k] = nearest->index;
-      nearest->taken = true;
-      ++by_place;
-    }
-    return found;
-  }
-
-  std::map<PairName, KeptPair> kept_;
-};
 
 /// Equal bodies of several kinds on a terrain of triangles, which shuffle about, come, go, sleep
 /// and wake. All have the radius kRadius.
@@ -298,7 +161,8 @@ TEST(WarmStart, places_are_those_of_a_twin_that_keeps_the_whole_last_frame) {
             frame % 13 == 12 ? ContactLevel::distance : ContactLevel::manifold;
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
         // Radii are of what the pool knows: the capsule reaches as far as the others.
-        ASSERT_NO_FATAL_FAILURE(twin.compare(scene, contacts, reduced, Shuffle::kRadius));
+        ASSERT_NO_FATAL_FAILURE(
+            twin.compare(scene, contacts, reduced, [](Key, Key) { return Shuffle::kRadius; }));
         world.stir(scene, frame);
       }
       EXPECT_GT(twin.by_feature, 100U);

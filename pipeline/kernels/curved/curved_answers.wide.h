@@ -77,16 +77,14 @@ class CurvedAnswers {
   void take(std::uint32_t i) {
     CurvedPair& pair = pair_[taken_];
     pair.index = i;
+    pair.far = Level == 0 ? 0.0 : (Level == 1 ? __builtin_inf() : job_.margin_of(i));
     if (!place_pair(job_, job_.pairs[i], pair)) return give_up(i);
     if (++taken_ == kChunk) answer_taken();
   }
 
   void answer_taken() {
     if (taken_ == 0) return;
-    CurvedLimits limits{0.0, Level == 0};
-    if (Level == 1) limits.far = __builtin_inf();
-    if (Level == 2) limits.far = job_.margin;
-    CurvedSearch(pair_, taken_, limits).run();
+    CurvedSearch(pair_, taken_, Level == 0).run();
     for (std::uint32_t i = 0; i < taken_; ++i) {
       if (!answer(pair_[i])) give_up(pair_[i].index);
     }
@@ -233,9 +231,8 @@ class CurvedAnswers {
     job_.contact_first[pair.index] = writer.size;
     ContactPoint points[kManifoldPoints] = {};
     std::uint32_t count = 0;
-    if (distance <= job_.margin) {
-      count =
-          curved_contacts(pair, normal, world, place, core, apart, distance, job_.margin, points);
+    if (distance <= pair.far) {
+      count = curved_contacts(pair, normal, world, place, core, apart, distance, pair.far, points);
     }
     job_.contact_count[pair.index] = count;
     for (std::uint32_t i = 0; i < count; ++i, ++writer.size) {

@@ -53,22 +53,14 @@ static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight
   return weight[0] >= 0.0 && weight[1] >= 0.0 && weight[2] >= 0.0;
 }
 
-/// Where the search may stop before it has found the closest points.
-struct CurvedLimits {
-  /// Stops with state far beyond this, in the caller's lengths, roundings excluded; infinite:
-  /// never.
-  double far;
-  /// Stops with state inside where roundings surely overlap, for verdicts.
-  bool verdict;
-};
-
 class CurvedSearch {
  public:
-  /// Of at least one pair; all are of the same kinds.
-  CurvedSearch(CurvedPair* pairs, std::uint32_t count, const CurvedLimits& limits)
+  /// At least one pair; all are of the same kinds. For a verdict the search stops with state inside
+  /// where roundings surely overlap.
+  CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool for_verdict)
       : next_(pairs),
         end_(pairs + count),
-        limits_(limits),
+        for_verdict_(for_verdict),
         kind_{pairs->first.kind, pairs->second.kind},
         looks_(may_have_features(*pairs)),
         lanes_(has_own(*pairs)) {}
@@ -125,10 +117,10 @@ class CurvedSearch {
     }
     for (int i = 0; i < 9; ++i) lanes_.turn[i][lane] = pair.turn[i];
     for (int i = 0; i < 3; ++i) lanes_.shift[i][lane] = pair.shift[i];
-    const double far = limits_.far * pair.scale + pair.rounding + kDoubt;
+    const double far = pair.far * pair.scale + pair.rounding + kDoubt;
     lanes_.far[lane] = far * far;
     const double near = pair.rounding - kDoubt;
-    lanes_.near[lane] = limits_.verdict && near > 0.0 ? near * near : -1.0;
+    lanes_.near[lane] = for_verdict_ && near > 0.0 ? near * near : -1.0;
     is_askew_[lane] = false;
     constexpr double straight[3] = {0.0, 0.0, 0.0};
     start(lane, straight);
@@ -145,7 +137,7 @@ class CurvedSearch {
   /// Polytopes that begin with what another search ends with take fewer steps to the depth.
   void ask_around(int lane) {
     CurvedPair& pair = *pair_[lane];
-    if (pair.state != CurvedState::close || !(limits_.verdict || is_askew_[lane])) return;
+    if (pair.state != CurvedState::close || !(for_verdict_ || is_askew_[lane])) return;
     if (is_surrounded(pair)) pair.state = CurvedState::inside;
   }
 
@@ -341,7 +333,7 @@ class CurvedSearch {
 
   CurvedPair* next_;
   CurvedPair* end_;
-  CurvedLimits limits_;
+  bool for_verdict_;
   Mask16 active_ = 0;
   ShapeKind kind_[2];
   bool looks_;

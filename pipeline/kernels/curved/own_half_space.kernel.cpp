@@ -117,7 +117,8 @@ struct HalfSpaceOwn {
       put(lowest, lane, point[0]);
       if constexpr (Count == 1) continue;
       for (int i = 1; i < Count; ++i) missing[i][lane] = kLargest<T>;
-      const double limit = job.margin + shape.rounding - static_cast<double>(height[lane]);
+      const double limit =
+          job.margin_of(block.first + lane) + shape.rounding - static_cast<double>(height[lane]);
       if (!(dot3(d, lowest) <= limit)) continue;
       const RockingPoints print(shape, d, lowest, limit);
       for (std::uint32_t i = 0; i < print.count(); ++i) {

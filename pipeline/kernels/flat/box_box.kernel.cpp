@@ -176,7 +176,7 @@ struct BoxBox {
     const Lanes<T> reach = pair.rounding_a + pair.rounding_b;
     LaneMask<T> wanted = pair.scale == pair.scale;
     if constexpr (L == kManifold) {
-      const Lanes<T> margin(static_cast<T>(job.margin));
+      const Lanes<T> margin = margins_of(job, given);
       wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
     }
     CoreAnswer<T> core = measure(pair, axis, wanted, L == kDistance);
@@ -184,7 +184,7 @@ struct BoxBox {
     const Lanes<T> sign = Lanes<T>::load(ordered.sign);
     write_answer<L>(job, given, turned_back(core, pair.offset, sign));
     if constexpr (L == kManifold) {
-      const Lanes<T> margin(static_cast<T>(job.margin));
+      const Lanes<T> margin = margins_of(job, given);
       const Mask16 touching = certified & bits(core.distance <= margin);
       const BoxStage<T> stage(pair, core.normal);
       return ~certified |

@@ -499,7 +499,8 @@ template <typename T, typename Staged>
   write_patch_contacts<T>(
       job, given, touching, stage.offset(), sign,
       [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
-        const std::uint32_t count = contacts_of(stage, seen[lane / 8], lane, job.margin, points);
+        const std::uint32_t count =
+            contacts_of(stage, seen[lane / 8], lane, job.margin_of(given.first + lane), points);
         if (count > 0) {
           const T off = static_cast<T>(points[0].depth) + expected.value[0][lane];
           const T most = expected.value[1][lane];
@@ -517,7 +518,7 @@ template <int L, typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_flat(NarrowJob& job, const PairBlock<T>& given,
                                                  const Pair& pair, const T* sign) {
   const auto axis = step<ToBestAxis, T>(pair);
-  const Lanes<T> margin(static_cast<T>(job.margin));
+  const Lanes<T> margin = margins_of(job, given);
   LaneMask<T> wanted = pair.scale == pair.scale;
   if constexpr (L == kManifold) {
     wanted = axis.separation <= margin + pair.rounding_a() + pair.rounding_b() +

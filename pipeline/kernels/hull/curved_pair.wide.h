@@ -49,6 +49,9 @@ struct CurvedPair {
   /// An upper bound of every length that occurs.
   double size;
   double rounding;
+  /// The search stops with state far beyond this, in the caller's lengths, roundings excluded;
+  /// infinite: never.
+  double far;
   /// What lengths were multiplied by, and its inverse.
   double scale;
   double unit;

@@ -54,10 +54,7 @@ class HullAnswers {
 
   void answer_taken() {
     if (taken_ == 0) return;
-    HullLimits limits{0.0, Level == 0};
-    if (Level == 1) limits.far = __builtin_inf();
-    if (Level == 2) limits.far = job_.margin < kFarthest ? job_.margin : kFarthest;
-    HullSearch<typename Shapes::Seconds>(pair_, taken_, limits).run();
+    HullSearch<typename Shapes::Seconds>(pair_, taken_, Level == 0).run();
     for (std::uint32_t i = 0; i < taken_; ++i) {
       if (!answer(pair_[i], i)) give_up(pair_[i].index);
     }
@@ -69,6 +66,8 @@ class HullAnswers {
 
   bool place(std::uint32_t i, std::uint32_t slot, HullPair& pair) {
     pair.index = i;
+    pair.far = Level == 0 ? 0.0 : __builtin_inf();
+    if (Level == 2) pair.far = job_.margin_of(i) < kFarthest ? job_.margin_of(i) : kFarthest;
     return shapes_.place(job_, job_.pairs[i], slot, pair) &&
            pair.first->vertex_count <= kMostHullVertices &&
            pair.second->vertex_count <= kMostHullVertices;
@@ -124,7 +123,8 @@ class HullAnswers {
       write_normal(pair, core.normal, normal, world);
       if constexpr (Level == 2) {
         const double doubt = error + kContactDoubt * (pair.size + pair.rounding);
-        return contacts(pair, {normal, world, job_.margin, distance, doubt}, core.winner);
+        return contacts(pair, {normal, world, job_.margin_of(pair.index), distance, doubt},
+                        core.winner);
       } else {
         if (pair.state == HullState::apart || touching_point(pair, place, core)) {
           write_point(pair, core.point, normal, distance);

@@ -207,8 +207,8 @@ struct HullOverPlane {
                              static_cast<double>(normal[2][lane])};
         double x[3];
         hull::vertex_at(shape, lowest, x);
-        const double room =
-            job.margin + shape.rounding - (dot3(d, x) + static_cast<double>(height[lane]));
+        const double room = job.margin_of(block.first + lane) + shape.rounding -
+                            (dot3(d, x) + static_cast<double>(height[lane]));
         std::uint32_t found = 1;
         hull_vertex(shape, lowest, 0, lane, vertex, name);
         if (room >= 0.0) {

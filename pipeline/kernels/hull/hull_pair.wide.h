@@ -37,6 +37,8 @@ struct HullPair {
   double size;
   /// Sum of the roundings.
   double rounding;
+  /// The search stops with state far beyond this, rounding excluded; infinite: never.
+  double far;
   /// The same for float, where lengths are multiplied by `scale`, a power of two that brings `size`
   /// into [1, 2).
   float turn_float[9];

@@ -11,20 +11,13 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Where the search may stop before it has found the closest features, in lengths between cores.
-struct HullLimits {
-  /// Stops with state far beyond this, rounding excluded; infinite: never.
-  double far;
-  /// Stops with state inside where roundings surely overlap, for verdicts.
-  bool verdict;
-};
-
 /// Seconds: HullSeconds, CenteredSeconds or TriangleSeconds.
 template <typename Seconds>
 class HullSearch {
  public:
-  HullSearch(HullPair* pairs, std::uint32_t count, const HullLimits& limits)
-      : next_(pairs), end_(pairs + count), limits_(limits) {}
+  /// For a verdict the search stops with state inside where roundings surely overlap.
+  HullSearch(HullPair* pairs, std::uint32_t count, bool for_verdict)
+      : next_(pairs), end_(pairs + count), for_verdict_(for_verdict) {}
 
   void run() {
     for (int lane = 0; lane < kLanes; ++lane) refill(lane);
@@ -64,10 +57,10 @@ class HullSearch {
     seconds_.put(lane, pair);
     scale_[lane] = pair.scale;
     const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
-    const float far = scaled(limits_.far + pair.rounding) + kDoubt;
+    const float far = scaled(pair.far + pair.rounding) + kDoubt;
     far_[lane] = far * far;
     const float near = scaled(pair.rounding) - kDoubt;
-    near_[lane] = limits_.verdict && near > 0.0F ? near * near : -1.0F;
+    near_[lane] = for_verdict_ && near > 0.0F ? near * near : -1.0F;
     depth_[lane] = __builtin_inff();
     for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
     fresh_[lane] = 1.0F;
@@ -128,7 +121,7 @@ class HullSearch {
     const LaneMask<float> ahead = height > zero;
     const LaneMask<float> far = ahead & (height * height > Floats::load(far_) * square) & !sinking;
     height.store(height_along_);
-    if (!limits_.verdict) note_depth(w, gap, square, height);
+    if (!for_verdict_) note_depth(w, gap, square, height);
 
     const Floats gain = square - height;
     const LaneMask<float> no_gain =
@@ -157,7 +150,7 @@ class HullSearch {
     mark(near_bits, HullState::inside);
     mark(touch_bits, HullState::close);
     Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
-    if (!limits_.verdict) done &= ~sink(inside_bits & ~sinking_bits);
+    if (!for_verdict_) done &= ~sink(inside_bits & ~sinking_bits);
     return done | give_up(active_ & ~done, sinking_bits);
   }
 
@@ -274,7 +267,7 @@ class HullSearch {
 
   HullPair* next_;
   HullPair* end_;
-  HullLimits limits_;
+  bool for_verdict_;
   Mask16 active_ = 0;
   FarthestVertices firsts_;
   Seconds seconds_;

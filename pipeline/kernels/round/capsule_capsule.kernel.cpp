@@ -104,7 +104,7 @@ template <typename T>
 template <typename T>
 [[gnu::noinline]] void write_ends(NarrowJob& job, PairBlock<T> block, Couple<T> p,
                                   CertifiedLanes<T> answer, ContactLanes<T> closest) {
-  const Lanes<T> margin(static_cast<T>(job.margin));
+  const Lanes<T> margin = margins_of(job, block);
   const Lanes<T> middle = dot(p.axis[0], p.c);
   const Lanes<T> reach = p.half[1] * abs(dot(p.axis[0], p.axis[1]));
   const Lanes<T> low = max(middle - reach, -p.half[0]);

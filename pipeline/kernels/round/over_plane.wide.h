@@ -110,12 +110,13 @@ struct FeetAnswers {
   [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
                                                    const Feet<T, Count>& feet, Mask16 known) {
     const Lanes<T> zero(T(0));
+    const Lanes<T> margin = margins_of(job, block);
     ContactLanes<T> contacts[Contacts];
     Mask16 lanes = known & block.lanes();
     for (int i = 0; i < Contacts; ++i) {
       const int k = i < Count ? i : 0;
       const Lanes<T> d = feet.height[k] - feet.rounding;
-      lanes &= i < Count ? bits(d <= Lanes<T>(static_cast<T>(job.margin))) : 0U;
+      lanes &= i < Count ? bits(d <= margin) : 0U;
       contacts[i] = {feet.foot[k] - feet.normal * (feet.rounding + d * Lanes<T>(T(0.5))), -d,
                      kPlaneFirst ? zero : feet.feature[k], kPlaneFirst ? feet.feature[k] : zero,
                      lanes};

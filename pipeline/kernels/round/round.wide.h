@@ -150,7 +150,7 @@ template <typename T>
     const Vec3<T>& foot, const Lanes<T>& radius, const Lanes<T>& feature_a,
     const Lanes<T>& feature_b) {
   const Lanes<T> half(T(0.5));
-  const LaneMask<T> near = c.distance <= Lanes<T>(static_cast<T>(job.margin));
+  const LaneMask<T> near = c.distance <= margins_of(job, block);
   return {foot + c.normal * (radius + c.distance * half), -c.distance, feature_a, feature_b,
           bits(near) & c.certified & block.lanes()};
 }
@@ -495,7 +495,7 @@ template <typename T, typename Contact>
                                                  const CertifiedLanes<T>& answer,
                                                  const LyingStretch<T>& stretch, const Lanes<T>& s,
                                                  const Lanes<T>& feature, Contact&& contact) {
-  const Lanes<T> margin(static_cast<T>(job.margin));
+  const Lanes<T> margin = margins_of(job, block);
   const LaneMask<T> near_low = stretch.lies & (stretch.distance[0] <= margin);
   const LaneMask<T> near_high = stretch.lies & (stretch.distance[1] <= margin);
   const auto nearer_end = [&](const Lanes<T>(&ends)[2], const Lanes<T>& neither)

@@ -1,0 +1,172 @@
+// Contacts that are carried over from frame to frame, against those of a fresh scene.
+
+#include <winnow/winnow.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "tests/pipeline/composite_world.h"
+#include "tests/pipeline/scene_world.h"
+#include "tests/support/config.h"
+
+namespace winnow::test {
+namespace {
+
+constexpr double kCarryOver = 0.1;
+
+/// Balls in a row, two by two, 9 apart.
+struct Balls {
+  explicit Balls(std::size_t pairs, double gap) : first_gap(gap) {
+    EXPECT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+    for (std::size_t i = 0; i < pairs; ++i) {
+      const double y = 9.0 * static_cast<double>(i);
+      Key key;
+      EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, y, 0)}, key), Status::ok);
+      EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(1 + gap, y, 0)}, key), Status::ok);
+      movers.push_back(key);
+    }
+  }
+  void part(std::size_t pair, double gap) {
+    ASSERT_EQ(scene.move(movers[pair], Pose::at(1 + gap, 9.0 * static_cast<double>(pair), 0)),
+              Status::ok);
+  }
+
+  double first_gap;
+  ShapePool shapes;
+  ShapeId ball;
+  Scene scene{shapes, {.execution = Execution::serial(), .carry_over = kCarryOver}};
+  std::vector<Key> movers;
+};
+
+std::set<std::uint32_t> shown_with(const Contacts& contacts, ContactEvent event) {
+  std::set<std::uint32_t> ids;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts.event()[i] == event) ids.insert(contacts.b()[i].id);
+  }
+  return ids;
+}
+
+TEST(CarryOver, standing_pairs_tell_which_begin_and_end) {
+  constexpr std::size_t kPairs = 8;
+  Balls balls(kPairs, 0.03);
+  for (std::size_t i = 0; i < kPairs; i += 2) balls.part(i, -0.01);
+  Contacts contacts;
+  for (int frame = 0; frame < 6; ++frame) {
+    const bool swapped = frame % 2 == 1;
+    ASSERT_EQ(balls.scene.collide(ContactLevel::manifold, contacts), Status::ok);
+    std::set<std::uint32_t> touching;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      if ((i % 2 == 0) != swapped) touching.insert(balls.movers[i].id);
+    }
+    EXPECT_EQ(shown_with(contacts, ContactEvent::begun), touching) << frame;
+    EXPECT_EQ(contacts.ended().size(), frame == 0 ? 0 : kPairs / 2);
+    for (const EndedContact& ended : contacts.ended()) EXPECT_FALSE(touching.contains(ended.b.id));
+    // By more than is carried over, and less than takes them out of their boxes.
+    for (std::size_t i = 0; i < kPairs; ++i) balls.part(i, (i % 2 == 0) != swapped ? 0.12 : -0.01);
+  }
+}
+
+TEST(CarryOver, first_contact_among_standing_pairs_begins) {
+  Balls balls(3, 0.03);
+  Contacts contacts;
+  ASSERT_EQ(balls.scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(contacts.size(), 0U);
+  balls.part(2, -0.02);
+  ASSERT_EQ(balls.scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  EXPECT_EQ(shown_with(contacts, ContactEvent::begun), std::set{balls.movers[2].id});
+  EXPECT_TRUE(contacts.ended().empty());
+}
+
+/// Other contacts of the scene look at it while the pair sleeps.
+TEST(CarryOver, pair_that_moved_asleep_is_made_anew) {
+  Balls balls(2, -0.01);
+  Contacts contacts;
+  Contacts others;
+  const auto set_motion = [&](Motion motion) {
+    for (const std::uint32_t id : {0U, 1U}) {
+      const Key key{id, contacts.a()[0].stamp};
+      ASSERT_EQ(balls.scene.set_motion(key, motion), Status::ok);
+    }
+  };
+  ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
+  ASSERT_EQ(contacts.size(), 2U);
+  set_motion(Motion::sleeping);
+  ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
+  balls.part(0, -0.4);
+  ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
+  ASSERT_EQ(balls.scene.collide(ContactLevel::distance, others), Status::ok);
+  set_motion(Motion::dynamic);
+  ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_NEAR(contacts.distance()[0], -0.4, 1e-12);
+  EXPECT_NEAR(contacts.distance()[1], -0.01, 1e-12);
+}
+
+/// Boxes and balls on a mesh: margins are no wider for the sake of what is carried over.
+TEST(CarryOver, first_frame_is_that_of_scene_without) {
+  CompositeWorld world;
+  const auto hills = [](float x, float y) {
+    return 0.2F * std::sin(3.0F * x) * std::cos(2.0F * y);
+  };
+  const ShapeId ground = add(world.composites, grid(12, 0.5F, Cut::alternating, hills));
+  const ShapeId shapes[] = {add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0}),
+                            add(world.shapes, CylinderShape{0.3, 0.4, 0.05}),
+                            add(world.shapes, SphereShape{0.35})};
+  Random random(7);
+  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed}};
+  for (std::size_t i = 1; i < scaled(300); ++i) {
+    BodyDefinition body{.shape = shapes[i % 3]};
+    body.pose = Pose::at(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-0.2, 0.6));
+    for (double& q : body.pose.orientation) q = random.uniform(-1, 1);
+    body.data = i;
+    bodies.push_back(body);
+  }
+  for (const bool reduced : {false, true}) {
+    Contacts contacts[2];
+    for (const bool carries : {false, true}) {
+      Scene scene(world.shapes, {.margin = 0.05,
+                                 .carry_over = carries ? 0.3 : 0.0,
+                                 .contact_reduction = reduced,
+                                 .composites = &world.composites});
+      std::vector<Key> keys(bodies.size());
+      ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts[carries ? 1 : 0]), Status::ok);
+    }
+    EXPECT_GT(contacts[0].points(), 0U);
+    EXPECT_EQ(digest(contacts[0]), digest(contacts[1]));
+  }
+}
+
+/// A contact that was left out as that of a seam is not apart.
+TEST(CarryOver, seam_that_becomes_dynamic_is_shown) {
+  ShapePool shapes;
+  ShapeId tile;
+  ShapeId ball;
+  ASSERT_EQ(shapes.add(BoxShape{{1, 1, 0.5}, 0.0}, tile), Status::ok);
+  ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+  Scene scene(shapes, {.carry_over = kCarryOver, .seamless_floors = true});
+  Key floor;
+  Key beside;
+  Key key;
+  ASSERT_EQ(scene.add({.shape = tile, .motion = Motion::fixed}, floor), Status::ok);
+  ASSERT_EQ(scene.add({.shape = tile, .pose = Pose::at(2, 0, 0), .motion = Motion::fixed}, beside),
+            Status::ok);
+  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0.98, 0, 0.99)}, key), Status::ok);
+  Contacts contacts;
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  ASSERT_EQ(contacts.size(), 1U);
+  ASSERT_EQ(scene.set_motion(beside, Motion::dynamic), Status::ok);
+  ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
+  std::size_t with_ball = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    with_ball += contacts.a()[i] == key || contacts.b()[i] == key ? 1 : 0;
+  }
+  EXPECT_EQ(with_ball, 2U);
+}
+
+}  // namespace
+}  // namespace winnow::test
