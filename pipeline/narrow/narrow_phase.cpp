@@ -610,7 +610,6 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.tables = &call.tables;
   job.margin = call.options.margin;
   job.overlap = offset(result.overlap_.data(), first);
-  job.beyond_doubt = false;
   job.distance = offset(result.distance_.data(), first);
   job.error_bound = offset(result.error_bound_.data(), first);
   for (int axis = 0; axis < 3; ++axis) {

@@ -25,7 +25,6 @@ class OnePair {
     job_.has_many_bodies = false;
     job_.tables = &tables;
     job_.margin = options.margin;
-    job_.beyond_doubt = false;
     job_.uncertified = &uncertified_;
   }
 
