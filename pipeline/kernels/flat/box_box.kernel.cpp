@@ -165,7 +165,16 @@ WINNOW_SHARED_BY_LEVELS CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxA
 struct BoxBox {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      return answer<T, L>(job, given);
+    }
+  }
+
+  // Levels distance and manifold.
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 answer(NarrowJob& job, const PairBlock<T>& given) {
     const OrderedBlock<T> ordered(job, given);
     const BoxPair<T> pair = box_pair(job, ordered.block);
     const BoxAxis<T> axis = best_axis(pair);

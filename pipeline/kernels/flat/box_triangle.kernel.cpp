@@ -179,7 +179,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex(const BoxTrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(T(kBeyondSquares));
+  Lanes<T> square = Lanes<T>(T(kBeyondSquares));
   Lanes<T> index(T(0));
   const auto offer = [&](const Lanes<T>& d, int number) __attribute__((always_inline)) {
     const LaneMask<T> nearer = d < square;
@@ -337,11 +337,14 @@ struct BoxTriangleStage {
 struct BoxTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
-    alignas(64) T sign[Lanes<T>::kCount];
-    Lanes<T>(T(1)).store(sign);
-    const BoxTrianglePair<T> pair(job, given);
-    return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      alignas(64) T sign[Lanes<T>::kCount];
+      Lanes<T>(T(1)).store(sign);
+      const BoxTrianglePair<T> pair(job, given);
+      return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
+    }
   }
 
   // Shapes that overlap although edges are parallel, whose products have no sign: what these could

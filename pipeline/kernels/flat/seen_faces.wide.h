@@ -98,8 +98,8 @@ class SeenPairs {
     const Lanes<double> sign = (n.z & Lanes<double>(-0.0)) | one;
     const Lanes<double> a = Lanes<double>(-1.0) / (sign + n.z);
     const Lanes<double> b = n.x * n.y * a;
-    rows_.put(kAxisX, {one + sign * n.x * n.x * a, sign * b, -sign * n.x});
-    rows_.put(kAxisY, {b, sign + n.y * n.y * a, -n.y});
+    rows_.put(kAxisX, Doubles3{one + sign * n.x * n.x * a, sign * b, -sign * n.x});
+    rows_.put(kAxisY, Doubles3{b, sign + n.y * n.y * a, -n.y});
     rows_.put(kAxisZ, n);
     plain_ = ~Mask16{0};
   }

@@ -154,7 +154,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex_and_edge(const TrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(T(kBeyondSquares));
+  Lanes<T> square = Lanes<T>(T(kBeyondSquares));
   Lanes<T> index(T(0));
   Lanes<T> ee[3];
   Lanes<T> ff[3];
@@ -302,10 +302,13 @@ struct TriangleStage {
 struct TriangleTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
-    const OrderedBlock<T> ordered(job, given);
-    const TrianglePair<T> pair(job, ordered.block);
-    return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      const OrderedBlock<T> ordered(job, given);
+      const TrianglePair<T> pair(job, ordered.block);
+      return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    }
   }
 
   template <typename T>
