@@ -63,7 +63,8 @@ void edge_edge(const Vec& p, const Vec& e, const Vec& q, const Vec& f, bool flip
   const Vec across = f - u * u.dot(f);
   const double square = across.squaredNorm();
   if (!(square > 0.0)) return;
-  const double t = across.dot(p - q) / square;
+  const Vec between = p - q;
+  const double t = across.dot(between - u * u.dot(between)) / square;
   if (!(t > 0.0 && t < 1.0)) return;
   const Vec y = q + f * t;
   put(on_segment(p, e, y), y);
