@@ -85,6 +85,7 @@ struct TriangleAxis {
   Lanes<T> separation;
   /// No unit vector separates more.
   Lanes<T> most;
+  /// -1 if all edges are parallel, and the normal is no axis.
   Lanes<T> index;
   /// Square of the length of the axis, and for products the edges and where they begin.
   Lanes<T> length2;
@@ -111,7 +112,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline TriangleAxis<T> best_axis(const TrianglePair<T>& pair) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-  // Worse than any axis; left as it is if there is none.
+  // Worse than any axis; left as it is if there is none: a normal that is no axis is not unit.
   const Lanes<T> none = -pair.scale * Lanes<T>(T(2));
   BestAxis<T> best{none * abs(none), Lanes<T>(T(1)), Lanes<T>(T(-1))};
   Lanes<T> left_out(T(0));
@@ -143,7 +144,7 @@ template <typename T>
   pair.a.span(n, low_a, high_a);
   pair.b.span(n, low_b, high_b);
   const LaneMask<T> ahead = low_b - high_a >= low_a - high_b;
-  r.separation = select(ahead, low_b - high_a, low_a - high_b);
+  r.separation = select(any, select(ahead, low_b - high_a, low_a - high_b), none);
   r.normal = select(ahead, n, -n);
   return r;
 }
@@ -154,7 +155,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex_and_edge(const TrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(kBeyondSquares<T>);
+  Lanes<T> square = Lanes<T>(T(kBeyondSquares));
   Lanes<T> index(T(0));
   Lanes<T> ee[3];
   Lanes<T> ff[3];
@@ -224,7 +225,7 @@ template <typename T>
   }
   face.normal = select(of_a, pair.a.normal, pair.b.normal);
   face.area = select(of_a, pair.a.area, pair.b.area);
-  const LaneMask<T> apart = axis.separation > zero;
+  const LaneMask<T> apart = may_be_apart(axis, pair.scale);
   const LaneMask<T> over =
       face.is_over(select(of_a, vertex_b, vertex_a), select(apart, zero, near));
 
@@ -242,7 +243,8 @@ template <typename T>
   AxisPoints<T> p;
   p.points.a = select(of_face, select(of_a, vertex_b - step, vertex_a), edges.a);
   p.points.b = select(of_face, select(of_a, vertex_b, vertex_a + step), edges.b);
-  p.meets = (of_face & over) | (crossing & !of_face);
+  const LaneMask<T> has_axis = axis.index > Lanes<T>(T(-0.5));
+  p.meets = ((of_face & over) | (crossing & !of_face)) & has_axis;
   p.doubt = select(of_face, face.area / sqrt(axis.length2), Lanes<T>(T(1)));
   return p;
 }
@@ -258,8 +260,7 @@ enum TrianglePlace {
   kCount
 };
 
-// Called by both precisions.
-[[gnu::noinline]] void see_triangles(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+[[gnu::noinline]] void see_triangles(const Stage<double, kCount>& rows, SeenPairs& seen) {
   seen.look_along(rows.vector(kNormal));
   for (int side = 0; side < 2; ++side) {
     const int at = side == 0 ? kA : kB;
@@ -284,9 +285,9 @@ struct TriangleStage {
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   [[nodiscard]] double rounding(int side, unsigned lane) const {
-    return static_cast<double>(stage.value[kRoundingA + side][lane]);
+    return stage.value[kRoundingA + side][lane];
   }
-  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) { see_triangles(rows, seen); }
+  void see(SeenPairs& seen) const { see_triangles(stage, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
@@ -303,17 +304,20 @@ struct TriangleStage {
 struct TriangleTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
-    const OrderedBlock<T> ordered(job, given);
-    const TrianglePair<T> pair(job, ordered.block);
-    return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      const OrderedBlock<T> ordered(job, given);
+      const TrianglePair<T> pair(job, ordered.block);
+      return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    }
   }
 
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const TrianglePair<T> pair(job, block);
-    const Lanes<T> slack = verdict_slack(job, pair.scale);
-    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
+    const Lanes<T> slack = verdict_slack(pair.scale);
+    const Mask16 valid = bits(in_verdict_range(pair.scale));
     // An axis is at most as long as the edges' product: what is above the slack and the roundings
     // times that is separated by more.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;
