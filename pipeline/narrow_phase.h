@@ -18,9 +18,6 @@ namespace winnow {
 
 /// How exact an answer must be. All of them carry an error bound that holds.
 enum class NarrowTier : std::uint8_t {
-  /// Float lanes. Errors of about 1e-6 of the sizes, of contact points up to 1e-4; the sign may be
-  /// wrong within the bound.
-  fast,
   /// Errors of at most 4e-7 x (sizes + |distance|), usually 1e-15; the sign is right, also where
   /// shapes touch. What the lanes cannot certify is solved again, one pair at a time.
   robust,

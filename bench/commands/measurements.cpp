@@ -363,9 +363,7 @@ class PairsCommand : public RowsCommand {
     return levels_.of(std::span<const ContactLevel>(kLevels), [](auto l) { return to_text(l); });
   }
   [[nodiscard]] std::vector<NarrowTier> tiers() const {
-    constexpr NarrowTier kAllTiers[] = {NarrowTier::fast, NarrowTier::robust,
-                                        NarrowTier::reference};
-    return tiers_.of(std::span<const NarrowTier>(kAllTiers), [](auto t) { return to_text(t); });
+    return tiers_.of(std::span<const NarrowTier>(kTiers), [](auto t) { return to_text(t); });
   }
 
   bool peers_ = true;
@@ -380,7 +378,7 @@ class PairsCommand : public RowsCommand {
 
 class Narrow final : public PairsCommand {
  public:
-  Narrow() : PairsCommand(pair_kinds(), {"all"}, {"fast", "robust"}) {}
+  Narrow() : PairsCommand(pair_kinds(), {"all"}, {"robust"}) {}
 
   void add_options(CLI::App& app) {
     number(app, "--pairs", pairs_, 1, 1e7,

@@ -267,8 +267,8 @@ void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Pairs of one kind: fast and robust on one thread, robust on two if there are too many pairs for
-/// the caches, and the other libraries.
+/// Pairs of one kind on one thread, on two if there are too many pairs for the caches, and the
+/// other libraries.
 void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
   const std::string name = options.at("kind");
   const PairKind* kind = find_pair_kind(name);
@@ -279,8 +279,7 @@ void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
       add_pair_times(measured.results,
                      {.kind = *kind,
                       .pairs = pairs,
-                      .contenders = {.tiers = {NarrowTier::fast, NarrowTier::robust},
-                                     .threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2}
+                      .contenders = {.threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2}
                                                                           : std::vector<int>{1},
                                      .peers = true}},
                      PairKeys::settings)

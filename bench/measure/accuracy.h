@@ -76,7 +76,7 @@ struct AccuracyOptions {
   PairKind kind;
   PairSetOptions set{.pairs = 400, .nearest = kNearestPairs};
   std::vector<ContactLevel> levels{ContactLevel::distance};
-  std::vector<NarrowTier> tiers{NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+  std::vector<NarrowTier> tiers{NarrowTier::robust, NarrowTier::reference};
   bool peers = true;  ///< other libraries too, where the tool was built with them
   TruthSource judge = TruthSource::oracle;
   std::size_t runs = 3;  ///< that are timed

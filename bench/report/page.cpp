@@ -148,9 +148,8 @@ constexpr const char* kHowToRead =
 constexpr const char* kWords =
     "The reference sweep is a plain sort and sweep over 10,000 boxes, by which machines are "
     "compared; a + behind the commit says that the source was changed since. Scenes are described "
-    "by bench/run scenes; the tiers of the narrow phase are fast (float lanes), robust (each "
-    "answer certified in double, or solved again, the default) and reference (each pair solved by "
-    "itself).";
+    "by bench/run scenes; the tiers of the narrow phase are robust (each answer certified in "
+    "double, or solved again, the default) and reference (each pair solved by itself).";
 
 /// A line that says where and when, and how much is amiss; behind it, all of that.
 std::string circumstances(const Json& document) {

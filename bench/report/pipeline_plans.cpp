@@ -31,8 +31,7 @@ void measure_narrow_times(Results& results, const ReportOptions& options, const 
   NarrowMeasureOptions asked{
       .kind = kind,
       .pairs = options.quick ? 512U : 8192U,
-      .contenders = {.tiers = {NarrowTier::robust, NarrowTier::fast, NarrowTier::reference},
-                     .peers = options.peers},
+      .contenders = {.tiers = {NarrowTier::robust, NarrowTier::reference}, .peers = options.peers},
       .seed = options.seed};
   asked.race.rounds = options.quick ? 3 : 5;
   if (options.quick) asked.race.turn_ms = 0.5;

@@ -33,7 +33,8 @@ struct PairKind {
 inline constexpr std::array kLevels{ContactLevel::boolean, ContactLevel::distance,
                                     ContactLevel::manifold};
 inline constexpr std::array<std::string_view, 3> kLevelNames{"boolean", "distance", "manifold"};
-inline constexpr std::array<std::string_view, 3> kTierNames{"fast", "robust", "reference"};
+inline constexpr std::array kTiers{NarrowTier::robust, NarrowTier::reference};
+inline constexpr std::array<std::string_view, 2> kTierNames{"robust", "reference"};
 
 [[nodiscard]] constexpr std::string_view to_text(ContactLevel level) noexcept {
   for (std::size_t i = 0; i < kLevels.size(); ++i) {

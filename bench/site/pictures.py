@@ -263,7 +263,7 @@ def shapes(folder, results):
     for kind in ("sphere-box", "capsule-capsule", "box-box", "triangle-triangle", "hull16-hull16"):
         times = {row["engine"]: float(row["ns_median"]) for row in rows
                  if row["kind"] == kind and row["ns_median"]}
-        listed = [("winnow robust", times["robust"], True), ("winnow fast", times["fast"], True)]
+        listed = [("winnow robust", times["robust"], True)]
         listed += [(name, times[name], False) for name in ("Bullet", "FCL libccd", "FCL indep")
                    if name in times]
         groups.append((kind, listed))

@@ -22,7 +22,7 @@ enum {
 
 /// How exact an answer must be.
 typedef int32_t winnow_narrow_tier;
-enum { WINNOW_TIER_FAST = 0, WINNOW_TIER_ROBUST = 1, WINNOW_TIER_REFERENCE = 2 };
+enum { WINNOW_TIER_ROBUST = 0, WINNOW_TIER_REFERENCE = 1 };
 
 /// Two bodies that may touch.
 typedef struct winnow_body_pair {

@@ -17,7 +17,7 @@ extern "C" {
 enum { WINNOW_MOTION_FIXED = 0, WINNOW_MOTION_DYNAMIC = 1, WINNOW_MOTION_SLEEPING = 2 };
 #define WINNOW_MOTIONS 3
 
-/// Null, and zeros behind `size`, stand for what C++ has by default, but for `tier`: 0 is fast.
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_scene_options {
   size_t size;  ///< sizeof(winnow_scene_options), of the caller
   const winnow_memory* memory;

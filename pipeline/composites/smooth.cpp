@@ -26,7 +26,7 @@ enum class EdgeContact : std::uint8_t {
 };
 
 // As a share of the longest edge: corners whose heights differ by less are equally far along the
-// normal. Narrow-phase normals of tier `fast` are as exact as that.
+// normal.
 constexpr double kLevel = 1e-6;
 constexpr double kSameNormal = 1e-13;
 // Normals that lean to the back of a triangle by less lie along it.

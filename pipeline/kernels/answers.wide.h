@@ -44,11 +44,10 @@ template <typename T>
          (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
-/// Whether a kernel leaves pairs that it cannot be sure about to one in double.
+/// Whether lanes are the first pass of level boolean, which is in float: what it is not sure about
+/// is left to double.
 template <typename T>
-[[gnu::always_inline]] inline bool leaves_doubt(const NarrowJob& job) {
-  return sizeof(T) == sizeof(float) && job.beyond_doubt;
-}
+inline constexpr bool kFirstPass = sizeof(T) == sizeof(float);
 
 /// Eight bits as the lowest bits of eight bytes.
 [[gnu::always_inline]] inline std::uint64_t bytes_of_bits(Mask16 bits) {
@@ -85,12 +84,7 @@ template <typename T>
   } else {
     alignas(64) double stage[lanes];
     double* to = block.count == lanes ? out : stage;
-    if constexpr (sizeof(T) == sizeof(double)) {
-      v.store_unaligned(to);
-    } else {
-      to_double<0>(v).store_unaligned(to);
-      to_double<1>(v).store_unaligned(to + 8);
-    }
+    v.store_unaligned(to);
     if (block.count == lanes) return;
     for (unsigned lane = 0; lane < block.count; ++lane) out[lane] = stage[lane];
   }
@@ -149,15 +143,13 @@ template <int Points, typename T>
   }
 }
 
-/// The lanes' numbers as floats; what comes after those of eight doubles is unspecified.
+/// The lanes' numbers as floats; what comes after them is unspecified.
 template <typename T>
 [[gnu::always_inline]] inline Floats as_floats(const Lanes<T>& v) {
   if constexpr (Lanes<T>::kCount == 1) {
     return Floats(static_cast<float>(v.part[0]));
-  } else if constexpr (sizeof(T) == sizeof(double)) {
-    return to_single(v);
   } else {
-    return v;
+    return to_single(v);
   }
 }
 
@@ -182,17 +174,11 @@ template <typename T>
 }
 
 /// Two points per lane.
-template <typename T>
-[[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const PairBlock<T>&,
-                                                 const Mask16 (&lanes)[2],
+[[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const Mask16 (&lanes)[2],
                                                  const ContactRegisters (&c)[2]) {
   ContactRegisters zipped;
   for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<0>(c[0].column[k], c[1].column[k]);
   append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
-  if constexpr (Lanes<T>::kCount == kLanes) {
-    for (int k = 0; k < 6; ++k) zipped.column[k] = interleave<8>(c[0].column[k], c[1].column[k]);
-    append_contacts(out, interleave_bits(lanes[0] >> 8U, lanes[1] >> 8U), zipped);
-  }
 }
 
 /// Any number of points per lane.
@@ -231,7 +217,7 @@ template <int Points, typename T>
   if constexpr (Points == 1) {
     append_contacts(job.contacts, lanes[0], columns[0]);
   } else if constexpr (Points == 2) {
-    append_zipped(job.contacts, block, lanes, columns);
+    append_zipped(job.contacts, lanes, columns);
   } else {
     append_pair_by_pair(job.contacts, lanes, columns);
   }
@@ -251,13 +237,12 @@ std::uint32_t answer_job(NarrowJob& job) {
   return uncertified;
 }
 
-/// Level boolean of tier robust: what float is sure about, and then the rest in double. A block of
-/// float lanes takes as long as one of double, for twice as many pairs.
-template <typename Kind, NarrowKernel in_double = answer_job<Kind, double, kBoolean>>
+/// Level boolean: what float is sure about, and then the rest in double. A block of float lanes
+/// takes as long as one of double, for twice as many pairs.
+template <typename Kind, NarrowKernel in_double>
 std::uint32_t answer_sure_first(NarrowJob& job) {
   if (job.count <= Doubles::kCount) return in_double(job);
   NarrowJob part = job;
-  part.beyond_doubt = true;
   const std::uint32_t doubtful = answer_job<Kind, float, kBoolean>(part);
   constexpr std::uint32_t kRoom = 64;
   BodyPair pairs[kRoom];
@@ -278,15 +263,6 @@ std::uint32_t answer_sure_first(NarrowJob& job) {
     for (std::uint32_t i = 0; i < count; ++i) job.uncertified[uncertified++] = left[i];
   }
   return uncertified;
-}
-
-/// `sure_first`: not where loading pairs takes longer than the answer.
-template <typename Kind>
-constexpr NarrowKernels narrow_kernels_of(bool sure_first = true) {
-  return {{answer_job<Kind, float, kBoolean>, answer_job<Kind, float, kDistance>,
-           answer_job<Kind, float, kManifold>},
-          {sure_first ? answer_sure_first<Kind> : answer_job<Kind, double, kBoolean>,
-           answer_job<Kind, double, kDistance>, answer_job<Kind, double, kManifold>}};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

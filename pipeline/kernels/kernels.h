@@ -46,8 +46,6 @@ struct NarrowJob {
 
   /// Level boolean: 1 where the shapes share a point.
   std::uint8_t* overlap;
-  /// Level boolean: kernels in float certify nothing that those in double might answer otherwise.
-  bool beyond_doubt;
   /// Levels distance and manifold. Distance is negative by the penetration depth, and <= 0 exactly
   /// where the shapes share a point. At level manifold a pair farther apart than the margin may
   /// have any lower bound of its distance that is above the margin.
@@ -76,16 +74,12 @@ struct NarrowJob {
 /// Answers a job; returns the number of uncertified pairs.
 using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
 
-/// The kernels of one pair kind. Null: there is none, and the solver answers.
+/// The kernels of one pair kind. What is not in `uncertified` has the right sign and a bound of at
+/// most 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones, ellipsoids and tapered
+/// capsules meet more than spheres and half-spaces, or 4e-7 of a program's own sets.
 struct NarrowKernels {
-  /// By kernel_index of the level. Tier fast: all lanes in float; a pair goes to `uncertified` if
-  /// it left float's range, or if its lanes found no answer that is good to about 1e-4 of the
-  /// sizes.
-  NarrowKernel fast[3];
-  /// Tier robust: what is not in `uncertified` has the right sign and a bound of at most
-  /// 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones, ellipsoids and tapered capsules
-  /// meet more than spheres and half-spaces, or 4e-7 of a program's own sets.
-  NarrowKernel robust[3];
+  /// By kernel_index of the level.
+  NarrowKernel of_level[3];
 };
 
 /// The kinds of pairs that have kernels, as WINNOW_X(a, b): their table is `a_b_kernels()`, which a

@@ -16,18 +16,20 @@ std::uint32_t answer_one_or_many(NarrowJob& job) {
 }
 
 /// Of kinds whose classes answer a pair alone, too; up to a level, as what makes several contacts
-/// may need more lanes than one.
-template <typename Kind, int MostAlone = kManifold>
-constexpr NarrowKernels closed_form_kernels_of(bool sure_first = true) {
-  constexpr NarrowKernel in_double = answer_one_or_many<Kind, kBoolean>;
+/// may need more lanes than one. `SureFirst`: level boolean goes over the pairs in float first,
+/// which is no gain where loading them takes longer than the answer.
+template <typename Kind, int MostAlone = kManifold, bool SureFirst = true>
+constexpr NarrowKernels closed_form_kernels_of() {
+  constexpr NarrowKernel boolean = [] {
+    constexpr NarrowKernel in_double = answer_one_or_many<Kind, kBoolean>;
+    if constexpr (SureFirst) return answer_sure_first<Kind, in_double>;
+    return in_double;
+  }();
   constexpr NarrowKernel manifold = [] {
     if constexpr (MostAlone == kManifold) return answer_one_or_many<Kind, kManifold>;
     return answer_job<Kind, double, kManifold>;
   }();
-  return {{answer_job<Kind, float, kBoolean>, answer_job<Kind, float, kDistance>,
-           answer_job<Kind, float, kManifold>},
-          {sure_first ? answer_sure_first<Kind, in_double> : in_double,
-           answer_one_or_many<Kind, kDistance>, manifold}};
+  return {{boolean, answer_one_or_many<Kind, kDistance>, manifold}};
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME

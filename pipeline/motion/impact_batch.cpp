@@ -85,7 +85,7 @@ class StartDistances {
     const NarrowKernels* const kernels =
         narrow_kernels(shapes_[pairs_[0].a].kind(), shapes_[pairs_[0].b].kind());
     if (kernels == nullptr) return;
-    const std::uint32_t left = kernels->robust[kernel_index(ContactLevel::distance)](job_);
+    const std::uint32_t left = kernels->of_level[kernel_index(ContactLevel::distance)](job_);
     for (std::uint32_t i = 0; i < left; ++i) distance_[uncertified_[i]] = 1.0;
     for (std::size_t i = 0; i < job_.count; ++i) {
       if (!(distance_[i] <= 0.0)) continue;

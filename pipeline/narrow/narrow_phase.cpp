@@ -622,7 +622,6 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.margin = call.options.margin;
   job.margins = nullptr;
   job.overlap = offset(result.overlap_.data(), first);
-  job.beyond_doubt = false;
   job.distance = offset(result.distance_.data(), first);
   job.error_bound = offset(result.error_bound_.data(), first);
   for (int axis = 0; axis < 3; ++axis) {

@@ -26,7 +26,6 @@ class OnePair {
     job_.tables = &tables;
     job_.margin = options.margins.empty() ? options.margin : options.margins[0];
     job_.margins = nullptr;
-    job_.beyond_doubt = false;
     job_.uncertified = &uncertified_;
   }
 

@@ -27,9 +27,7 @@ namespace winnow {
                                              const NarrowOptions& options) noexcept {
   const NarrowKernels* const kernels = narrow_kernels(a, b);
   if (kernels == nullptr || options.tier == NarrowTier::reference) return nullptr;
-  const std::uint32_t level = kernel_index(options.level);
-  const bool fast = options.tier == NarrowTier::fast && kernels->fast[level] != nullptr;
-  return fast ? kernels->fast[level] : kernels->robust[level];
+  return kernels->of_level[kernel_index(options.level)];
 }
 
 }  // namespace winnow

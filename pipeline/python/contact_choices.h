@@ -13,9 +13,8 @@ inline constexpr Choices<ContactLevel, 4> kLevels{{{"pairs", ContactLevel::pairs
                                                    {"boolean", ContactLevel::boolean},
                                                    {"distance", ContactLevel::distance},
                                                    {"manifold", ContactLevel::manifold}}};
-inline constexpr Choices<NarrowTier, 3> kTiers{{{"fast", NarrowTier::fast},
-                                                {"robust", NarrowTier::robust},
-                                                {"reference", NarrowTier::reference}}};
+inline constexpr Choices<NarrowTier, 2> kTiers{
+    {{"robust", NarrowTier::robust}, {"reference", NarrowTier::reference}}};
 
 [[nodiscard]] inline pybind11::dict narrow_statistics(const NarrowStatistics& s) {
   pybind11::dict result;

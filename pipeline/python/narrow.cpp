@@ -164,7 +164,7 @@ void add_narrow(py::module_& module) {
            py::kw_only(), arg("level") = "manifold", arg("tier") = "robust", arg("margin") = 0.0,
            "Answers pairs (m, 2) uint32 of bodies: body i has the shape shape_of[i], (n,) or one "
            "for all, at poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of "
-           "both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'fast', 'robust' or "
+           "both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'robust' or "
            "'reference'. Pairs no farther apart than `margin` get contacts, too. Pairs of uint32 "
            "and poses (n, 7) of double in one piece are read where they lie.")
       .def(

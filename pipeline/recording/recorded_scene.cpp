@@ -1,5 +1,6 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
+#include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/recording/passed.h"
@@ -112,7 +113,7 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
   for (const StructureKind& structure : options.structures) {
     call.put_text(structure.name()).put(structure.parameter());
   }
-  call.put(options.margin).put(options.tier).put(options.carry_over);
+  call.put(options.margin).put(tier_number(options.tier)).put(options.carry_over);
   call.put(options.contact_reduction).put(options.warm_start);
   call.put(std::uint64_t{options.build_budget});
 }

@@ -1,3 +1,4 @@
+#include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
 #include "pipeline/replay/replay_state.h"
@@ -43,7 +44,7 @@ Status ReplayState::make_scene(ReplayedWorld& of) {
   made.execution = options.execution;
   for (StructureKind& structure : made.structures) structure = read_structure(in);
   made.margin = in.get<double>();
-  made.tier = in.get_enum(NarrowTier::reference);
+  made.tier = read_tier(in);
   made.carry_over = in.get<double>();
   made.contact_reduction = in.get_bool();
   made.warm_start = in.get_bool();

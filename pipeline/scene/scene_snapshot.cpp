@@ -7,6 +7,7 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
+#include "pipeline/narrow/tier_number.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ void visit_body_columns(State& scene, Visit&& visit) {
 
 void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
   out.put(options.margin);
-  out.put(options.tier);
+  out.put(tier_number(options.tier));
   out.put(options.carry_over);
   out.put(options.contact_reduction);
   out.put(options.warm_start);
@@ -43,7 +44,7 @@ void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
 
 void read_options(ByteReader& in, SceneOptions& options) noexcept {
   options.margin = in.get<double>();
-  options.tier = in.get_enum(NarrowTier::reference);
+  options.tier = read_tier(in);
   options.carry_over = in.get<double>();
   options.contact_reduction = in.get_bool();
   options.warm_start = in.get_bool();

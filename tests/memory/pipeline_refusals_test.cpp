@@ -271,7 +271,7 @@ TEST(NarrowRefusals, change_nothing_and_leave_no_trace) {
   for (const int threads : {1, 2}) {
     std::vector<Call<NarrowWorld>> calls;
     calls.push_back({"overlaps", [](auto& w) { return w.collide(boolean, NarrowTier::robust); }});
-    calls.push_back({"distances", [](auto& w) { return w.collide(distance, NarrowTier::fast); }});
+    calls.push_back({"distances", [](auto& w) { return w.collide(distance, NarrowTier::robust); }});
     calls.push_back({"manifolds", [](auto& w) { return w.collide(manifold, NarrowTier::robust); }});
     calls.push_back({"solved", [](auto& w) { return w.collide(manifold, NarrowTier::reference); }});
     calls.push_back({"primitives", [](auto& w) { return w.expand(); }});

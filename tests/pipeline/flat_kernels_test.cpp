@@ -18,8 +18,6 @@
 namespace winnow::test {
 namespace {
 
-enum Tier { kFast, kRobust };
-
 // Pairs of two kinds, body 2 i against body 2 i + 1.
 struct Scene {
   ShapeKind kind[2];
@@ -61,7 +59,7 @@ struct Answers {
   }
 };
 
-Answers run(const Scene& scene, Tier tier, ContactLevel level, double margin = 0.0) {
+Answers run(const Scene& scene, ContactLevel level, double margin = 0.0) {
   const std::size_t n = scene.pairs.size();
   Answers r;
   const std::size_t room = 4 * n + 16;
@@ -100,7 +98,7 @@ Answers run(const Scene& scene, Tier tier, ContactLevel level, double margin = 0
   job.uncertified = uncertified.data();
   const NarrowKernels* kernels = narrow_kernels(scene.kind[0], scene.kind[1]);
   const std::uint32_t index = kernel_index(level);
-  const std::uint32_t left = (tier == kFast ? kernels->fast : kernels->robust)[index](job);
+  const std::uint32_t left = kernels->of_level[index](job);
   EXPECT_LE(left, n);
   for (std::uint32_t i = 0; i < left; ++i) r.certified[uncertified[i]] = false;
   return r;
@@ -204,52 +202,47 @@ std::vector<Twins> twins_of(const Scene& scene) {
 // The twin itself is right to a few roundings.
 constexpr long double kTwinError = 1e-17L;
 
-void expect_overlaps(const std::vector<Twins>& twins, const Answers& answers, Tier tier) {
+void expect_overlaps(const std::vector<Twins>& twins, const Answers& answers) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const double doubt = twins[i].scale * (tier == kFast ? 1e-3 : static_cast<double>(kTwinError));
+    const double doubt = twins[i].scale * static_cast<double>(kTwinError);
     if (std::abs(twins[i].distance) <= doubt) continue;
     ASSERT_EQ(answers.overlap[i], twins[i].distance <= 0.0L ? 1 : 0)
         << i << " distance " << static_cast<double>(twins[i].distance);
   }
 }
 
-void expect_distances(const std::vector<Twins>& twins, const Answers& answers, Tier tier) {
+void expect_distances(const std::vector<Twins>& twins, const Answers& answers) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
     const Twins& t = twins[i];
     const double d = answers.distance[i];
     const double doubt = answers.bound[i] + t.scale * static_cast<double>(64 * kTwinError);
     ASSERT_NEAR(d, static_cast<double>(t.distance), doubt) << i;
-    // Float lanes may lose a pair, but know it.
-    if (tier == kFast && answers.bound[i] > 1e-4 * t.scale) continue;
-    ASSERT_LE(answers.bound[i], (tier == kFast ? 1e-2 : 4e-12) * t.scale) << i;
-    if (tier == kRobust && std::abs(t.distance) > kTwinError * t.scale) {
+    ASSERT_LE(answers.bound[i], 4e-12 * t.scale) << i;
+    if (std::abs(t.distance) > kTwinError * t.scale) {
       ASSERT_EQ(d <= 0.0, t.distance <= 0.0L) << i;
     }
     const LongVector n = answers.normal_of(i);
-    const double tolerance = t.scale * (tier == kFast ? 1e-4 : 1e-10);
-    ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, tier == kFast ? 1e-5 : 1e-13) << i;
-    if (tier == kRobust) {
-      // What the normal separates is the distance.
-      ASSERT_NEAR(static_cast<double>(separation(t.a, t.b, n)), d, tolerance) << i;
-    }
+    const double tolerance = t.scale * 1e-10;
+    ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, 1e-13) << i;
+    // What the normal separates is the distance.
+    ASSERT_NEAR(static_cast<double>(separation(t.a, t.b, n)), d, tolerance) << i;
     // Both points lie on the shapes.
     const LongVector on_a = answers.point_of(i);
     const LongVector on_b = on_a + n * d;
-    const double slack = t.scale * (tier == kFast ? 1e-2 : 1e-6);
+    const double slack = t.scale * 1e-6;
     ASSERT_LE(static_cast<double>(signed_distance(t.a, FlatTwin(on_a))), slack) << i;
     ASSERT_LE(static_cast<double>(signed_distance(t.b, FlatTwin(on_b))), slack) << i;
   }
 }
 
-void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, double margin,
-                      Tier tier) {
+void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, double margin) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
     const Twins& t = twins[i];
     const double d = answers.distance[i];
-    const double tolerance = answers.bound[i] + t.scale * (tier == kFast ? 1e-4 : 1e-6);
+    const double tolerance = answers.bound[i] + t.scale * 1e-6;
     if (d > margin) {
       ASSERT_EQ(answers.count[i], 0U) << i;
       ASSERT_LE(d, static_cast<double>(t.distance) + tolerance) << i;
@@ -262,7 +255,7 @@ void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, d
     ASSERT_LE(answers.count[i], kManifoldPoints) << i;
     const std::size_t first = answers.first[i];
     ASSERT_NEAR(answers.depth[first], -d, tolerance) << i;
-    const double off = t.scale * (tier == kFast ? 1e-3 : 1e-5);
+    const double off = t.scale * 1e-5;
     for (std::size_t p = first; p < first + answers.count[i]; ++p) {
       ASSERT_LE(answers.depth[p], answers.depth[first] + tolerance) << i;
       const LongVector x(answers.position[0][p], answers.position[1][p], answers.position[2][p]);
@@ -284,101 +277,91 @@ std::string name_of(const ::testing::TestParamInfo<Kinds>& info) {
   return std::string(to_string(info.param.a)) + "_" + to_string(info.param.b);
 }
 
-void expect_all_right(const Scene& scene, std::initializer_list<Tier> tiers) {
+void expect_all_right(const Scene& scene) {
   const std::vector<Twins> twins = twins_of(scene);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
-    for (const Tier tier : tiers) {
-      SCOPED_TRACE(tier == kFast ? "fast" : "robust");
-      expect_overlaps(twins, run(scene, tier, ContactLevel::boolean), tier);
-      expect_distances(twins, run(scene, tier, ContactLevel::distance), tier);
-      for (const double margin : {0.0, 0.25}) {
-        expect_manifolds(twins, run(scene, tier, ContactLevel::manifold, margin), margin, tier);
-      }
+    expect_overlaps(twins, run(scene, ContactLevel::boolean));
+    expect_distances(twins, run(scene, ContactLevel::distance));
+    for (const double margin : {0.0, 0.25}) {
+      expect_manifolds(twins, run(scene, ContactLevel::manifold, margin), margin);
     }
   }
 }
 
 TEST_P(FlatKernels, random_pairs_are_answered_within_their_bounds) {
-  expect_all_right(random_scene(GetParam().a, GetParam().b, scaled(1'000)), {kFast, kRobust});
+  expect_all_right(random_scene(GetParam().a, GetParam().b, scaled(1'000)));
 }
 
 TEST_P(FlatKernels, hostile_pairs_are_right_or_left_to_the_solver) {
-  expect_all_right(hostile_scene(GetParam().a, GetParam().b, scaled(3'000)), {kRobust});
+  expect_all_right(hostile_scene(GetParam().a, GetParam().b, scaled(3'000)));
 }
 
 TEST_P(FlatKernels, random_pairs_are_practically_never_left_to_the_solver) {
   const Scene scene = random_scene(GetParam().a, GetParam().b, 4'096);
   for (const auto level : {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-    for (const Tier tier : {kFast, kRobust}) {
-      const Answers answers = run(scene, tier, level);
-      const auto left = std::count(answers.certified.begin(), answers.certified.end(), false);
-      EXPECT_LE(left, tier == kFast ? 100 : 12) << static_cast<int>(level);
-    }
+    const Answers answers = run(scene, level);
+    const auto left = std::count(answers.certified.begin(), answers.certified.end(), false);
+    EXPECT_LE(left, 12) << static_cast<int>(level);
   }
 }
 
 TEST_P(FlatKernels, swapped_pairs_of_one_kind_give_the_mirrored_answer) {
   if (GetParam().a != GetParam().b) GTEST_SKIP() << "one order only";
   Scene scene = random_scene(GetParam().a, GetParam().b, 515);
-  for (const Tier tier : {kFast, kRobust}) {
-    const Answers given = run(scene, tier, ContactLevel::distance);
-    const Answers manifold = run(scene, tier, ContactLevel::manifold, 0.1);
-    for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
-    const Answers mirrored = run(scene, tier, ContactLevel::distance);
-    const Answers mirrored_manifold = run(scene, tier, ContactLevel::manifold, 0.1);
-    for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-      ASSERT_EQ(given.distance[i], mirrored.distance[i]);
-      ASSERT_EQ(given.bound[i], mirrored.bound[i]);
-      ASSERT_EQ(given.normal_of(i), -mirrored.normal_of(i));
-      const Pose& a = scene.poses[scene.pairs[i].b];
-      const Pose& b = scene.poses[scene.pairs[i].a];
-      const LongVector apart(b.position[0] - a.position[0], b.position[1] - a.position[1],
-                             b.position[2] - a.position[2]);
-      const LongVector on_b = given.point_of(i) + given.normal_of(i) * given.distance[i] - apart;
-      ASSERT_LT((mirrored.point_of(i) - on_b).norm(), tier == kFast ? 1e-5L : 1e-13L);
-      ASSERT_EQ(manifold.count[i], mirrored_manifold.count[i]);
-      for (std::uint32_t p = 0; p < manifold.count[i]; ++p) {
-        const std::size_t x = manifold.first[i] + p;
-        const std::size_t y = mirrored_manifold.first[i] + p;
-        ASSERT_EQ(manifold.depth[x], mirrored_manifold.depth[y]);
-        ASSERT_EQ(manifold.feature[x] >> 32U, mirrored_manifold.feature[y] & 0xFFFFFFFFU);
-      }
+  const Answers given = run(scene, ContactLevel::distance);
+  const Answers manifold = run(scene, ContactLevel::manifold, 0.1);
+  for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
+  const Answers mirrored = run(scene, ContactLevel::distance);
+  const Answers mirrored_manifold = run(scene, ContactLevel::manifold, 0.1);
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    ASSERT_EQ(given.distance[i], mirrored.distance[i]);
+    ASSERT_EQ(given.bound[i], mirrored.bound[i]);
+    ASSERT_EQ(given.normal_of(i), -mirrored.normal_of(i));
+    const Pose& a = scene.poses[scene.pairs[i].b];
+    const Pose& b = scene.poses[scene.pairs[i].a];
+    const LongVector apart(b.position[0] - a.position[0], b.position[1] - a.position[1],
+                           b.position[2] - a.position[2]);
+    const LongVector on_b = given.point_of(i) + given.normal_of(i) * given.distance[i] - apart;
+    ASSERT_LT((mirrored.point_of(i) - on_b).norm(), 1e-13L);
+    ASSERT_EQ(manifold.count[i], mirrored_manifold.count[i]);
+    for (std::uint32_t p = 0; p < manifold.count[i]; ++p) {
+      const std::size_t x = manifold.first[i] + p;
+      const std::size_t y = mirrored_manifold.first[i] + p;
+      ASSERT_EQ(manifold.depth[x], mirrored_manifold.depth[y]);
+      ASSERT_EQ(manifold.feature[x] >> 32U, mirrored_manifold.feature[y] & 0xFFFFFFFFU);
     }
-    for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
   }
+  for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
 }
 
 TEST_P(FlatKernels, answers_are_the_same_bits_everywhere_in_a_batch_and_on_all_instruction_sets) {
   Scene scene = hostile_scene(GetParam().a, GetParam().b, 301);
-  for (const Tier tier : {kFast, kRobust}) {
-    for (const auto level :
-         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-      const Answers whole = run(scene, tier, level, 0.1);
-      for (const Isa isa : available_isas()) {
-        const IsaScope scope(isa);
-        const std::vector<BodyPair> all = scene.pairs;
-        scene.pairs.erase(scene.pairs.begin(), scene.pairs.begin() + 5);
-        const Answers again = run(scene, tier, level, 0.1);
-        scene.pairs = all;
-        for (std::size_t i = 0; i + 5 < all.size(); ++i) {
-          ASSERT_EQ(again.certified[i], whole.certified[i + 5]) << i;
-          if (!again.certified[i]) continue;
-          if (level == ContactLevel::boolean) {
-            ASSERT_EQ(again.overlap[i], whole.overlap[i + 5]) << i;
-            continue;
-          }
-          ASSERT_EQ(again.distance[i], whole.distance[i + 5]) << i;
-          ASSERT_EQ(again.bound[i], whole.bound[i + 5]) << i;
-          ASSERT_EQ(again.normal_of(i), whole.normal_of(i + 5)) << i;
-          if (level == ContactLevel::distance) {
-            ASSERT_EQ(again.point_of(i), whole.point_of(i + 5)) << i;
-          } else {
-            ASSERT_EQ(again.count[i], whole.count[i + 5]) << i;
-            for (std::uint32_t p = 0; p < again.count[i]; ++p) {
-              ASSERT_EQ(again.depth[again.first[i] + p], whole.depth[whole.first[i + 5] + p]);
-              ASSERT_EQ(again.feature[again.first[i] + p], whole.feature[whole.first[i + 5] + p]);
-            }
+  for (const auto level : {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+    const Answers whole = run(scene, level, 0.1);
+    for (const Isa isa : available_isas()) {
+      const IsaScope scope(isa);
+      const std::vector<BodyPair> all = scene.pairs;
+      scene.pairs.erase(scene.pairs.begin(), scene.pairs.begin() + 5);
+      const Answers again = run(scene, level, 0.1);
+      scene.pairs = all;
+      for (std::size_t i = 0; i + 5 < all.size(); ++i) {
+        ASSERT_EQ(again.certified[i], whole.certified[i + 5]) << i;
+        if (!again.certified[i]) continue;
+        if (level == ContactLevel::boolean) {
+          ASSERT_EQ(again.overlap[i], whole.overlap[i + 5]) << i;
+          continue;
+        }
+        ASSERT_EQ(again.distance[i], whole.distance[i + 5]) << i;
+        ASSERT_EQ(again.bound[i], whole.bound[i + 5]) << i;
+        ASSERT_EQ(again.normal_of(i), whole.normal_of(i + 5)) << i;
+        if (level == ContactLevel::distance) {
+          ASSERT_EQ(again.point_of(i), whole.point_of(i + 5)) << i;
+        } else {
+          ASSERT_EQ(again.count[i], whole.count[i + 5]) << i;
+          for (std::uint32_t p = 0; p < again.count[i]; ++p) {
+            ASSERT_EQ(again.depth[again.first[i] + p], whole.depth[whole.first[i + 5] + p]);
+            ASSERT_EQ(again.feature[again.first[i] + p], whole.feature[whole.first[i + 5] + p]);
           }
         }
       }
@@ -399,13 +382,11 @@ TEST_P(FlatKernels, bad_poses_and_sizes_out_of_range_are_left_to_the_solver) {
   scene.poses[scene.pairs[50].a].position[0] = 1e200;
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
-    for (const Tier tier : {kFast, kRobust}) {
-      for (const auto level :
-           {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-        const Answers answers = run(scene, tier, level);
-        for (const std::size_t i : {3U, 9U, 20U, 21U, 40U, 41U, 50U}) {
-          EXPECT_FALSE(answers.certified[i]) << i;
-        }
+    for (const auto level :
+         {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+      const Answers answers = run(scene, level);
+      for (const std::size_t i : {3U, 9U, 20U, 21U, 40U, 41U, 50U}) {
+        EXPECT_FALSE(answers.certified[i]) << i;
       }
     }
   }

@@ -30,7 +30,7 @@ using Points = std::vector<Eigen::Vector3d>;
 
 /// Answers of one job, in columns as wide as the job.
 struct Answers {
-  Answers(const PairScene& scene, int level, bool robust, ShapeKind a = ShapeKind::hull,
+  Answers(const PairScene& scene, int level, ShapeKind a = ShapeKind::hull,
           ShapeKind b = ShapeKind::hull)
       : count(static_cast<std::uint32_t>(scene.pairs.size())) {
     overlap.resize(count, 2);
@@ -61,7 +61,7 @@ struct Answers {
     job.contacts.feature = feature.data();
     job.uncertified = uncertified.data();
     const NarrowKernels* kernels = narrow_kernels(a, b);
-    uncertified.resize((robust ? kernels->robust : kernels->fast)[level](job));
+    uncertified.resize(kernels->of_level[level](job));
     is_certified.assign(count, 1);
     for (const std::uint32_t i : uncertified) is_certified[i] = 0;
   }
@@ -165,29 +165,27 @@ TEST_P(HullKernels, answers_are_within_their_bounds_of_a_search_through_all_feat
   const PairScene scene = scene_of(GetParam(), scaled(150), 1);
   std::vector<long double> distance;
   for (std::uint32_t i = 0; i < scene.pairs.size(); ++i) distance.push_back(truth(scene, i));
-  for (const bool robust : {false, true}) {
-    const Answers verdicts(scene, 0, robust);
-    const Answers answers(scene, 1, robust);
-    const Answers manifolds(scene, 2, robust);
-    for (std::uint32_t i = 0; i < answers.count; ++i) {
-      const auto d = static_cast<double>(distance[i]);
-      if (robust && verdicts.is_certified[i]) {
-        EXPECT_EQ(verdicts.overlap[i] != 0, d <= 0) << i << " " << d;
-      }
-      if (answers.is_certified[i]) {
-        EXPECT_LE(std::abs(answers.column[0][i] - d), answers.column[1][i] + 1e-17) << i;
-        EXPECT_LE(answers.column[1][i], robust ? 1e-11 : 1e-3) << i;
-        EXPECT_NEAR(answers.normal(i).norm(), 1.0, 1e-12) << i;
-      }
-      if (manifolds.is_certified[i]) {
-        EXPECT_LE(std::abs(manifolds.column[0][i] - d), manifolds.column[1][i] + 1e-17) << i;
-        if (manifolds.column[0][i] > 0.05) {
-          EXPECT_LE(manifolds.column[0][i], d) << i;
-        }
+  const Answers verdicts(scene, 0);
+  const Answers answers(scene, 1);
+  const Answers manifolds(scene, 2);
+  for (std::uint32_t i = 0; i < answers.count; ++i) {
+    const auto d = static_cast<double>(distance[i]);
+    if (verdicts.is_certified[i]) {
+      EXPECT_EQ(verdicts.overlap[i] != 0, d <= 0) << i << " " << d;
+    }
+    if (answers.is_certified[i]) {
+      EXPECT_LE(std::abs(answers.column[0][i] - d), answers.column[1][i] + 1e-17) << i;
+      EXPECT_LE(answers.column[1][i], 1e-11) << i;
+      EXPECT_NEAR(answers.normal(i).norm(), 1.0, 1e-12) << i;
+    }
+    if (manifolds.is_certified[i]) {
+      EXPECT_LE(std::abs(manifolds.column[0][i] - d), manifolds.column[1][i] + 1e-17) << i;
+      if (manifolds.column[0][i] > 0.05) {
+        EXPECT_LE(manifolds.column[0][i], d) << i;
       }
     }
-    EXPECT_LE(answers.uncertified.size(), answers.count / (rounded ? 5 : 10));
   }
+  EXPECT_LE(answers.uncertified.size(), answers.count / (rounded ? 5 : 10));
 }
 
 /// How far a point is outside of a hull, at most.
@@ -205,9 +203,9 @@ double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d
   return most - hull.rounding;
 }
 
-void expect_points_on_both(const PairScene& scene, bool robust, bool rounded) {
-  const Answers answers(scene, 1, robust);
-  const double doubt = robust ? 1e-9 : 1e-4;
+void expect_points_on_both(const PairScene& scene, bool rounded) {
+  const Answers answers(scene, 1);
+  const double doubt = 1e-9;
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
     const BodyPair p = scene.pairs[i];
@@ -226,28 +224,23 @@ void expect_points_on_both(const PairScene& scene, bool robust, bool rounded) {
 TEST_P(HullKernels, points_lie_on_both_hulls) {
   for (const Turn turn : {Turn::any, Turn::upright, Turn::none}) {
     const PairScene scene = scene_of(GetParam(), scaled(400), 2, turn);
-    for (const bool robust : {false, true}) {
-      SCOPED_TRACE(testing::Message()
-                   << "turn " << static_cast<int>(turn) << ", robust " << robust);
-      expect_points_on_both(scene, robust, GetParam() == Style::rounded);
-    }
+    SCOPED_TRACE(testing::Message() << "turn " << static_cast<int>(turn));
+    expect_points_on_both(scene, GetParam() == Style::rounded);
   }
 }
 
 TEST_P(HullKernels, turned_round_pairs_have_mirrored_answers) {
   PairScene scene = scene_of(GetParam(), scaled(100), 3);
-  for (const bool robust : {false, true}) {
-    const Answers one(scene, 1, robust);
-    PairScene& turned = scene;
-    for (BodyPair& p : turned.pairs) std::swap(p.a, p.b);
-    const Answers two(turned, 1, robust);
-    EXPECT_EQ(one.is_certified, two.is_certified);
-    for (std::uint32_t i = 0; i < one.count; ++i) {
-      if (!one.is_certified[i]) continue;
-      EXPECT_EQ(one.column[0][i], two.column[0][i]);
-      EXPECT_EQ(one.column[1][i], two.column[1][i]);
-      EXPECT_EQ(one.normal(i), -two.normal(i));
-    }
+  const Answers one(scene, 1);
+  PairScene& turned = scene;
+  for (BodyPair& p : turned.pairs) std::swap(p.a, p.b);
+  const Answers two(turned, 1);
+  EXPECT_EQ(one.is_certified, two.is_certified);
+  for (std::uint32_t i = 0; i < one.count; ++i) {
+    if (!one.is_certified[i]) continue;
+    EXPECT_EQ(one.column[0][i], two.column[0][i]);
+    EXPECT_EQ(one.column[1][i], two.column[1][i]);
+    EXPECT_EQ(one.normal(i), -two.normal(i));
   }
 }
 
@@ -259,26 +252,24 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 TEST_P(HullKernels, all_instruction_sets_answer_alike_to_the_bit) {
   const PairScene scene = scene_of(GetParam(), scaled(150), 4);
   for (int level = 0; level < 3; ++level) {
-    for (const bool robust : {false, true}) {
-      const Answers expected(scene, level, robust);
-      for (const Isa isa : available_isas()) {
-        const IsaScope scope(isa);
-        const Answers answers(scene, level, robust);
-        EXPECT_EQ(answers.is_certified, expected.is_certified) << to_string(isa);
-        EXPECT_TRUE(same(answers.overlap, expected.overlap)) << to_string(isa);
-        for (int c = 0; c < 8; ++c) EXPECT_TRUE(same(answers.column[c], expected.column[c]));
-        EXPECT_TRUE(same(answers.contacts, expected.contacts));
-        for (int c = 0; c < 4; ++c) EXPECT_TRUE(same(answers.points[c], expected.points[c]));
-      }
+    const Answers expected(scene, level);
+    for (const Isa isa : available_isas()) {
+      const IsaScope scope(isa);
+      const Answers answers(scene, level);
+      EXPECT_EQ(answers.is_certified, expected.is_certified) << to_string(isa);
+      EXPECT_TRUE(same(answers.overlap, expected.overlap)) << to_string(isa);
+      for (int c = 0; c < 8; ++c) EXPECT_TRUE(same(answers.column[c], expected.column[c]));
+      EXPECT_TRUE(same(answers.contacts, expected.contacts));
+      for (int c = 0; c < 4; ++c) EXPECT_TRUE(same(answers.points[c], expected.points[c]));
     }
   }
 }
 
 TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
   PairScene scene = scene_of(GetParam(), scaled(150), 5);
-  const Answers forth(scene, 1, true);
+  const Answers forth(scene, 1);
   std::reverse(scene.pairs.begin(), scene.pairs.end());
-  const Answers back(scene, 1, true);
+  const Answers back(scene, 1);
   for (std::uint32_t i = 0; i < forth.count; ++i) {
     const std::uint32_t k = forth.count - 1 - i;
     EXPECT_EQ(forth.is_certified[i], back.is_certified[k]);
@@ -290,7 +281,7 @@ TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
 
 TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
   const PairScene scene = scene_of(GetParam(), scaled(60), 6, Turn::none);
-  const Answers answers(scene, 2, true);
+  const Answers answers(scene, 2);
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
     EXPECT_LE(std::abs(answers.column[0][i] - static_cast<double>(truth(scene, i))),
@@ -311,7 +302,7 @@ TEST(UprightPrisms, are_not_left_to_the_solver) {
   for (const Turn turn : {Turn::upright, Turn::none}) {
     const PairScene scene = scene_of(Style::prism, 400, 7, turn);
     for (int level = 0; level < 3; ++level) {
-      EXPECT_TRUE(Answers(scene, level, true).uncertified.empty()) << level;
+      EXPECT_TRUE(Answers(scene, level).uncertified.empty()) << level;
     }
   }
 }
@@ -338,7 +329,7 @@ TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
     scene.shapes.push_back(id);
   }
   for (int level = 0; level < 3; ++level) {
-    const Answers answers(scene, level, true);
+    const Answers answers(scene, level);
     for (std::uint32_t i = 0; i < answers.count; ++i) {
       EXPECT_FALSE(answers.is_certified[i]) << level << " " << i << " " << answers.column[0][i];
     }
@@ -381,7 +372,7 @@ TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) 
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
     for (int level = 0; level < 3; ++level) {
-      const Answers answers(scene, level, true, a, b);
+      const Answers answers(scene, level, a, b);
       if (style == PairStyle::ordinary) {
         EXPECT_LE(answers.uncertified.size(), answers.count / 10);
       }
@@ -419,11 +410,11 @@ TEST_P(CoresAndHulls, answers_are_the_same_where_denormal_numbers_are_flushed) {
   PairScene scene;
   add(scene, 400);
   for (int level = 0; level < 3; ++level) {
-    const Answers expected(scene, level, true, a, b);
+    const Answers expected(scene, level, a, b);
     for (const Isa isa : available_isas()) {
       const IsaScope scope(isa);
       const FlushScope flush;
-      const Answers answers(scene, level, true, a, b);
+      const Answers answers(scene, level, a, b);
       EXPECT_EQ(answers.is_certified, expected.is_certified) << to_string(isa);
       for (std::uint32_t i = 0; i < answers.count; ++i) {
         if (!expected.is_certified[i]) continue;

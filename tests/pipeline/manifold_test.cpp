@@ -22,7 +22,7 @@ namespace {
 
 using enum ShapeKind;
 
-constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+constexpr NarrowTier kTiers[] = {NarrowTier::robust, NarrowTier::reference};
 constexpr double kMargin = 0.05;
 
 Pose pose_of(const Eigen::Quaterniond& turn, const Eigen::Vector3d& place) {
@@ -277,8 +277,7 @@ TEST(Manifolds, have_a_point_as_deep_as_the_pair_and_none_beyond_the_margin) {
           ASSERT_EQ(answer.contacts.empty(), answer.distance > margin) << i;
           if (answer.contacts.empty()) continue;
           const double reach = extent(scene, scene.pairs[i]) + std::abs(answer.distance);
-          const double share = tier == NarrowTier::fast ? 1e-4 : 1e-6;
-          const double doubt = answer.error_bound + share * reach;
+          const double doubt = answer.error_bound + 1e-6 * reach;
           ASSERT_NEAR(depth_of(answer), -answer.distance, doubt) << i;
           for (const ContactPoint& contact : answer.contacts) {
             ASSERT_GE(contact.depth, -margin - doubt) << i;

@@ -18,7 +18,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+constexpr NarrowTier kTiers[] = {NarrowTier::robust, NarrowTier::reference};
 constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distance,
                                     ContactLevel::manifold};
 constexpr double kMargin = 0.25;
@@ -299,11 +299,7 @@ TEST_F(Batches, levels_agree) {
       const PairAnswers& d = distances[i];
       const PairAnswers& m = manifolds[i];
       const double slack = d.error_bound + m.error_bound;
-      // Tier fast may be wrong about the sign, but not by more than it says or, at level boolean,
-      // where it says nothing, by more than float makes of the sizes.
-      const double blur = 1e-5 * extent(scene_, scene_.pairs[i]);
-      const bool decided = tier != NarrowTier::fast || std::abs(d.distance) > slack + blur;
-      bool good = !decided || (yes_no[i].overlap == d.overlap && m.overlap == d.overlap);
+      bool good = yes_no[i].overlap == d.overlap && m.overlap == d.overlap;
       good = good && d.overlap == (d.distance <= 0.0);
       good = good && (m.distance > kMargin ? m.distance <= d.distance + slack
                                            : std::abs(m.distance - d.distance) <= slack);

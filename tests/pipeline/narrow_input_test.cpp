@@ -181,7 +181,7 @@ TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) 
 
 TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
   const auto reference = ask(scene_, {});
-  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       for (std::size_t i = 0; i < scene_.pairs.size(); i += 7) {
@@ -230,7 +230,7 @@ TEST_F(NarrowInput, the_function_for_one_pair_refuses_as_a_narrow_phase_does_and
   for (const BodyPair pair : pairs) {
     for (const ContactLevel level : {ContactLevel::pairs, ContactLevel::boolean,
                                      ContactLevel::distance, ContactLevel::manifold}) {
-      for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+      for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
         expect_the_same(pair.a, pair.b, {.level = level, .tier = tier});
         expect_the_same(pair.a, pair.b, {.level = level, .tier = tier, .margin = kNan});
         const Pose good = scene_.poses[pair.b];
@@ -297,7 +297,7 @@ TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
 }
 
 TEST_F(NarrowInput, the_second_call_allocates_nothing) {
-  for (const NarrowTier tier : {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference}) {
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       CountingMemory memory;

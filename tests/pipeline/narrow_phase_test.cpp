@@ -16,7 +16,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr NarrowTier kTiers[] = {NarrowTier::fast, NarrowTier::robust, NarrowTier::reference};
+constexpr NarrowTier kTiers[] = {NarrowTier::robust, NarrowTier::reference};
 
 NarrowOptions distances(NarrowTier tier) {
   return {.level = ContactLevel::distance, .tier = tier};
@@ -46,11 +46,6 @@ bool is_curved(const PairScene& scene, BodyPair pair) {
     if (kind == ShapeKind::cylinder || kind == ShapeKind::cone) return true;
   }
   return false;
-}
-
-bool has_hull(const PairScene& scene, BodyPair pair) {
-  return scene.shapes[pair.a].kind() == ShapeKind::hull ||
-         scene.shapes[pair.b].kind() == ShapeKind::hull;
 }
 
 class Properties : public testing::TestWithParam<PairStyle> {
@@ -211,15 +206,10 @@ TEST_P(Properties, points_lie_on_the_shapes) {
     const auto found = ask(points, distances(NarrowTier::reference));
     for (std::size_t i = 0; i < found.size(); ++i) {
       const BodyPair pair = scene_.pairs[i / 2];
-      // Where faces of hulls meet face to face, tier fast names any of their vertices.
-      if (tier == NarrowTier::fast && answers[i / 2].overlap && has_hull(scene_, pair)) continue;
       const double size = extent(scene_, pair) + between(scene_, pair).norm();
       const double doubt = answers[i / 2].error_bound;
-      // A direction that leaves a gap may be off by an angle that grows with the gap's root; the
-      // point of b is reached along it.
-      const double aside = tier == NarrowTier::fast ? std::sqrt(doubt * size) : 0.0;
-      const double bounds = 2 * doubt + aside + found[i].error_bound;
-      const double share = tier == NarrowTier::fast ? 1e-4 : is_curved(scene_, pair) ? 4e-7 : 1e-9;
+      const double bounds = 2 * doubt + found[i].error_bound;
+      const double share = is_curved(scene_, pair) ? 4e-7 : 1e-9;
       const double allowed = share * size + bounds;
       if (!(std::abs(found[i].distance) <= allowed)) {
         complain("point off its shape", pair, found[i].distance, 0.0);

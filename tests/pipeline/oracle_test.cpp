@@ -26,11 +26,9 @@ struct Promise {
   const char* name;
   /// Largest error of the distance, relative to sizes and distance.
   double error;
-  bool exact_sign;
 };
-constexpr Promise kPromises[] = {{NarrowTier::fast, "fast", 1e-4, false},
-                                 {NarrowTier::robust, "robust", 4e-7, true},
-                                 {NarrowTier::reference, "reference", 1e-12, true}};
+constexpr Promise kPromises[] = {{NarrowTier::robust, "robust", 4e-7},
+                                 {NarrowTier::reference, "reference", 1e-12}};
 
 std::vector<oracle::Truth> truths_of(const PairScene& scene) {
   std::vector<oracle::Truth> truths;
@@ -49,8 +47,7 @@ std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, Conta
 std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const Promise& promise,
                   bool is_distance) {
   if (!truth.known) return {};
-  const bool must_decide = promise.exact_sign;
-  if (must_decide && answer.overlap != truth.overlap) {
+  if (answer.overlap != truth.overlap) {
     return truth.overlap ? "contact lost" : "false contact";
   }
   if (!is_distance) return {};
@@ -67,10 +64,9 @@ std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const P
     return "error " + std::to_string(static_cast<double>(std::log10(error / scale)));
   }
   if (error > bound + truth.slack) return "error above its bound";
-  if (std::abs(n.norm() - 1.0) > (promise.exact_sign ? 1e-12 : 1e-5)) return "normal not unit";
+  if (std::abs(n.norm() - 1.0) > 1e-12) return "normal not unit";
   const Eigen::Vector3d expected(truth.normal[0], truth.normal[1], truth.normal[2]);
-  if (promise.exact_sign && truth.normal_unique &&
-      (n.cross(expected).norm() > kNormalError || n.dot(expected) < 0.0)) {
+  if (truth.normal_unique && (n.cross(expected).norm() > kNormalError || n.dot(expected) < 0.0)) {
     return "normal";
   }
   return {};

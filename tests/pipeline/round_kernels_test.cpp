@@ -24,7 +24,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 0.05;
-enum Tier : bool { kFast, kRobust };
 
 struct Kind {
   ShapeKind a;
@@ -42,8 +41,7 @@ void PrintTo(const Kind& kind, std::ostream* out) {
 /// Answers to a run of pairs, in columns.
 class Answers {
  public:
-  Answers(const PairScene& scene, Kind kind, const BodyPair* pairs, std::size_t size, int level,
-          Tier tier)
+  Answers(const PairScene& scene, Kind kind, const BodyPair* pairs, std::size_t size, int level)
       : count(static_cast<std::uint32_t>(size)) {
     overlap.resize(count, 2);
     for (auto& c : column) c.resize(count, -77.0);
@@ -73,13 +71,13 @@ class Answers {
     job.contacts.feature = feature.data();
     job.uncertified = uncertified.data();
     const NarrowKernels* kernels = narrow_kernels(kind.a, kind.b);
-    uncertified.resize((tier == kRobust ? kernels->robust : kernels->fast)[level](job));
+    uncertified.resize(kernels->of_level[level](job));
     certified.assign(count, 1);
     for (const std::uint32_t i : uncertified) certified[i] = 0;
     contact_total = job.contacts.size;
   }
-  Answers(const PairScene& scene, Kind kind, int level, Tier tier)
-      : Answers(scene, kind, scene.pairs.data(), scene.pairs.size(), level, tier) {}
+  Answers(const PairScene& scene, Kind kind, int level)
+      : Answers(scene, kind, scene.pairs.data(), scene.pairs.size(), level) {}
 
   [[nodiscard]] LongVector vector(int from, std::size_t i) const {
     const auto at = [&](int k) { return column[static_cast<std::size_t>(from + k)][i]; };
@@ -150,7 +148,7 @@ class RoundKernels : public testing::TestWithParam<Kind> {
 
 TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
   for_styles(1500, [&](const PairScene& scene, PairStyle style) {
-    const Answers answers(scene, GetParam(), 0, kRobust);
+    const Answers answers(scene, GetParam(), 0);
     std::size_t unknown = 0;
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       if (answers.certified[i] == 0) {
@@ -168,32 +166,29 @@ TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
 
 TEST_P(RoundKernels, distances_are_within_their_bounds) {
   for_styles(1500, [&](const PairScene& scene, PairStyle style) {
-    for (const Tier tier : {kFast, kRobust}) {
-      const Answers answers(scene, GetParam(), 1, tier);
-      std::size_t unknown = 0;
-      for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-        if (answers.certified[i] == 0) {
-          ++unknown;
-          continue;
-        }
-        const Twins twins(scene, scene.pairs[i]);
-        const long double d = answers.column[0][i];
-        const double bound = answers.column[1][i];
-        ASSERT_LE(std::abs(d - twins.distance), bound) << i << " tier " << tier << " " << d;
-        if (tier == kFast) continue;
-        ASSERT_EQ(d <= 0, twins.distance <= 0) << i;
-        ASSERT_LE(bound, 1e-12L * (twins.scale + std::abs(d))) << i;
+    const Answers answers(scene, GetParam(), 1);
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+      if (answers.certified[i] == 0) {
+        ++unknown;
+        continue;
       }
-      if (style == PairStyle::ordinary) {
-        EXPECT_LE(unknown, scene.pairs.size() / 500);
-      }
+      const Twins twins(scene, scene.pairs[i]);
+      const long double d = answers.column[0][i];
+      const double bound = answers.column[1][i];
+      ASSERT_LE(std::abs(d - twins.distance), bound) << i << " " << d;
+      ASSERT_EQ(d <= 0, twins.distance <= 0) << i;
+      ASSERT_LE(bound, 1e-12L * (twins.scale + std::abs(d))) << i;
+    }
+    if (style == PairStyle::ordinary) {
+      EXPECT_LE(unknown, scene.pairs.size() / 500);
     }
   });
 }
 
 TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
   for_styles(1000, [&](const PairScene& scene, PairStyle) {
-    const Answers answers(scene, GetParam(), 1, kRobust);
+    const Answers answers(scene, GetParam(), 1);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       if (answers.certified[i] == 0) continue;
       const Twins twins(scene, scene.pairs[i]);
@@ -210,42 +205,40 @@ TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
 }
 
 TEST_P(RoundKernels, contacts_lie_between_the_surfaces_and_the_deepest_is_there) {
-  for (const Tier tier : {kFast, kRobust}) {
-    const PairScene scene = scene_of(GetParam(), PairStyle::ordinary, scaled(2000), 3);
-    const Answers answers(scene, GetParam(), 2, tier);
-    std::uint32_t total = 0;
-    for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-      ASSERT_EQ(answers.first[i], total) << i;
-      total += answers.contacts[i];
-      if (answers.certified[i] == 0) {
-        ASSERT_EQ(answers.contacts[i], 0U) << i;
-        continue;
-      }
-      const Twins twins(scene, scene.pairs[i]);
-      const long double close = (tier == kFast ? 2e-5L : 2e-6L) * twins.scale;
-      const double d = answers.column[0][i];
-      ASSERT_EQ(answers.contacts[i] > 0, d <= kMargin) << i << " " << d;
-      float deepest = -std::numeric_limits<float>::infinity();
-      for (std::uint32_t k = answers.first[i]; k < total; ++k) {
-        const float depth = answers.points[3][k];
-        deepest = std::max(deepest, depth);
-        ASSERT_GE(depth, -kMargin - close) << i;
-        const LongVector p(answers.points[0][k], answers.points[1][k], answers.points[2][k]);
-        // Of two capsules that are nearly parallel both points take the depth of the closest.
-        const long double aside = answers.contacts[i] > 1 ? 1e-3L * twins.scale : 0.0L;
-        const long double half = std::abs(depth) * 0.5L + close + aside;
-        ASSERT_LE(twin_distance(twins.a, p), half) << i;
-        ASSERT_LE(twin_distance(twins.b, p), half) << i;
-        for (std::uint32_t j = answers.first[i]; j < k; ++j) {
-          ASSERT_NE(answers.feature[j], answers.feature[k]) << i;
-        }
-      }
-      if (d <= kMargin) {
-        ASSERT_NEAR(deepest, -d, static_cast<double>(close)) << i;
+  const PairScene scene = scene_of(GetParam(), PairStyle::ordinary, scaled(2000), 3);
+  const Answers answers(scene, GetParam(), 2);
+  std::uint32_t total = 0;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    ASSERT_EQ(answers.first[i], total) << i;
+    total += answers.contacts[i];
+    if (answers.certified[i] == 0) {
+      ASSERT_EQ(answers.contacts[i], 0U) << i;
+      continue;
+    }
+    const Twins twins(scene, scene.pairs[i]);
+    const long double close = 2e-6L * twins.scale;
+    const double d = answers.column[0][i];
+    ASSERT_EQ(answers.contacts[i] > 0, d <= kMargin) << i << " " << d;
+    float deepest = -std::numeric_limits<float>::infinity();
+    for (std::uint32_t k = answers.first[i]; k < total; ++k) {
+      const float depth = answers.points[3][k];
+      deepest = std::max(deepest, depth);
+      ASSERT_GE(depth, -kMargin - close) << i;
+      const LongVector p(answers.points[0][k], answers.points[1][k], answers.points[2][k]);
+      // Of two capsules that are nearly parallel both points take the depth of the closest.
+      const long double aside = answers.contacts[i] > 1 ? 1e-3L * twins.scale : 0.0L;
+      const long double half = std::abs(depth) * 0.5L + close + aside;
+      ASSERT_LE(twin_distance(twins.a, p), half) << i;
+      ASSERT_LE(twin_distance(twins.b, p), half) << i;
+      for (std::uint32_t j = answers.first[i]; j < k; ++j) {
+        ASSERT_NE(answers.feature[j], answers.feature[k]) << i;
       }
     }
-    EXPECT_EQ(answers.contact_total, total);
+    if (d <= kMargin) {
+      ASSERT_NEAR(deepest, -d, static_cast<double>(close)) << i;
+    }
   }
+  EXPECT_EQ(answers.contact_total, total);
 }
 
 /// Bytes of everything that is certified.
@@ -269,18 +262,16 @@ std::string bytes_of(const Answers& answers, std::size_t i, int level) {
 
 TEST_P(RoundKernels, answers_are_the_same_on_every_instruction_set) {
   for_styles(250, [&](const PairScene& scene, PairStyle) {
-    for (const Tier tier : {kFast, kRobust}) {
-      for (int level = 0; level < 3; ++level) {
-        std::vector<std::string> expected;
-        for_isas([&] {
-          const Answers answers(scene, GetParam(), level, tier);
-          for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-            const std::string bytes = bytes_of(answers, i, level);
-            if (expected.size() <= i) expected.push_back(bytes);
-            ASSERT_EQ(bytes, expected[i]) << i << " level " << level << " tier " << tier;
-          }
-        });
-      }
+    for (int level = 0; level < 3; ++level) {
+      std::vector<std::string> expected;
+      for_isas([&] {
+        const Answers answers(scene, GetParam(), level);
+        for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+          const std::string bytes = bytes_of(answers, i, level);
+          if (expected.size() <= i) expected.push_back(bytes);
+          ASSERT_EQ(bytes, expected[i]) << i << " level " << level;
+        }
+      });
     }
   });
 }
@@ -288,16 +279,13 @@ TEST_P(RoundKernels, answers_are_the_same_on_every_instruction_set) {
 TEST_P(RoundKernels, the_position_in_the_batch_does_not_matter) {
   const PairScene scene = scene_of(GetParam(), PairStyle::lattice, 45, 5);
   for_isas([&] {
-    for (const Tier tier : {kFast, kRobust}) {
-      for (int level = 0; level < 3; ++level) {
-        const Answers all(scene, GetParam(), level, tier);
-        for (const std::size_t from : {1U, 7U, 30U}) {
-          for (const std::size_t count : {1U, 2U, 9U, 15U}) {
-            const Answers part(scene, GetParam(), &scene.pairs[from], count, level, tier);
-            for (std::size_t i = 0; i < count; ++i) {
-              ASSERT_EQ(bytes_of(part, i, level), bytes_of(all, from + i, level))
-                  << from << " " << i;
-            }
+    for (int level = 0; level < 3; ++level) {
+      const Answers all(scene, GetParam(), level);
+      for (const std::size_t from : {1U, 7U, 30U}) {
+        for (const std::size_t count : {1U, 2U, 9U, 15U}) {
+          const Answers part(scene, GetParam(), &scene.pairs[from], count, level);
+          for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_EQ(bytes_of(part, i, level), bytes_of(all, from + i, level)) << from << " " << i;
           }
         }
       }
@@ -310,16 +298,14 @@ TEST_P(RoundKernels, exchanged_bodies_have_mirrored_answers) {
   for_styles(1000, [&](const PairScene& scene, PairStyle) {
     std::vector<BodyPair> turned = scene.pairs;
     for (BodyPair& pair : turned) std::swap(pair.a, pair.b);
-    for (const Tier tier : {kFast, kRobust}) {
-      const Answers ab(scene, GetParam(), 1, tier);
-      const Answers ba(scene, GetParam(), turned.data(), turned.size(), 1, tier);
-      for (std::size_t i = 0; i < turned.size(); ++i) {
-        ASSERT_EQ(ab.certified[i], ba.certified[i]) << i;
-        if (ab.certified[i] == 0) continue;
-        ASSERT_EQ(ab.column[0][i], ba.column[0][i]) << i;
-        ASSERT_EQ(ab.column[1][i], ba.column[1][i]) << i;
-        ASSERT_EQ(ab.normal(i), -ba.normal(i)) << i;
-      }
+    const Answers ab(scene, GetParam(), 1);
+    const Answers ba(scene, GetParam(), turned.data(), turned.size(), 1);
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      ASSERT_EQ(ab.certified[i], ba.certified[i]) << i;
+      if (ab.certified[i] == 0) continue;
+      ASSERT_EQ(ab.column[0][i], ba.column[0][i]) << i;
+      ASSERT_EQ(ab.column[1][i], ba.column[1][i]) << i;
+      ASSERT_EQ(ab.normal(i), -ba.normal(i)) << i;
     }
   });
 }
@@ -327,12 +313,10 @@ TEST_P(RoundKernels, exchanged_bodies_have_mirrored_answers) {
 TEST_P(RoundKernels, poses_that_are_not_numbers_are_not_certified) {
   const auto expect_uncertified = [&](const PairScene& scene, const std::string& what) {
     for_isas([&] {
-      for (const Tier tier : {kFast, kRobust}) {
-        for (int level = 0; level < 3; ++level) {
-          const Answers answers(scene, GetParam(), level, tier);
-          for (std::size_t i = 0; i < scene.pairs.size(); i += 3) {
-            ASSERT_EQ(answers.certified[i], 0) << what << " level " << level << " tier " << tier;
-          }
+      for (int level = 0; level < 3; ++level) {
+        const Answers answers(scene, GetParam(), level);
+        for (std::size_t i = 0; i < scene.pairs.size(); i += 3) {
+          ASSERT_EQ(answers.certified[i], 0) << what << " level " << level;
         }
       }
     });

@@ -295,6 +295,21 @@ void use(Stage& stage) {
   (void)queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits);
 }
 
+TEST(SceneSnapshots, of_a_tier_that_is_gone_are_robust) {
+  constexpr std::size_t kTier = 32 + sizeof(std::uint32_t) + sizeof(double);
+  const Stage stage({.tier = NarrowTier::robust});
+  const SavedBytes saved = saved_by([&](auto& out) { return stage.scene.save(out); });
+  for (const std::uint8_t number : {0, 1, 2, 3}) {
+    SavedBytes other = saved;
+    other[kTier] = std::byte{number};
+    seal_snapshot(other);
+    Stage loaded({});
+    EXPECT_EQ(loaded.scene.load(other), number < 3 ? Status::ok : Status::invalid_argument);
+    const SavedBytes again = saved_by([&](auto& out) { return loaded.scene.save(out); });
+    EXPECT_EQ(again[kTier], std::byte{number == 2 ? std::uint8_t{2} : std::uint8_t{1}});
+  }
+}
+
 TEST(SceneSnapshots, that_anybody_made_up_are_read_or_refused) {
   Stage first(kinds_of_scenes()[1]);
   live(first, 40);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Jobs of the curved kernels: pairs are placed, searched in lanes of double and finished one by
-// one. Both tiers take them.
+// one.
 
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
@@ -251,7 +251,6 @@ class CurvedAnswers {
 
 /// Of every kind of pair alike, which a job tells.
 inline constexpr NarrowKernels kCurvedKernels = {
-    {nullptr, nullptr, nullptr},
     {CurvedAnswers<0>::run, CurvedAnswers<1>::run, CurvedAnswers<2>::run}};
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

@@ -18,8 +18,8 @@ enum BoxPlace {
   kCount
 };
 
-// Called by both precisions. A loop: unrolled it would be most of a kernel for narrow lanes.
-[[gnu::noinline]] void see_boxes(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+// A loop: unrolled it would be most of a kernel for narrow lanes.
+[[gnu::noinline]] void see_boxes(const Stage<double, kCount>& rows, SeenPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
   seen.look_along(normal);
@@ -50,9 +50,9 @@ struct BoxStage {
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   [[nodiscard]] double rounding(int side, unsigned lane) const {
-    return static_cast<double>(stage.value[kRoundingA + side][lane]);
+    return stage.value[kRoundingA + side][lane];
   }
-  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) { see_boxes(rows, seen); }
+  void see(SeenPairs& seen) const { see_boxes(stage, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
@@ -85,11 +85,7 @@ template <typename T>
   const Lanes<T> lower = pair.along(d);
   const LaneMask<T> better = lower > axis.separation;
   for (int r = 0; r < 3; ++r) normal[r] = select(better, d[r], axis.normal[r]);
-  const Lanes<T> least = select(better, lower, axis.separation);
-  gap = abs(distance - least);
-  // Points far from the closest ones, which float lanes answer with all the same: no contact is
-  // lost.
-  distance = select(gap <= pair.scale * Lanes<T>(kWidestGap<T>), distance, least);
+  gap = abs(distance - select(better, lower, axis.separation));
 }
 
 // The point of a that touches b when it has been moved out; `off` gets the lanes in which it is not
@@ -169,7 +165,16 @@ WINNOW_SHARED_BY_LEVELS CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxA
 struct BoxBox {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      return answer<T, L>(job, given);
+    }
+  }
+
+  // Levels distance and manifold.
+  template <typename T, int L>
+  [[gnu::always_inline]] static Mask16 answer(NarrowJob& job, const PairBlock<T>& given) {
     const OrderedBlock<T> ordered(job, given);
     const BoxPair<T> pair = box_pair(job, ordered.block);
     const BoxAxis<T> axis = best_axis(pair);
@@ -188,7 +193,7 @@ struct BoxBox {
       const Mask16 touching = certified & bits(core.distance <= margin);
       const BoxStage<T> stage(pair, core.normal);
       return ~certified |
-             write_true_contacts<T>(job, given, core, pair.scale, touching, stage, ordered.sign);
+             write_true_contacts(job, given, core, pair.scale, touching, stage, ordered.sign);
     }
     return ~certified;
   }
@@ -216,9 +221,9 @@ struct BoxBox {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxPair<T> pair = box_pair(job, block);
-    const Lanes<T> slack = verdict_slack(job, pair.scale);
+    const Lanes<T> slack = verdict_slack(pair.scale);
     const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
-    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
+    const Mask16 valid = bits(in_verdict_range(pair.scale));
     const Lanes<T> face = largest_face_separation(pair);
     Mask16 known = bits(face > reach);
     Mask16 over = 0;
@@ -234,10 +239,12 @@ struct BoxBox {
       over |= inside;
       unknown &= ~inside;
     }
-    if (unknown != 0 && !leaves_doubt<T>(job)) {
-      Mask16 settled_over = 0;
-      known |= settle(pair, settled_over) & unknown;
-      over |= settled_over & unknown;
+    if constexpr (!kFirstPass<T>) {
+      if (unknown != 0) {
+        Mask16 settled_over = 0;
+        known |= settle(pair, settled_over) & unknown;
+        over |= settled_over & unknown;
+      }
     }
     write_overlap(job, block, over);
     return ~(known & valid);

@@ -341,7 +341,7 @@ struct NearestVertex {
                                        const Lanes<T> (&half)[3]) {
     const Lanes<T> zero(T(0));
     const Lanes<T> one(T(1));
-    square = Lanes<T>(kBeyondSquares<T>);
+    square = Lanes<T>(T(kBeyondSquares));
     for (int r = 0; r < 3; ++r) sign[r] = one;
     for (int pair = 0; pair < 4; ++pair) {
       Lanes<T> base[3];

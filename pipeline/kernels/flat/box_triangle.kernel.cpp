@@ -179,7 +179,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex(const BoxTrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(kBeyondSquares<T>);
+  Lanes<T> square = Lanes<T>(T(kBeyondSquares));
   Lanes<T> index(T(0));
   const auto offer = [&](const Lanes<T>& d, int number) __attribute__((always_inline)) {
     const LaneMask<T> nearer = d < square;
@@ -289,8 +289,7 @@ enum BoxTrianglePlace {
   kCount
 };
 
-// Called by both precisions.
-[[gnu::noinline]] void see_box_and_triangle(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+[[gnu::noinline]] void see_box_and_triangle(const Stage<double, kCount>& rows, SeenPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
   const Doubles3 axis[3] = {rows.vector(kAxes), rows.vector(kAxes + 3), rows.vector(kAxes + 6)};
@@ -317,11 +316,9 @@ struct BoxTriangleStage {
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   [[nodiscard]] double rounding(int side, unsigned lane) const {
-    return static_cast<double>(stage.value[kBoxRounding + side][lane]);
+    return stage.value[kBoxRounding + side][lane];
   }
-  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) {
-    see_box_and_triangle(rows, seen);
-  }
+  void see(SeenPairs& seen) const { see_box_and_triangle(stage, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;
@@ -340,11 +337,14 @@ struct BoxTriangleStage {
 struct BoxTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
-    alignas(64) T sign[Lanes<T>::kCount];
-    Lanes<T>(T(1)).store(sign);
-    const BoxTrianglePair<T> pair(job, given);
-    return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      alignas(64) T sign[Lanes<T>::kCount];
+      Lanes<T>(T(1)).store(sign);
+      const BoxTrianglePair<T> pair(job, given);
+      return answer_flat<L, BoxTriangleStage<T>>(job, given, pair, sign);
+    }
   }
 
   // Shapes that overlap although edges are parallel, whose products have no sign: what these could
@@ -376,8 +376,8 @@ struct BoxTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
-    const Lanes<T> slack = verdict_slack(job, pair.scale);
-    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
+    const Lanes<T> slack = verdict_slack(pair.scale);
+    const Mask16 valid = bits(in_verdict_range(pair.scale));
     const Lanes<T> reach = slack + pair.box_rounding + pair.b.rounding;
     const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
     const Lanes<T> above = pair.over_triangle();

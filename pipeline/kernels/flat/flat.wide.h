@@ -24,13 +24,7 @@ template <typename T>
 inline constexpr T kFlatSlack = T(48) * kEpsilon<T>;
 
 /// Bounds are at most this share of the scale, or the pair goes to the solver.
-template <typename T>
-inline constexpr T kWidestBound = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-4F);
-
-/// Two points are the closest if they are farther apart than the cores certainly are by no more
-/// than this share of the scale.
-template <typename T>
-inline constexpr T kWidestGap = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-4F);
+inline constexpr double kWidestBound = 1e-12;
 
 /// Edges whose sine has a smaller square are parallel: a separation along their product would be
 /// wrong by the slack over the sine, leaving it out is wrong by the shorter edge times the sine.
@@ -38,8 +32,7 @@ template <typename T>
 inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-6F);
 
 /// More than the square of any distance, for the search of the least.
-template <typename T>
-inline constexpr T kBeyondSquares = sizeof(T) == sizeof(double) ? T(1e300) : T(1e38F);
+inline constexpr double kBeyondSquares = 1e300;
 
 /// The axis of the largest separation so far, compared without roots: by s|s| over the square of
 /// the axis' length.
@@ -141,12 +134,10 @@ struct OrderedBlock {
 
 /// Lanes whose axes are compared without loss: BestAxis multiplies up to ten lengths, and where the
 /// answer depends on it none is less than 1e-14 of the scale, nor a sine less than
-/// kParallelSquare says. In float one shape may be 1e5 times smaller than the other.
+/// kParallelSquare says.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_axis_range(const Lanes<T>& scale) {
-  constexpr bool is_double = sizeof(T) == sizeof(double);
-  return (scale > Lanes<T>(is_double ? T(1e-11) : T(4e-3F))) &
-         (scale < Lanes<T>(is_double ? T(1e28) : T(1e4F)));
+  return (scale > Lanes<T>(T(1e-11))) & (scale < Lanes<T>(T(1e28)));
 }
 
 /// What a kernel has found out about the cores, in the axes of the world.
@@ -167,15 +158,8 @@ template <typename T>
                                                    const Lanes<T>& scale) {
   answer.distance -= rounding_a + rounding_b;
   answer.point = answer.point + answer.normal * rounding_a;
-  const LaneMask<T> narrow = answer.error_bound <= scale * Lanes<T>(kWidestBound<T>);
-  const LaneMask<T> valid = in_axis_range(scale) & narrow;
-  if constexpr (sizeof(T) == sizeof(double)) {
-    return bits(valid & (abs(answer.distance) > answer.error_bound));
-  }
-  // A normal that is not unit says nothing.
-  const Lanes<T> length2 = dot(answer.normal, answer.normal);
-  return bits(valid & (length2 > Lanes<T>(T(0.99F))) &
-              (abs(answer.distance) <= scale * Lanes<T>(T(4))));
+  const LaneMask<T> narrow = answer.error_bound <= scale * Lanes<T>(T(kWidestBound));
+  return bits(in_axis_range(scale) & narrow & (abs(answer.distance) > answer.error_bound));
 }
 
 /// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.
@@ -256,44 +240,13 @@ struct PlacedTriangle {
   }
 };
 
-/// Vectors and numbers of all lanes in memory, to be read one lane at a time.
-template <typename T, int Count>
-struct Stage {
-  alignas(64) T value[Count][Lanes<T>::kCount];
-
-  [[gnu::always_inline]] void put(int at, const Vec3<T>& v) {
-    v.x.store(value[at]);
-    v.y.store(value[at + 1]);
-    v.z.store(value[at + 2]);
-  }
-  [[gnu::always_inline]] void put(int at, const Rotation<T>& axes) {
-    put(at, axes.x);
-    put(at + 3, axes.y);
-    put(at + 6, axes.z);
-  }
-  [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
-  /// Lanes 8 `group` to 8 `group` + 7.
-  [[nodiscard]] DoubleRows<Count> in_double(int group) const {
-    DoubleRows<Count> rows;
-    for (int i = 0; i < Count; ++i) {
-      for (std::uint32_t lane = 0; lane < SeenFaces::kStride; ++lane) {
-        rows.value[i][lane] =
-            static_cast<double>(value[i][static_cast<std::uint32_t>(group) * 8 + lane]);
-      }
-    }
-    return rows;
-  }
-  [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
-    for (int i = 0; i < count; ++i) out[i] = static_cast<double>(value[at + i][lane]);
-  }
-};
-
 /// Contacts of the lanes of `touching` by `meet(lane, points)`, in the caller's order; runs for all
 /// lanes of the block. `offset` of a lane is from a to b as the kernel had them, `sign` -1 where
 /// the caller has them the other way round.
-template <typename T, typename Meet>
-inline void write_patch_contacts(NarrowJob& job, const PairBlock<T>& block, Mask16 touching,
-                                 const T (*offset)[Lanes<T>::kCount], const T* sign, Meet&& meet) {
+template <typename Meet>
+inline void write_patch_contacts(NarrowJob& job, const PairBlock<double>& block, Mask16 touching,
+                                 const double (*offset)[Doubles::kCount], const double* sign,
+                                 Meet&& meet) {
   ContactWriter& out = job.contacts;
   for (unsigned lane = 0; lane < block.count; ++lane) {
     job.contact_first[block.first + lane] = out.size;
@@ -301,12 +254,11 @@ inline void write_patch_contacts(NarrowJob& job, const PairBlock<T>& block, Mask
     if ((touching >> lane & 1U) != 0) {
       ContactPoint points[kManifoldPoints];
       count = meet(lane, points);
-      const bool turned = sign[lane] < T(0);
+      const bool turned = sign[lane] < 0.0;
       for (std::uint32_t k = 0; k < count; ++k, ++out.size) {
         const ContactPoint& p = points[k];
         for (int r = 0; r < 3; ++r) {
-          const double from_b =
-              static_cast<double>(p.position[r]) - static_cast<double>(offset[r][lane]);
+          const double from_b = static_cast<double>(p.position[r]) - offset[r][lane];
           out.position[r][out.size] = turned ? static_cast<float>(from_b) : p.position[r];
         }
         out.depth[out.size] = p.depth;
@@ -330,8 +282,7 @@ struct PointPair {
 };
 
 /// How far the deepest contact may be from the depth of the pair, as a share of the scale.
-template <typename T>
-inline constexpr T kDeepest = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-4F);
+inline constexpr double kDeepest = 1e-6;
 
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> clamp_unit(const Lanes<T>& t) {
@@ -405,7 +356,7 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
     double p[3];
     stage.patches(lane, a, b, normal);
     deepest_point(a, b, normal, p);
-    for (int r = 0; r < 3; ++r) point.value[r][lane] = static_cast<T>(p[r]);
+    for (int r = 0; r < 3; ++r) point.value[r][lane] = p[r];
   }
   answer.point = {Lanes<T>::load(point.value[0]), Lanes<T>::load(point.value[1]),
                   Lanes<T>::load(point.value[2])};
@@ -440,12 +391,8 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
       const Vec3<T> n = d * (Lanes<T>(T(1)) / length);
       const Lanes<T> lower = pair.along(n);
       const LaneMask<T> better = lower > axis.separation;
-      const Lanes<T> least = select(better, lower, axis.separation);
-      const Lanes<T> gap = abs(length - least);
-      // Points far from the closest ones, which float lanes answer with all the same: no contact
-      // is lost.
-      const Lanes<T> distance = select(gap <= pair.scale * Lanes<T>(kWidestGap<T>), length, least);
-      answer.distance = select(measured, distance, answer.distance);
+      const Lanes<T> gap = abs(length - select(better, lower, axis.separation));
+      answer.distance = select(measured, length, answer.distance);
       const Lanes<T> doubt = slack + slack * select(axis_is_closer, by_axis.doubt, Lanes<T>(T(1)));
       answer.error_bound = select(measured, gap + doubt, answer.error_bound);
       answer.normal = select(measured & better, n, answer.normal);
@@ -467,10 +414,9 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
 template <typename Staged>
 inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, unsigned lane,
                                  double margin, ContactPoint* points) {
-  const unsigned of_eight = lane % SeenFaces::kStride;
-  if (seen.is_plain(of_eight)) {
-    return seen_contacts(seen.faces(of_eight, stage.rounding(0, lane), stage.rounding(1, lane)),
-                         margin, points);
+  if (seen.is_plain(lane)) {
+    return seen_contacts(seen.faces(lane, stage.rounding(0, lane), stage.rounding(1, lane)), margin,
+                         points);
   }
   FlatPatch a;
   FlatPatch b;
@@ -481,29 +427,26 @@ inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, uns
 
 /// Contacts of the lanes of `touching` between the patches of `stage`. Returns the lanes in which
 /// they leave out where the shapes are closest: no manifolds.
-template <typename T, typename Staged>
-[[gnu::always_inline]] inline Mask16 write_true_contacts(NarrowJob& job, const PairBlock<T>& given,
-                                                         const CoreAnswer<T>& core,
-                                                         const Lanes<T>& scale, Mask16 touching,
-                                                         const Staged& stage, const T* sign) {
-  Stage<T, 2> expected;
+template <typename Staged>
+[[gnu::always_inline]] inline Mask16 write_true_contacts(NarrowJob& job,
+                                                         const PairBlock<double>& given,
+                                                         const CoreAnswer<double>& core,
+                                                         const Doubles& scale, Mask16 touching,
+                                                         const Staged& stage, const double* sign) {
+  Stage<double, 2> expected;
   expected.put(0, core.distance);
-  expected.put(1, core.error_bound + scale * Lanes<T>(kDeepest<T>));
-  constexpr int kGroups = Lanes<T>::kCount / static_cast<int>(SeenFaces::kStride);
-  SeenPairs seen[kGroups];
-  for (int group = 0; group < kGroups; ++group) {
-    if ((touching >> (8 * group) & 0xFFU) == 0) continue;
-    Staged::see(stage.stage.in_double(group), seen[group]);
-  }
+  expected.put(1, core.error_bound + scale * Doubles(kDeepest));
+  SeenPairs seen;
+  if (touching != 0) stage.see(seen);
   Mask16 missed = 0;
-  write_patch_contacts<T>(
+  write_patch_contacts(
       job, given, touching, stage.offset(), sign,
       [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
         const std::uint32_t count =
-            contacts_of(stage, seen[lane / 8], lane, job.margin_of(given.first + lane), points);
+            contacts_of(stage, seen, lane, job.margin_of(given.first + lane), points);
         if (count > 0) {
-          const T off = static_cast<T>(points[0].depth) + expected.value[0][lane];
-          const T most = expected.value[1][lane];
+          const double off = static_cast<double>(points[0].depth) + expected.value[0][lane];
+          const double most = expected.value[1][lane];
           if (off <= most && off >= -most) return count;
         }
         missed |= 1U << lane;
@@ -530,7 +473,7 @@ template <int L, typename Staged, typename T, typename Pair>
   if constexpr (L == kManifold) {
     const Mask16 touching = certified & bits(core.distance <= margin);
     const Staged stage(pair, core.normal);
-    return ~certified | write_true_contacts<T>(job, given, core, pair.scale, touching, stage, sign);
+    return ~certified | write_true_contacts(job, given, core, pair.scale, touching, stage, sign);
   }
   return ~certified;
 }
@@ -544,34 +487,34 @@ template <typename Staged, typename T, typename Pair>
 }
 
 /// Of level boolean, over the scale. What float has read of a pair was rounded before: twice as
-/// much where it is to be sure.
+/// much.
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> verdict_slack(const NarrowJob& job, const Lanes<T>& scale) {
-  return scale * Lanes<T>(leaves_doubt<T>(job) ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);
+[[gnu::always_inline]] inline Lanes<T> verdict_slack(const Lanes<T>& scale) {
+  return scale * Lanes<T>(kFirstPass<T> ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);
 }
 
 /// Lanes of sizes of which level boolean compares products of three lengths, and shares of them.
 template <typename T>
-[[gnu::always_inline]] inline LaneMask<T> in_verdict_range(const NarrowJob& job,
-                                                           const Lanes<T>& scale) {
-  const LaneMask<T> valid = in_range(scale * scale);
-  if (!leaves_doubt<T>(job)) return valid;
-  return valid & (scale > Lanes<T>(T(1e-8F))) & (scale < Lanes<T>(T(1e8F)));
+[[gnu::always_inline]] inline LaneMask<T> in_verdict_range(const Lanes<T>& scale) {
+  if constexpr (!kFirstPass<T>) return in_range(scale * scale);
+  return (scale > Lanes<T>(T(1e-8F))) & (scale < Lanes<T>(T(1e8F)));
 }
 
-/// Level boolean: the pairs that `apart` and `over` leave open are measured.
+/// Level boolean: the pairs that `apart` and `over` leave open are measured, but not in float.
 template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
                                                      const Pair& pair, const LaneMask<T>& apart,
                                                      const LaneMask<T>& over) {
-  const Mask16 valid = bits(in_verdict_range(job, pair.scale));
+  const Mask16 valid = bits(in_verdict_range(pair.scale));
   Mask16 hit = bits(over);
   Mask16 known = hit | bits(apart);
-  const Mask16 unknown = ~known & valid & block.lanes();
-  if (unknown != 0 && !leaves_doubt<T>(job)) {
-    CoreAnswer<T> core = measured<Staged, T>(pair);
-    known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
-    hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
+  if constexpr (!kFirstPass<T>) {
+    const Mask16 unknown = ~known & valid & block.lanes();
+    if (unknown != 0) {
+      CoreAnswer<T> core = measured<Staged, T>(pair);
+      known |= with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale) & unknown;
+      hit |= bits(core.distance <= Lanes<T>(T(0))) & unknown;
+    }
   }
   write_overlap(job, block, hit);
   return ~(known & valid);

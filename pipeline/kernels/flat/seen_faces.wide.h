@@ -3,31 +3,37 @@
 // Faces of boxes and triangles across the contact normal, eight pairs at a time in double: what
 // box_patch, triangle_patch, PatchFrame and Outline make of one pair, to the bit.
 
+#include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/manifold/contact_patch.h"
-#include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::flat {
 
 using Doubles3 = Vec3<double>;
 
-/// Numbers of eight pairs in memory.
-template <int Count>
-struct DoubleRows {
-  static_assert(Lanes<double>::kCount == SeenFaces::kStride);
+/// Vectors and numbers of all lanes in memory, to be read one lane at a time, too.
+template <typename T, int Count>
+struct Stage {
+  alignas(64) T value[Count][Lanes<T>::kCount];
 
-  alignas(64) double value[Count][SeenFaces::kStride];
-
-  [[nodiscard, gnu::always_inline]] Lanes<double> number(int at) const {
-    return Lanes<double>::load(value[at]);
+  [[nodiscard, gnu::always_inline]] Lanes<T> number(int at) const {
+    return Lanes<T>::load(value[at]);
   }
-  [[nodiscard, gnu::always_inline]] Doubles3 vector(int at) const {
+  [[nodiscard, gnu::always_inline]] Vec3<T> vector(int at) const {
     return {number(at), number(at + 1), number(at + 2)};
   }
-  [[gnu::always_inline]] void put(int at, const Lanes<double>& v) { v.store(value[at]); }
-  [[gnu::always_inline]] void put(int at, const Doubles3& v) {
+  [[gnu::always_inline]] void put(int at, const Lanes<T>& v) { v.store(value[at]); }
+  [[gnu::always_inline]] void put(int at, const Vec3<T>& v) {
     put(at, v.x);
     put(at + 1, v.y);
     put(at + 2, v.z);
+  }
+  [[gnu::always_inline]] void put(int at, const Rotation<T>& axes) {
+    put(at, axes.x);
+    put(at + 3, axes.y);
+    put(at + 6, axes.z);
+  }
+  [[gnu::always_inline]] void get(int at, int count, unsigned lane, double* out) const {
+    for (int i = 0; i < count; ++i) out[i] = value[at + i][lane];
   }
 };
 
@@ -92,8 +98,8 @@ class SeenPairs {
     const Lanes<double> sign = (n.z & Lanes<double>(-0.0)) | one;
     const Lanes<double> a = Lanes<double>(-1.0) / (sign + n.z);
     const Lanes<double> b = n.x * n.y * a;
-    rows_.put(kAxisX, {one + sign * n.x * n.x * a, sign * b, -sign * n.x});
-    rows_.put(kAxisY, {b, sign + n.y * n.y * a, -n.y});
+    rows_.put(kAxisX, Doubles3{one + sign * n.x * n.x * a, sign * b, -sign * n.x});
+    rows_.put(kAxisY, Doubles3{b, sign + n.y * n.y * a, -n.y});
     rows_.put(kAxisZ, n);
     plain_ = ~Mask16{0};
   }
@@ -152,7 +158,9 @@ class SeenPairs {
   // Rows of the axes.
   enum AxisRow { kAxisX = 0, kAxisY = 3, kAxisZ = 6 };
 
-  DoubleRows<SeenFaces::kRows> rows_;
+  static_assert(Doubles::kCount == SeenFaces::kStride);
+
+  Stage<double, SeenFaces::kRows> rows_;
   alignas(64) double number_[2][SeenFaces::kStride];
   Mask16 plain_ = 0;
   Mask16 clockwise_[2] = {};

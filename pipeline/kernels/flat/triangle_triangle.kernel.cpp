@@ -154,7 +154,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex_and_edge(const TrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
-  Lanes<T> square(kBeyondSquares<T>);
+  Lanes<T> square = Lanes<T>(T(kBeyondSquares));
   Lanes<T> index(T(0));
   Lanes<T> ee[3];
   Lanes<T> ff[3];
@@ -258,8 +258,7 @@ enum TrianglePlace {
   kCount
 };
 
-// Called by both precisions.
-[[gnu::noinline]] void see_triangles(const DoubleRows<kCount>& rows, SeenPairs& seen) {
+[[gnu::noinline]] void see_triangles(const Stage<double, kCount>& rows, SeenPairs& seen) {
   seen.look_along(rows.vector(kNormal));
   for (int side = 0; side < 2; ++side) {
     const int at = side == 0 ? kA : kB;
@@ -284,9 +283,9 @@ struct TriangleStage {
   }
   [[nodiscard]] auto offset() const { return stage.value + kOffset; }
   [[nodiscard]] double rounding(int side, unsigned lane) const {
-    return static_cast<double>(stage.value[kRoundingA + side][lane]);
+    return stage.value[kRoundingA + side][lane];
   }
-  static void see(const DoubleRows<kCount>& rows, SeenPairs& seen) { see_triangles(rows, seen); }
+  void see(SeenPairs& seen) const { see_triangles(stage, seen); }
   void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
@@ -303,17 +302,20 @@ struct TriangleStage {
 struct TriangleTriangle {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& given) {
-    if constexpr (L == kBoolean) return overlap<T>(job, given);
-    const OrderedBlock<T> ordered(job, given);
-    const TrianglePair<T> pair(job, ordered.block);
-    return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    if constexpr (L == kBoolean) {
+      return overlap<T>(job, given);
+    } else {
+      const OrderedBlock<T> ordered(job, given);
+      const TrianglePair<T> pair(job, ordered.block);
+      return answer_flat<L, TriangleStage<T>>(job, given, pair, ordered.sign);
+    }
   }
 
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const TrianglePair<T> pair(job, block);
-    const Lanes<T> slack = verdict_slack(job, pair.scale);
-    const Mask16 valid = bits(in_verdict_range(job, pair.scale));
+    const Lanes<T> slack = verdict_slack(pair.scale);
+    const Mask16 valid = bits(in_verdict_range(pair.scale));
     // An axis is at most as long as the edges' product: what is above the slack and the roundings
     // times that is separated by more.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;

@@ -10,12 +10,12 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Answers jobs of one level in one precision. Shapes says which hulls the pairs of a job are:
+/// Answers jobs of one level. Shapes says which hulls the pairs of a job are:
 /// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
 /// and complete(slot) for what the search has not decided, which is false for what lanes do not do,
 /// by `kSimpleSecond` whether their second is a simple shape, by `kPointSecond` whether the core of
 /// that is a point, at its origin, and by `Seconds` how the search finds its supports.
-template <typename Shapes, typename T, int Level>
+template <typename Shapes, int Level>
 class HullAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
@@ -33,7 +33,6 @@ class HullAnswers {
   }
 
  private:
-  static constexpr bool kRobust = sizeof(T) == 8;
   static constexpr std::uint32_t kChunk = Shapes::kRoom;
 
   template <typename Answers>
@@ -89,48 +88,43 @@ class HullAnswers {
       return true;
     }
     if (!shapes_.complete(slot)) return false;
-    const HullPlace<T> place(pair);
-    HullDistance<T> core{};
+    HullDistance core{};
     if (pair.state == HullState::apart) {
-      finish_apart(pair, place, core);
+      finish_apart(pair, core);
       // An error of the length is one of the direction: this keeps it below 0.01 degrees.
-      if (kRobust && !(core.error <= T(1e-8) * core.distance)) return false;
+      if (!(core.error <= 1e-8 * core.distance)) return false;
     } else {
       if (!depth_.find(pair)) return false;
-      finish_depth(pair, place, depth_, core);
-      if (kRobust && !(core.error < -core.distance)) return false;
+      finish_depth(pair, depth_, core);
+      if (!(core.error < -core.distance)) return false;
     }
-    return finish(pair, place, core);
+    return finish(pair, core);
   }
 
-  bool finish(const HullPair& pair, const HullPlace<T>& place, HullDistance<T>& core) {
-    const double distance = static_cast<double>(core.distance) - pair.rounding;
-    const double error = static_cast<double>(core.error) + kDoubleError * pair.rounding;
-    if (kRobust) {
-      if (!(error < __builtin_fabs(distance))) return false;
-      if (!(error <= kCertified * (pair.size + pair.rounding))) return false;
-    } else if (!(error < __builtin_inf())) {
-      return false;
-    }
+  bool finish(const HullPair& pair, HullDistance& core) {
+    const double distance = core.distance - pair.rounding;
+    const double error = core.error + kDoubleError * pair.rounding;
+    if (!(error < __builtin_fabs(distance))) return false;
+    if (!(error <= kCertified * (pair.size + pair.rounding))) return false;
     if constexpr (Level == 0) {
       job_.overlap[pair.index] = distance <= 0.0;
       return true;
     } else {
       job_.distance[pair.index] = distance;
       job_.error_bound[pair.index] = error;
-      double normal[3];
       double world[3];
-      write_normal(pair, core.normal, normal, world);
+      write_normal(pair, core.normal, world);
       if constexpr (Level == 2) {
         const double doubt = error + kContactDoubt * (pair.size + pair.rounding);
-        return contacts(pair, {normal, world, job_.margin_of(pair.index), distance, doubt},
+        return contacts(pair, {core.normal, world, job_.margin_of(pair.index), distance, doubt},
                         core.winner);
       } else {
-        if (pair.state == HullState::apart || touching_point(pair, place, core)) {
-          write_point(pair, core.point, normal, distance);
+        if (pair.state == HullState::apart || touching_point(pair, core)) {
+          write_point(pair, core, distance);
           return true;
         }
-        return write_shared_point(pair, {normal, world, 0.0, distance, 2.0 * error}, core.winner);
+        return write_shared_point(pair, {core.normal, world, 0.0, distance, 2.0 * error},
+                                  core.winner);
       }
     }
   }
@@ -139,14 +133,8 @@ class HullAnswers {
   /// Contacts are of floats: a few units in their last place.
   static constexpr double kContactDoubt = 4e-7;
 
-  void write_normal(const HullPair& pair, const T* local, double* normal, double* world) {
-    for (int k = 0; k < 3; ++k) normal[k] = static_cast<double>(local[k]);
-    turn3(pair.frame, normal, world);
-    if (!kRobust) {
-      // Unit to double's precision, as everywhere.
-      const double scale = 1.0 / __builtin_sqrt(dot3(world, world));
-      for (int k = 0; k < 3; ++k) world[k] *= scale;
-    }
+  void write_normal(const HullPair& pair, const double* local, double* world) {
+    turn3(pair.frame, local, world);
     if (pair.swapped) {
       for (int k = 0; k < 3; ++k) world[k] = -world[k];
     }
@@ -154,11 +142,11 @@ class HullAnswers {
   }
 
   /// The point of body a: on the first, or where swapped on the second, `distance` farther.
-  void write_point(const HullPair& pair, const T* core, const double* normal, double distance) {
+  void write_point(const HullPair& pair, const HullDistance& core, double distance) {
     const double reach = pair.first->rounding + (pair.swapped ? distance : 0.0);
     double point[3];
     double world[3];
-    for (int k = 0; k < 3; ++k) point[k] = static_cast<double>(core[k]) + reach * normal[k];
+    for (int k = 0; k < 3; ++k) point[k] = core.point[k] + reach * core.normal[k];
     turn3(pair.frame, point, world);
     for (int k = 0; k < 3; ++k) {
       job_.point[k][pair.index] = pair.swapped ? world[k] - pair.offset[k] : world[k];
@@ -201,11 +189,10 @@ class HullAnswers {
     constexpr double doubt = 5.5e-6;
     const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
     const double upper = (length + doubt) * scale;
-    T normal[3];
-    for (int k = 0; k < 3; ++k) normal[k] = static_cast<T>(-gap[k] / length);
-    double local[3];
+    double normal[3];
+    for (int k = 0; k < 3; ++k) normal[k] = -gap[k] / length;
     double world[3];
-    write_normal(pair, normal, local, world);
+    write_normal(pair, normal, world);
     job_.distance[pair.index] = lower - pair.rounding;
     job_.error_bound[pair.index] = upper - lower;
     if constexpr (Level == 2) {
@@ -225,9 +212,6 @@ class HullAnswers {
 /// The kernels of a pair kind.
 template <typename Shapes>
 inline constexpr NarrowKernels kHullKernels = {
-    {HullAnswers<Shapes, float, 0>::run, HullAnswers<Shapes, float, 1>::run,
-     HullAnswers<Shapes, float, 2>::run},
-    {HullAnswers<Shapes, double, 0>::run, HullAnswers<Shapes, double, 1>::run,
-     HullAnswers<Shapes, double, 2>::run}};
+    {HullAnswers<Shapes, 0>::run, HullAnswers<Shapes, 1>::run, HullAnswers<Shapes, 2>::run}};
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

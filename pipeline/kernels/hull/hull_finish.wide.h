@@ -1,8 +1,8 @@
 #pragma once
 
-// From the features that the float search found to an answer in double (tier robust) or float (tier
-// fast): the distance between points that lie on the hulls is an upper bound, the separation of all
-// vertices along the direction found a lower one, and their difference the error.
+// From the features that the float search found to an answer in double: the distance between points
+// that lie on the hulls is an upper bound, the separation of all vertices along the direction found
+// a lower one, and their difference the error.
 
 #include "pipeline/kernels/hull/hull_measure.wide.h"
 #include "pipeline/kernels/hull/hull_ties.wide.h"
@@ -11,12 +11,11 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 /// Distance of the cores (negative: depth) along `normal`, from the first to the second, in the
 /// first's frame; `point` is on the first.
-template <typename T>
 struct HullDistance {
-  T distance;
-  T error;
-  T normal[3];
-  T point[3];
+  double distance;
+  double error;
+  double normal[3];
+  double point[3];
   /// Features that touch, for contacts: vertices of the closest simplex are used where this is not
   /// set.
   const HullCandidate* winner;
@@ -25,108 +24,105 @@ struct HullDistance {
 };
 
 /// Weights of the point nearest to the origin on the segment w0, w1; on the triangle.
-template <typename T>
-static inline void nearest_on_segment(const T (*w)[3], T* weight) {
-  T e[3];
+static inline void nearest_on_segment(const double (*w)[3], double* weight) {
+  double e[3];
   for (int k = 0; k < 3; ++k) e[k] = w[1][k] - w[0][k];
-  const T length = HullPlace<T>::dot3(e, e);
-  const T along = -HullPlace<T>::dot3(e, w[0]);
-  T t = length > T(0) ? along / length : T(0);
-  t = t > T(0) ? t : T(0);
-  t = t < T(1) ? t : T(1);
-  weight[0] = T(1) - t;
+  const double length = dot3(e, e);
+  const double along = -dot3(e, w[0]);
+  double t = length > 0.0 ? along / length : 0.0;
+  t = t > 0.0 ? t : 0.0;
+  t = t < 1.0 ? t : 1.0;
+  weight[0] = 1.0 - t;
   weight[1] = t;
 }
 
-template <typename T>
-static inline T square_of_mix(const T (*w)[3], const T* weight, std::uint32_t count) {
-  T square = T(0);
+static inline double square_of_mix(const double (*w)[3], const double* weight,
+                                   std::uint32_t count) {
+  double square = 0.0;
   for (int k = 0; k < 3; ++k) {
-    T x = T(0);
+    double x = 0.0;
     for (std::uint32_t i = 0; i < count; ++i) x += weight[i] * w[i][k];
     square += x * x;
   }
   return square;
 }
 
-template <typename T>
-static inline void nearest_on_triangle(const T (*w)[3], T* weight) {
-  T e[3];
-  T f[3];
+static inline void nearest_on_triangle(const double (*w)[3], double* weight) {
+  double e[3];
+  double f[3];
   for (int k = 0; k < 3; ++k) {
     e[k] = w[1][k] - w[0][k];
     f[k] = w[2][k] - w[0][k];
   }
-  const T n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
-  const T area = HullPlace<T>::dot3(n, n);
-  const T* p = w[0];
+  const double n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2],
+                       e[0] * f[1] - e[1] * f[0]};
+  const double area = dot3(n, n);
+  const double* p = w[0];
   // Of the second and the third corner, times the area.
-  const T u = n[0] * (f[1] * p[2] - f[2] * p[1]) + n[1] * (f[2] * p[0] - f[0] * p[2]) +
-              n[2] * (f[0] * p[1] - f[1] * p[0]);
-  const T v = -(n[0] * (e[1] * p[2] - e[2] * p[1]) + n[1] * (e[2] * p[0] - e[0] * p[2]) +
-                n[2] * (e[0] * p[1] - e[1] * p[0]));
-  if (u >= T(0) && v >= T(0) && u + v <= area && area > T(0)) {
+  const double u = n[0] * (f[1] * p[2] - f[2] * p[1]) + n[1] * (f[2] * p[0] - f[0] * p[2]) +
+                   n[2] * (f[0] * p[1] - f[1] * p[0]);
+  const double v = -(n[0] * (e[1] * p[2] - e[2] * p[1]) + n[1] * (e[2] * p[0] - e[0] * p[2]) +
+                     n[2] * (e[0] * p[1] - e[1] * p[0]));
+  if (u >= 0.0 && v >= 0.0 && u + v <= area && area > 0.0) {
     weight[1] = u / area;
     weight[2] = v / area;
-    weight[0] = T(1) - weight[1] - weight[2];
+    weight[0] = 1.0 - weight[1] - weight[2];
     return;
   }
-  T best = T(0);
+  double best = 0.0;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const T side[2][3] = {{w[i][0], w[i][1], w[i][2]}, {w[j][0], w[j][1], w[j][2]}};
-    T t[2];
+    const double side[2][3] = {{w[i][0], w[i][1], w[i][2]}, {w[j][0], w[j][1], w[j][2]}};
+    double t[2];
     nearest_on_segment(side, t);
-    const T square = square_of_mix(side, t, 2);
+    const double square = square_of_mix(side, t, 2);
     if (i > 0 && !(square < best)) continue;
     best = square;
     weight[i] = t[0];
     weight[j] = t[1];
-    weight[(i + 2) % 3] = T(0);
+    weight[(i + 2) % 3] = 0.0;
   }
 }
 
 /// Cores that are apart, from the search's simplex.
-template <typename T>
-static inline void finish_apart(const HullPair& pair, const HullPlace<T>& place,
-                                HullDistance<T>& answer) {
-  T a[3][3];
-  T w[3][3];
+static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
+  double a[3][3];
+  double w[3][3];
   for (std::uint32_t i = 0; i < pair.count; ++i) {
-    T b[3];
+    double b[3];
     vertex_at(*pair.first, pair.vertices[i] & 0xFFFFU, a[i]);
-    place.of_second(*pair.second, pair.vertices[i] >> 16U, b);
+    second_vertex_at(pair, pair.vertices[i] >> 16U, b);
     for (int k = 0; k < 3; ++k) w[i][k] = a[i][k] - b[k];
   }
-  T weight[3] = {T(1), T(0), T(0)};
+  double weight[3] = {1.0, 0.0, 0.0};
   if (pair.count == 2) nearest_on_segment(w, weight);
   if (pair.count == 3) nearest_on_triangle(w, weight);
-  T gap[3] = {};
+  double gap[3] = {};
   for (int k = 0; k < 3; ++k) {
-    answer.point[k] = T(0);
+    answer.point[k] = 0.0;
     for (std::uint32_t i = 0; i < pair.count; ++i) {
       gap[k] += weight[i] * w[i][k];
       answer.point[k] += weight[i] * a[i][k];
     }
   }
-  const T length = root(HullPlace<T>::dot3(gap, gap));
-  const T inverse = T(1) / length;
+  const double length = __builtin_sqrt(dot3(gap, gap));
+  const double inverse = 1.0 / length;
   for (int k = 0; k < 3; ++k) answer.normal[k] = -gap[k] * inverse;
-  const T lower =
-      place.lowest_of_second(*pair.second, answer.normal) - height_of(*pair.first, answer.normal);
-  const T doubt = length - lower;
+  const double lower =
+      lowest_of_second(pair, answer.normal) - height_of(*pair.first, answer.normal);
+  const double doubt = length - lower;
   answer.distance = length;
-  answer.error = (doubt > T(0) ? doubt : T(0)) + kRounding<T> * static_cast<T>(pair.size);
+  answer.error = (doubt > 0.0 ? doubt : 0.0) + kDoubleError * pair.size;
   answer.winner = nullptr;
   // Not a number if the length is 0.
-  if (!(length > T(0))) answer.error = static_cast<T>(__builtin_inf());
+  if (!(length > 0.0)) answer.error = __builtin_inf();
 }
 
 /// What candidates of the float search may have missed. False if that cannot be told.
-static inline bool finish_ties(const HullPair& pair, const HullPlace<double>& place,
-                               const HullDepth& found, const double* depth, const double* least,
-                               double& best, double& lower, HullDistance<double>& answer) {
-  HullTies ties(pair, place, best, __builtin_inf());
+static inline bool finish_ties(const HullPair& pair, const HullDepth& found, const double* depth,
+                               const double* least, double& best, double& lower,
+                               HullDistance& answer) {
+  HullTies ties(pair, best, __builtin_inf());
   const double reach = best + 4.0 * static_cast<double>(kFloatError) * pair.size;
   const double enough = best - kDoubleError * pair.size;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
@@ -150,14 +146,13 @@ static inline bool finish_ties(const HullPair& pair, const HullPlace<double>& pl
 
 /// Cores that overlap: measures the candidates. The error is not small where a candidate that is
 /// left out in double is not surely deeper.
-template <typename T>
-static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
-                                const HullDepth& found, HullDistance<T>& answer) {
-  HullMeasure<T> measure(pair, place);
-  T best = static_cast<T>(__builtin_inf());
-  T lower = best;
-  T depth[HullDepth::kMostCandidates];
-  T least[HullDepth::kMostCandidates];
+static inline void finish_depth(const HullPair& pair, const HullDepth& found,
+                                HullDistance& answer) {
+  HullMeasure measure(pair);
+  double best = __builtin_inf();
+  double lower = best;
+  double depth[HullDepth::kMostCandidates];
+  double least[HullDepth::kMostCandidates];
   answer.winner = nullptr;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
     const HullCandidate& c = found.candidate(i);
@@ -174,127 +169,113 @@ static inline void finish_depth(const HullPair& pair, const HullPlace<T>& place,
     answer.winner = &c;
     for (int k = 0; k < 3; ++k) answer.normal[k] = measure.normal[k];
   }
-  bool sure = answer.winner != nullptr;
-  if constexpr (sizeof(T) == sizeof(double)) {
-    sure = sure && finish_ties(pair, place, found, depth, least, best, lower, answer);
-  }
-  const T doubt = best - lower;
+  const bool sure =
+      answer.winner != nullptr && finish_ties(pair, found, depth, least, best, lower, answer);
+  const double doubt = best - lower;
   answer.distance = -best;
-  answer.error = (doubt > T(0) ? doubt : T(0)) + kRounding<T> * static_cast<T>(pair.size);
-  if (!sure) answer.error = static_cast<T>(__builtin_inf());
+  answer.error = (doubt > 0.0 ? doubt : 0.0) + kDoubleError * pair.size;
+  if (!sure) answer.error = __builtin_inf();
 }
 
 /// Whether a point in a hull's own frame lies in front of no face by more than `doubt`; false for
 /// flat hulls.
-template <typename T>
-static inline bool contains(const HullShape& hull, const T* x, T doubt) {
-  const double at[3] = {static_cast<double>(x[0]), static_cast<double>(x[1]),
-                        static_cast<double>(x[2])};
+static inline bool contains(const HullShape& hull, const double* x, double doubt) {
   for (std::uint32_t i = 0; i < hull.face_count; ++i) {
     const HullFace& face = hull.faces[i];
-    if (!(dot3(face.normal, at) - face.offset <= static_cast<double>(doubt))) return false;
+    if (!(dot3(face.normal, x) - face.offset <= doubt)) return false;
   }
   return hull.dimension == 3;
 }
 
 /// Where two edges cross as seen along the normal: the point on the first's. False if that is
 /// beyond an end of one of them, or if they are parallel.
-template <typename T>
-static inline bool crossing_point(const HullPair& pair, const HullPlace<T>& place,
-                                  HullDistance<T>& answer) {
+static inline bool crossing_point(const HullPair& pair, HullDistance& answer) {
   const HullArc& arc = answer.winner->arc;
   const HullEdge& edge = pair.first->edges[arc.edge];
-  T a[2][3];
-  T b[2][3];
+  double a[2][3];
+  double b[2][3];
   for (int i = 0; i < 2; ++i) {
     vertex_at(*pair.first, edge.vertex[i], a[i]);
-    place.of_second(*pair.second, arc.vertex[i], b[i]);
+    second_vertex_at(pair, arc.vertex[i], b[i]);
   }
-  T d[3];
-  T e[3];
-  T r[3];
+  double d[3];
+  double e[3];
+  double r[3];
   for (int k = 0; k < 3; ++k) {
     d[k] = a[1][k] - a[0][k];
     e[k] = b[1][k] - b[0][k];
     r[k] = b[0][k] - a[0][k];
   }
   // Across the second edge and the normal.
-  const T* n = answer.normal;
-  const T across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
-                       e[0] * n[1] - e[1] * n[0]};
-  const T sine = HullPlace<T>::dot3(across, d);
-  const T t = HullPlace<T>::dot3(across, r) / sine;
+  const double* n = answer.normal;
+  const double across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
+                            e[0] * n[1] - e[1] * n[0]};
+  const double sine = dot3(across, d);
+  const double t = dot3(across, r) / sine;
   for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
   // Likewise along the second.
-  const T from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
-                           d[0] * n[1] - d[1] * n[0]};
-  const T u = HullPlace<T>::dot3(from_first, r) / sine;
-  return t >= T(0) && t <= T(1) && u >= T(0) && u <= T(1);
+  const double from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
+                                d[0] * n[1] - d[1] * n[0]};
+  const double u = dot3(from_first, r) / sine;
+  return t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0;
 }
 
 /// Where two hulls touch along a normal, by the vertices that are farthest along it.
-template <typename T>
 class HullTouch {
  public:
-  HullTouch(const HullPair& pair, const HullPlace<T>& place, const HullDistance<T>& answer)
-      : pair_(pair),
-        place_(place),
-        answer_(answer),
-        rounding_(kRounding<T> * static_cast<T>(pair.size)) {}
+  HullTouch(const HullPair& pair, const HullDistance& answer)
+      : pair_(pair), answer_(answer), rounding_(kDoubleError * pair.size) {}
 
   /// Finds the middle of the first's or the second's farthest vertices, as a point on the first in
   /// its frame; returns how many those are.
-  std::uint32_t find_middle(bool first, T* x) const {
+  std::uint32_t find_middle(bool first, double* x) const {
     if (first) return middle_of(*pair_.first, answer_.normal, x);
-    T direction[3];
-    turn_back3(place_.turn, answer_.normal, direction);
-    for (T& d : direction) d = -d;
-    T local[3];
+    double direction[3];
+    turn_back3(pair_.turn, answer_.normal, direction);
+    for (double& d : direction) d = -d;
+    double local[3];
     const std::uint32_t tied = middle_of(*pair_.second, direction, local);
-    turn3(place_.turn, local, x);
-    for (int k = 0; k < 3; ++k) x[k] += place_.shift[k] - answer_.distance * answer_.normal[k];
+    turn3(pair_.turn, local, x);
+    for (int k = 0; k < 3; ++k) x[k] += pair_.shift[k] - answer_.distance * answer_.normal[k];
     return tied;
   }
 
   /// Whether a point of the touching plane lies on the first or the second.
-  [[nodiscard]] bool lies_on(bool first, const T* x) const {
+  [[nodiscard]] bool lies_on(bool first, const double* x) const {
     if (first) return contains(*pair_.first, x, rounding_);
-    T across[3];
+    double across[3];
     for (int k = 0; k < 3; ++k) {
-      across[k] = x[k] + answer_.distance * answer_.normal[k] - place_.shift[k];
+      across[k] = x[k] + answer_.distance * answer_.normal[k] - pair_.shift[k];
     }
-    T local[3];
-    turn_back3(place_.turn, across, local);
+    double local[3];
+    turn_back3(pair_.turn, across, local);
     return contains(*pair_.second, local, rounding_);
   }
 
  private:
-  std::uint32_t middle_of(const HullShape& hull, const T* direction, T* x) const {
-    return middle_from(hull, direction, height_of(hull, direction) - T(8) * rounding_, x);
+  std::uint32_t middle_of(const HullShape& hull, const double* direction, double* x) const {
+    return middle_from(hull, direction, height_of(hull, direction) - 8.0 * rounding_, x);
   }
 
   const HullPair& pair_;
-  const HullPlace<T>& place_;
-  const HullDistance<T>& answer_;
-  T rounding_;
+  const HullDistance& answer_;
+  double rounding_;
 };
 
 /// Where edges cross or one vertex touches a face. Where features are parallel, the middle of one
 /// of them, or else halfway between both, which hulls that are symmetrical about their middles
 /// share if they touch at all; false if none of these is on both.
-template <typename T>
-static inline bool touching_point(const HullPair& pair, const HullPlace<T>& place,
-                                  HullDistance<T>& answer) {
+static inline bool touching_point(const HullPair& pair, HullDistance& answer) {
   using Kind = HullCandidate::Kind;
   const Kind kind = answer.winner->kind;
-  if (kind == Kind::arc && crossing_point(pair, place, answer)) return true;
-  const HullTouch<T> touch(pair, place, answer);
+  if (kind == Kind::arc && crossing_point(pair, answer)) return true;
+  const HullTouch touch(pair, answer);
   const bool first = kind == Kind::second_face;
   const std::uint32_t tied = touch.find_middle(first, answer.point);
   if ((kind != Kind::arc && tied == 1) || touch.lies_on(!first, answer.point)) return true;
-  T other[3];
+  double other[3];
   touch.find_middle(!first, other);
-  for (int k = 0; k < 3; ++k) answer.point[k] = T(0.5) * (answer.point[k] + other[k]);
+  for (int k = 0; k < 3; ++k) answer.point[k] = 0.5 * (answer.point[k] + other[k]);
   if (touch.lies_on(true, answer.point) && touch.lies_on(false, answer.point)) return true;
   for (int k = 0; k < 3; ++k) answer.point[k] = other[k];
   return touch.lies_on(first, answer.point);

@@ -11,8 +11,8 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 class HullTies {
  public:
   /// `best` and `lower`: the least depth known and the least that it can be.
-  HullTies(const HullPair& pair, const HullPlace<double>& place, double best, double lower)
-      : pair_(pair), measure_(pair, place), place_(place), best_(best), lower_(lower) {}
+  HullTies(const HullPair& pair, double best, double lower)
+      : pair_(pair), measure_(pair), best_(best), lower_(lower) {}
 
   /// Looks around a face of the first, along whose normal the depth is known; false if there is
   /// more to look at than there is room for.
@@ -56,11 +56,11 @@ class HullTies {
     double local[3];
     against(normal, local);
     double tied[3];
-    const double height = dot3(normal, place_.shift) - least;
+    const double height = dot3(normal, pair_.shift) - least;
     middle_from(*pair_.second, local, height - kDoubleError * pair_.size, tied);
     double middle[3];
-    turn3(place_.turn, tied, middle);
-    for (int k = 0; k < 3; ++k) middle[k] += place_.shift[k];
+    turn3(pair_.turn, tied, middle);
+    for (int k = 0; k < 3; ++k) middle[k] += pair_.shift[k];
     for (std::uint32_t i = 0; i < hull.faces[face].count; ++i) {
       const std::uint32_t edge = hull.loop_edge[hull.faces[face].first + i];
       const std::uint32_t* sides = hull.edges[edge].face;
@@ -78,7 +78,7 @@ class HullTies {
     double local[3];
     against(normal, local);
     std::uint32_t vertex = 0;
-    const double height = dot3(normal, place_.shift) - least;
+    const double height = dot3(normal, pair_.shift) - least;
     return !sole_vertex_from(*pair_.second, local, height - doubt, vertex);
   }
 
@@ -91,14 +91,14 @@ class HullTies {
 
   /// The opposite direction, in the second's frame.
   void against(const double* direction, double* local) const {
-    turn_back3(place_.turn, direction, local);
+    turn_back3(pair_.turn, direction, local);
     for (int k = 0; k < 3; ++k) local[k] = -local[k];
   }
 
   bool follow(std::uint32_t edge, const double* from, const double* to) {
     const std::uint32_t last = nearest(to);
     double theirs[3];
-    place_.of_second(*pair_.second, last, theirs);
+    second_vertex_at(pair_, last, theirs);
     if (is_deep(theirs, from, to)) return true;
     const double* ends[2] = {from, to};
     Part stack[kMostParts];
@@ -134,7 +134,7 @@ class HullTies {
     double w[2][3];
     for (int i = 0; i < 2; ++i) {
       double theirs[3];
-      place_.of_second(*pair_.second, part.vertex[i], theirs);
+      second_vertex_at(pair_, part.vertex[i], theirs);
       for (int k = 0; k < 3; ++k) w[i][k] = mine_[k] - theirs[k];
     }
     const double rounding = kDoubleError * pair_.size;
@@ -174,8 +174,7 @@ class HullTies {
   }
 
   const HullPair& pair_;
-  HullMeasure<double> measure_;
-  const HullPlace<double>& place_;
+  HullMeasure measure_;
   double best_;
   double lower_;
   bool found_ = false;

@@ -184,7 +184,7 @@ template <typename T>
   const LaneMask<T> inside = overlap.sharp & (overlap.distance < -slack);
   r.proof = {select(inside, overlap.distance - slack, length) - both,
              select(inside, overlap.distance, length) - both, scale,
-             inside | (length > scale * Lanes<T>(kShortest<T>))};
+             inside | (length > scale * Lanes<T>(T(kShortest)))};
   const Vec3<T> flat{overlap.normal[0], overlap.normal[1], overlap.normal[2]};
   r.normal = select(inside, flat, w * (Lanes<T>(T(1)) / length));
   r.s = select(inside, deepest_place(r.scene, flat), s);
@@ -226,7 +226,7 @@ template <typename T>
   // The way along the normal to the face's plane, at s: base + rise s.
   const Lanes<T> base = -(sign_or_one(facing) * face.across(p.size) + face.across(p.middle)) * over;
   const Lanes<T> rise = -face.across(p.axis) * over;
-  const Lanes<T> slack = r.proof.scale * Lanes<T>(kOnePlace<T>);
+  const Lanes<T> slack = r.proof.scale * Lanes<T>(T(kOnePlace));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
   for (int i = 0; i < 2; ++i) {

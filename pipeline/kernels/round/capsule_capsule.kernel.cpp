@@ -153,7 +153,7 @@ struct CapsuleCapsule {
       return answer_overlap(job, block, p.witness);
     } else {
       CertifiedLanes<T> answer =
-          answer_distance(p.witness, p.witness.scale * Lanes<T>(kShortest<T>));
+          answer_distance(p.witness, p.witness.scale * Lanes<T>(T(kShortest)));
       if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
         answer = part_couple(p, answer);
       }

@@ -121,7 +121,7 @@ template <typename T>
   widen(v.gap, !pierced, along, n);
   r.proof = {select(pierced, depth - slack, v.gap.distance) - r.radius - r.radius_b,
              select(pierced, depth, length) - r.radius - r.radius_b, scale,
-             pierced | (length > scale * Lanes<T>(kShortest<T>))};
+             pierced | (length > scale * Lanes<T>(T(kShortest)))};
   r.normal = v.gap.normal;
   r.s = select(pierced, v.s, nearest.s);
   r.feature = select(pierced, v.feature, nearest.feature);
@@ -164,7 +164,7 @@ template <typename T>
   const TriangleView<T>& b = p.triangle;
   const Lanes<T> facing = dot(b.normal, r.normal);
   const Lanes<T> side = sign_or_one(facing);
-  const Lanes<T> slack = r.proof.scale * Lanes<T>(kOnePlace<T>);
+  const Lanes<T> slack = r.proof.scale * Lanes<T>(T(kOnePlace));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
   // What of the triangle ends it: an edge, or the face where the segment ends first.
@@ -194,7 +194,7 @@ template <typename T>
   LyingStretch<T> stretch{{low, high},
                           {base + rise * low, base + rise * high},
                           {feature[0], feature[1]},
-                          facing * facing > b.normal_square * Lanes<T>(kSteepSquare<T>)};
+                          facing * facing > b.normal_square * Lanes<T>(T(kSteepSquare))};
   stretch.lies = stretch.lies & two_ends(stretch, r.proof, p.axis, r.normal);
   return stretch;
 }

@@ -12,8 +12,7 @@ inline constexpr int kRoundings = 16;
 
 /// Shortest distance of the cores, relative to the pair's scale, that still gives a normal: its
 /// error is a few roundings over this.
-template <typename T>
-inline constexpr T kShortest = sizeof(T) == sizeof(double) ? T(1e-9) : T(1e-6F);
+inline constexpr double kShortest = 1e-9;
 
 /// The smallest sine of which a product of directions is taken for a normal of overlapping cores,
 /// and how far, relative to the pair's scale, their depth along it may be wrong: a few roundings
@@ -27,10 +26,6 @@ inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
 template <typename T>
 inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 
-/// Float lanes in range find no distance of this size: what is not below it is infinite or NaN.
-template <typename T>
-inline constexpr T kNoDistance = T(1e30F);
-
 /// Where the cores of a pair are closest.
 template <typename T>
 struct WitnessLanes {
@@ -42,21 +37,12 @@ struct WitnessLanes {
   Lanes<T> scale;
 };
 
-/// Whether only signs count that bounds prove. Tier fast answers whatever is a number: its bound
-/// says how sure the sign is.
-template <typename T>
-[[gnu::always_inline]] inline bool is_strict(const NarrowJob& job) {
-  return sizeof(T) == sizeof(double) || leaves_doubt<T>(job);
-}
-
+/// Only signs count that bounds prove.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
                                                      const Lanes<T>& bound, const Lanes<T>& scale,
-                                                     const LaneMask<T>& normal,
-                                                     bool strict = sizeof(T) == sizeof(double)) {
-  const LaneMask<T> valid = in_range(scale * scale) & normal;
-  if (strict) return bits(valid & (abs(distance) > bound));
-  return bits(valid & (abs(distance) < Lanes<T>(kNoDistance<T>)));
+                                                     const LaneMask<T>& normal) {
+  return bits(in_range(scale * scale) & normal & (abs(distance) > bound));
 }
 
 /// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
@@ -68,7 +54,7 @@ template <typename T>
   const Lanes<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
   const Lanes<T> error = square * Lanes<T>(T(4 * kRoundings) * kEpsilon<T>);
   write_overlap(job, block, bits(excess <= Lanes<T>(T(0))));
-  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)), is_strict<T>(job));
+  return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)));
 }
 
 /// A distance along a normal, and whether it may be written.
@@ -86,7 +72,7 @@ template <typename T>
                                                  const Lanes<T>& distance, const Lanes<T>& bound,
                                                  const Lanes<T>& scale) {
   write_overlap(job, block, bits(distance <= Lanes<T>(T(0))));
-  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)), is_strict<T>(job));
+  return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
 }
 
 /// Levels distance and manifold. `shortest` is the least |w| that has a direction.
@@ -235,19 +221,15 @@ template <typename T>
   write_overlap(job, block, bits(proof.high <= Lanes<T>(T(0))));
   const Lanes<T> error = proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const LaneMask<T> valid = in_narrow_range(proof.scale);
-  if (is_strict<T>(job)) {
-    return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
-  }
-  return ~bits(valid & (abs(proof.high) < Lanes<T>(kNoDistance<T>)));
+  return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
 }
 
-/// Levels distance and manifold. Tier robust promises bounds of 1e-12 of sizes and distance, of
-/// which scale is at most twice as much; wide bounds of tier fast are those of slivers, which are
-/// better solved.
+/// Levels distance and manifold. Bounds are at most 1e-12 of sizes and distance, of which scale is
+/// at most twice as much.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_proven(const ProofLanes<T>& proof,
                                                               const Vec3<T>& normal) {
-  const Lanes<T> widest(sizeof(T) == sizeof(double) ? T(4e-13) : T(1e-2F));
+  const Lanes<T> widest(T(4e-13));
   const Lanes<T> bound =
       abs(proof.high - proof.low) + proof.scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const LaneMask<T> valid =
@@ -454,13 +436,10 @@ template <typename T>
 
 /// As a share of the pair's scale: places that are closer are one. What is as near to a stretch's
 /// end as the second is deepest there.
-template <typename T>
-inline constexpr T kOnePlace = sizeof(T) == sizeof(double) ? T(1e-9) : T(1e-6F);
-template <typename T>
-inline constexpr T kSameDepth = sizeof(T) == sizeof(double) ? T(4e-7) : T(1e-6F);
+inline constexpr double kOnePlace = 1e-9;
+inline constexpr double kSameDepth = 4e-7;
 /// The least square of the sine between a segment and the direction along which it is seen.
-template <typename T>
-inline constexpr T kSteepSquare = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-6F);
+inline constexpr double kSteepSquare = 1e-12;
 
 /// The stretch of a segment that is over a face, seen along the normal: where it begins and ends,
 /// how far the shapes are apart there, and what a contact there is called.
@@ -481,11 +460,11 @@ template <typename T>
   const Vec3<T> across = u - normal * dot(u, normal);
   const Lanes<T> square = dot(across, across);
   const Lanes<T> length = stretch.at[1] - stretch.at[0];
-  const Lanes<T> place = proof.scale * Lanes<T>(kOnePlace<T>);
+  const Lanes<T> place = proof.scale * Lanes<T>(T(kOnePlace));
   const Lanes<T> deepest = min(stretch.distance[0], stretch.distance[1]);
-  return (square > Lanes<T>(kSteepSquare<T>)) & (length > Lanes<T>(T(0))) &
+  return (square > Lanes<T>(T(kSteepSquare))) & (length > Lanes<T>(T(0))) &
          (length * length * square > place * place) &
-         (abs(deepest - proof.high) <= proof.scale * Lanes<T>(kSameDepth<T>));
+         (abs(deepest - proof.high) <= proof.scale * Lanes<T>(T(kSameDepth)));
 }
 
 /// Contacts at the ends of the stretch that are within the margin; one at `s`, called `feature`,

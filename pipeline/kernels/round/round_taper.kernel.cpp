@@ -67,7 +67,7 @@ struct SphereTaper {
         scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
         scale,
         -axes.to_world(Vec3<T>{p.x * outward, p.y * outward, axial}),
-        select(side, away, from_ball) > scale * Lanes<T>(kShortest<T>),
+        select(side, away, from_ball) > scale * Lanes<T>(T(kShortest)),
         ra,
         select(side, zero, select(low, Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])))};
   }

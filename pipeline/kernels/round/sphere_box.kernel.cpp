@@ -88,7 +88,7 @@ struct SphereBox {
       const Lanes<T> bound = r.scale * roundings;
       // Of directions that are as good as each other, as far as rounding can tell, any will do.
       const LaneMask<T> tied = r.view.lead <= bound;
-      const LaneMask<T> known = tied | (r.view.lead > r.scale * Lanes<T>(kShortest<T>));
+      const LaneMask<T> known = tied | (r.view.lead > r.scale * Lanes<T>(T(kShortest)));
       const Vec3<T> towards = select(tied, r.view.face, r.view.towards);
       const Lanes<T> widened = select(tied, bound + bound, bound);
       const CertifiedLanes<T> answer{r.distance, widened, r.axes.to_world(towards),

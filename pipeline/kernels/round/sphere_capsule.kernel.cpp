@@ -22,7 +22,7 @@ struct SphereCapsule {
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
-      CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(kShortest<T>));
+      CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(T(kShortest)));
       if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
         part_across(answer, witness, any_across(axis), witness.scale > Lanes<T>(T(0)));
       }
@@ -35,6 +35,7 @@ struct SphereCapsule {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_capsule_kernels) =
-    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereCapsule>(false);
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereCapsule,
+                                            WINNOW_ISA_NAME::kManifold, false>();
 
 }  // namespace winnow

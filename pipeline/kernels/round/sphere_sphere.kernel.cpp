@@ -16,8 +16,7 @@ struct SphereSphere {
       return answer_overlap(job, block, witness);
     } else {
       // The offset is right to a rounding of itself, and so is the normal, however short it is.
-      const Lanes<T> shortest(sizeof(T) == sizeof(double) ? T(1e-130) : T(1e-15F));
-      CertifiedLanes<T> answer = answer_distance(witness, shortest);
+      const CertifiedLanes<T> answer = answer_distance(witness, Lanes<T>(T(1e-130)));
       return write_ball<L>(job, block, answer, ra, Lanes<T>(T(0)));
     }
   }
@@ -27,6 +26,7 @@ struct SphereSphere {
 }  // namespace WINNOW_ISA_NAME::round
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_sphere_kernels) =
-    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereSphere>(false);
+    WINNOW_ISA_NAME::closed_form_kernels_of<WINNOW_ISA_NAME::round::SphereSphere,
+                                            WINNOW_ISA_NAME::kManifold, false>();
 
 }  // namespace winnow

@@ -106,7 +106,7 @@ struct SphereSpun {
             scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
             scale,
             axes.to_world(Vec3<T>{p.x * over, p.y * over, view.axial}),
-            view.lead > scale * Lanes<T>(kShortest<T>),
+            view.lead > scale * Lanes<T>(T(kShortest)),
             ra,
             zero};
   }

@@ -32,7 +32,7 @@ template <typename T>
   const Lanes<T> one(T(1));
   const Vec3<T> n = w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n));
-  Gap<T> gap{select(is_away, along, Lanes<T>(-kNoDistance<T>)), n};
+  Gap<T> gap{select(is_away, along, Lanes<T>(T(-1e30F))), n};
   const Gap<T> flat = gap_along(b, b.normal * (one / sqrt(b.normal_square)), zero);
   widen(gap, has_normal(b), flat.distance, flat.normal);
   return gap;
@@ -65,7 +65,7 @@ template <typename T>
   const LaneMask<T> is_away = length > scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const Gap<T> gap = widest_gap(view, nearest.w, length, is_away);
   const LaneMask<T> unique =
-      (length > scale * Lanes<T>(kShortest<T>)) | ((!is_away) & has_normal(view));
+      (length > scale * Lanes<T>(T(kShortest))) | ((!is_away) & has_normal(view));
   return {{gap.distance - radius, length - radius, scale, unique},
           axes.to_world(gap.normal),
           ra,
