@@ -247,7 +247,7 @@ template <typename T>
   const Vec3<T> step = n * axis.separation;
   const LaneMask<T> of_box = axis.index < Lanes<T>(T(2.5));
   const LaneMask<T> of_face = axis.index < Lanes<T>(T(3.5));
-  const LaneMask<T> apart = axis.separation > zero;
+  const LaneMask<T> apart = may_be_apart(axis, pair.scale);
   const Vec3<T> vertex = pair.b.lowest(n);
   const Vec3<T> foot = vertex - step;
   const Vec3<T> corner{sign_or_one(n.x) * pair.half.x, sign_or_one(n.y) * pair.half.y,

@@ -342,6 +342,13 @@ struct AxisPoints {
   Lanes<T> doubt;
 };
 
+/// Lanes whose cores may be apart, as far as rounding can tell. Axes that all but fail to part the
+/// cores say nothing of the distance: those of two triangles in one plane are all its normal.
+template <typename Axis, typename T>
+[[gnu::always_inline]] inline LaneMask<T> may_be_apart(const Axis& axis, const Lanes<T>& scale) {
+  return axis.most > -(scale * Lanes<T>(kFlatSlack<T>));
+}
+
 /// Puts the points of some lanes to where both shapes are.
 template <typename Staged, typename Pair, typename T>
 inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes) {
@@ -369,7 +376,7 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const Pair& pair, const Axis& axis,
                                                     const LaneMask<T>& wanted) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-  const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
+  const LaneMask<T> apart = may_be_apart(axis, pair.scale);
   CoreAnswer<T> answer;
   answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
   answer.error_bound = abs(axis.most - axis.separation) + slack;

@@ -85,6 +85,7 @@ struct TriangleAxis {
   Lanes<T> separation;
   /// No unit vector separates more.
   Lanes<T> most;
+  /// -1 if all edges are parallel, and the normal is no axis.
   Lanes<T> index;
   /// Square of the length of the axis, and for products the edges and where they begin.
   Lanes<T> length2;
@@ -224,7 +225,7 @@ template <typename T>
   }
   face.normal = select(of_a, pair.a.normal, pair.b.normal);
   face.area = select(of_a, pair.a.area, pair.b.area);
-  const LaneMask<T> apart = axis.separation > zero;
+  const LaneMask<T> apart = may_be_apart(axis, pair.scale);
   const LaneMask<T> over =
       face.is_over(select(of_a, vertex_b, vertex_a), select(apart, zero, near));
 
@@ -242,7 +243,8 @@ template <typename T>
   AxisPoints<T> p;
   p.points.a = select(of_face, select(of_a, vertex_b - step, vertex_a), edges.a);
   p.points.b = select(of_face, select(of_a, vertex_b, vertex_a + step), edges.b);
-  p.meets = (of_face & over) | (crossing & !of_face);
+  const LaneMask<T> has_axis = axis.index > Lanes<T>(T(-0.5));
+  p.meets = ((of_face & over) | (crossing & !of_face)) & has_axis;
   p.doubt = select(of_face, face.area / sqrt(axis.length2), Lanes<T>(T(1)));
   return p;
 }
