@@ -63,7 +63,8 @@ void edge_edge(const Vec& p, const Vec& e, const Vec& q, const Vec& f, bool flip
   const Vec across = f - u * u.dot(f);
   const double square = across.squaredNorm();
   if (!(square > 0.0)) return;
-  const double t = across.dot(p - q) / square;
+  const Vec between = p - q;
+  const double t = across.dot(between - u * u.dot(between)) / square;
   if (!(t > 0.0 && t < 1.0)) return;
   const Vec y = q + f * t;
   put(on_segment(p, e, y), y);
@@ -434,9 +435,14 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   if (found.upper - search.separation() > kEnough * noise) {
     const bool all = look_at_features(problem, search);
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
-    // No axis separates them: they overlap, whatever the simplices said.
-    const bool sure = polytopes ? all : found.upper <= noise;
-    if (sure && search.separation() <= 0.0) return penetration(problem, found, level, counts);
+    if (search.separation() <= 0.0 && (all || !polytopes)) {
+      // No axis separates polytopes: they overlap, whatever the simplices said. So do others if
+      // they are deeper than the polytope that grew may be from the origin.
+      const CoreDistance inside = penetration(problem, found, level, counts);
+      const bool proved = inside.distance + inside.doubt < -found.upper;
+      if (polytopes || found.upper <= noise || proved) return inside;
+      search.look(inside.axis);
+    }
   }
   return closest(problem, found, search, counts);
 }

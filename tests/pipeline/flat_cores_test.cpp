@@ -1,6 +1,6 @@
 // Shapes whose cores are flat, a segment or a point, in one plane, in parallel ones or in one line,
 // rounded or not: what parts them may lie within the plane, where no normal of theirs is. Tier
-// robust has to agree with the solver. WINNOW_TEST_SCALE=50 makes it a million pairs.
+// robust has to agree with the solver. WINNOW_TEST_SCALE=100 makes it a million pairs.
 
 #include <gtest/gtest.h>
 

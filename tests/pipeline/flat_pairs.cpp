@@ -34,8 +34,9 @@ class FlatMaker {
     on_lattice_ = random_.chance(0.4);
     in_line_ = random_.chance(0.2);
     const Turn all = common_turn();
-    const double origin = random_.chance(0.5) ? 0.0 : random_.uniform(-30.0, 30.0);
-    const double size_a = on_lattice_ ? 1.0 : random_.uniform(0.5, 2.0);
+    const double unit = unit_of_length();
+    const double origin = random_.chance(0.5) ? 0.0 : unit * random_.uniform(-30.0, 30.0);
+    const double size_a = unit * (on_lattice_ ? 1.0 : random_.uniform(0.5, 2.0));
     const double size_b = random_.chance(0.7) ? size_a : size_a * random_.log_uniform(1e-3, 1e3);
     const Eigen::Vector3d start(origin, -origin, 0.5 * origin);
     const auto first = static_cast<std::uint32_t>(scene_.shapes.size());
@@ -46,6 +47,11 @@ class FlatMaker {
   }
 
  private:
+  double unit_of_length() {
+    if (random_.chance(0.6)) return 1.0;
+    const double unit = random_.log_uniform(1e-12, 1e12);
+    return on_lattice_ ? std::exp2(std::round(std::log2(unit))) : unit;
+  }
   double length(double size) {
     if (on_lattice_) return size * 0.5 * static_cast<double>(1 + random_.below(3));
     return size * random_.uniform(0.1, 1.0);

@@ -112,7 +112,7 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline TriangleAxis<T> best_axis(const TrianglePair<T>& pair) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-  // Worse than any axis; left as it is if there is none.
+  // Worse than any axis; left as it is if there is none: a normal that is no axis is not unit.
   const Lanes<T> none = -pair.scale * Lanes<T>(T(2));
   BestAxis<T> best{none * abs(none), Lanes<T>(T(1)), Lanes<T>(T(-1))};
   Lanes<T> left_out(T(0));
@@ -144,7 +144,7 @@ template <typename T>
   pair.a.span(n, low_a, high_a);
   pair.b.span(n, low_b, high_b);
   const LaneMask<T> ahead = low_b - high_a >= low_a - high_b;
-  r.separation = select(ahead, low_b - high_a, low_a - high_b);
+  r.separation = select(any, select(ahead, low_b - high_a, low_a - high_b), none);
   r.normal = select(ahead, n, -n);
   return r;
 }
