@@ -437,9 +437,10 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
     if (search.separation() <= 0.0 && (all || !polytopes)) {
       // No axis separates polytopes: they overlap, whatever the simplices said. So do others if
-      // their depth proves it.
+      // they are deeper than the polytope that grew may be from the origin.
       const CoreDistance inside = penetration(problem, found, level, counts);
-      if (polytopes || found.upper <= noise || inside.distance + inside.doubt < 0.0) return inside;
+      const bool proved = inside.distance + inside.doubt < -found.upper;
+      if (polytopes || found.upper <= noise || proved) return inside;
       search.look(inside.axis);
     }
   }

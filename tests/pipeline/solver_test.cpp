@@ -314,6 +314,60 @@ TEST_F(SolverCases, a_rod_beside_a_hull_as_large_as_a_world_is_apart) {
   EXPECT_FALSE(answer.overlap) << answer.distance << " +- " << answer.error_bound;
 }
 
+/// Any orientation.
+Eigen::Quaterniond any_turn(Random& random) {
+  return Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                            random.uniform(-1, 1))
+      .normalized();
+}
+Pose pose_of(const Eigen::Quaterniond& turn, const Vec& at) {
+  return {{at.x(), at.y(), at.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
+}
+
+TEST_F(SolverCases, rods_that_cross_nearly_in_line_touch) {
+  const std::vector<Vec> ends{{-1, 0, 0}, {1, 0, 0}};
+  ShapeId hull;
+  ASSERT_EQ(pool_.add_hull(ends, 0.0, hull), Status::ok);
+  const ShapeId rods[] = {add(BoxShape{{1, 0, 0}, 0.0}),
+                          add(TriangleShape{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}}, 0.0}), hull};
+  Random random(5);
+  for (std::size_t i = 0; i < scaled(1000); ++i) {
+    const Eigen::Quaterniond turn = any_turn(random);
+    const double tilt = random.log_uniform(1e-13, 1e-4);
+    const Eigen::Quaterniond off =
+        random.chance(0.5) ? Eigen::Quaterniond(1, 0, tilt, 0) : Eigen::Quaterniond(tilt, 0, 0, 1);
+    const Eigen::Quaterniond tilted = turn * off.normalized();
+    // A point of the second that is on the first, too.
+    const double at = random.uniform(-0.9, 0.9);
+    const double from = random.uniform(-0.9, 0.9);
+    const Vec middle = turn * Vec(at, 0, 0) - tilted * Vec(from, 0, 0);
+    const PairAnswer answer =
+        solve(rods[random.below(3)], pose_of(turn, Vec::Zero()), rods[random.below(3)],
+              pose_of(tilted, middle), ContactLevel::distance);
+    ASSERT_LE(std::abs(answer.distance), answer.error_bound + 1e-15) << i << " tilt " << tilt;
+  }
+}
+
+TEST_F(SolverCases, small_balls_around_rods_overlap_them) {
+  Random random(6);
+  for (std::size_t i = 0; i < scaled(200); ++i) {
+    const double radius = random.log_uniform(1e-7, 1e-2);
+    const double length = random.uniform(0.1, 1.0);
+    const ShapeId ball = add(TaperedCapsuleShape{{radius, 0.0}, 0.0});
+    const ShapeId rods[] = {add(ConeShape{0.0, length, 0.0}),
+                            add(TaperedCapsuleShape{{0.0, 0.0}, length}),
+                            add(EllipsoidShape{{0.0, 0.0, length}, 0.0})};
+    const Eigen::Quaterniond turn = any_turn(random);
+    const double at = random.chance(0.5) ? 0.0 : random.uniform(-0.9, 0.9) * length;
+    const PairAnswer answer = solve(ball, pose_of(turn, Vec::Zero()), rods[random.below(3)],
+                                    pose_of(turn, turn * Vec(0, 0, at)), ContactLevel::distance);
+    ASSERT_TRUE(answer.overlap) << i << " radius " << radius << " " << answer.distance << " +- "
+                                << answer.error_bound;
+    ASSERT_NEAR(answer.distance, -radius, answer.error_bound + 1e-15) << i;
+    ASSERT_LT(answer.error_bound, radius) << i;
+  }
+}
+
 TEST_F(SolverCases, curved_shapes_of_extreme_lengths_have_finite_answers) {
   const ShapeId plate = add(CylinderShape{2.3e12, 3e-265, 0.0});
   const ShapeId dust = add(SphereShape{5.6e-305});
