@@ -50,8 +50,13 @@ struct Aabb {
 
   /// Grows to contain `other`.
   void merge(const Aabb& other) noexcept {
-    min = min.min(other.min);
-    max = max.max(other.max);
+    // As doubles: a host may take denormal floats for 0, and a minimum would write that.
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool lower = to_double(other.min[axis]) < to_double(min[axis]);
+      const bool higher = to_double(max[axis]) < to_double(other.max[axis]);
+      min[axis] = lower ? other.min[axis] : min[axis];
+      max[axis] = higher ? other.max[axis] : max[axis];
+    }
   }
 
   /// The same corners, float by float.

@@ -57,8 +57,8 @@ struct Kdop {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const int weight = directions[s][axis];
         if (weight == 0) continue;
-        const auto a = static_cast<double>(box.min[axis]);
-        const auto b = static_cast<double>(box.max[axis]);
+        const double a = to_double(box.min[axis]);
+        const double b = to_double(box.max[axis]);
         lo = add_down(lo, weight > 0 ? a : -b);
         hi = add_up(hi, weight > 0 ? b : -a);
       }
@@ -75,8 +75,10 @@ struct Kdop {
       const Vec3d p = points[i];
       const Kdop one = around(Aabb::outward(p, p));
       for (std::size_t s = 0; s < kSlabs; ++s) {
-        result.min[s] = one.min[s] < result.min[s] ? one.min[s] : result.min[s];
-        result.max[s] = one.max[s] > result.max[s] ? one.max[s] : result.max[s];
+        const bool lower = to_double(one.min[s]) < to_double(result.min[s]);
+        const bool higher = to_double(result.max[s]) < to_double(one.max[s]);
+        result.min[s] = lower ? one.min[s] : result.min[s];
+        result.max[s] = higher ? one.max[s] : result.max[s];
       }
     }
     return result;
