@@ -75,10 +75,8 @@ struct Kdop {
       const Vec3d p = points[i];
       const Kdop one = around(Aabb::outward(p, p));
       for (std::size_t s = 0; s < kSlabs; ++s) {
-        const bool lower = to_double(one.min[s]) < to_double(result.min[s]);
-        const bool higher = to_double(result.max[s]) < to_double(one.max[s]);
-        result.min[s] = lower ? one.min[s] : result.min[s];
-        result.max[s] = higher ? one.max[s] : result.max[s];
+        result.min[s] = detail::lesser(result.min[s], one.min[s]);
+        result.max[s] = -detail::lesser(-result.max[s], -one.max[s]);
       }
     }
     return result;

@@ -7,22 +7,54 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 namespace winnow {
 
-// What rounds outward here does so in any direction of rounding that a host has set, and where it
-// flushes denormal numbers.
+// A host may round in any direction and flush denormal numbers (FTZ, DAZ). Inside the library the
+// environment is the default one; what headers compute in the host's has to be outward there, too.
 
-/// The number itself: a conversion would make 0 of a denormal one where the host flushes these.
+namespace detail {
+
+inline constexpr std::uint32_t kSign = 0x80000000U;
+inline constexpr std::uint32_t kExponent = 0x7F800000U;
+
+/// The lesser of two numbers. If the host takes denormal ones for 0 as it compares, a minimum is 0,
+/// and integers in the order of floats tell.
+[[nodiscard]] constexpr float lesser(float a, float b) noexcept {
+  const float found = b < a ? b : a;
+  if (found != 0.0F) [[likely]]
+    return found;
+  const auto x = std::bit_cast<std::int32_t>(a);
+  const auto y = std::bit_cast<std::int32_t>(b);
+  const std::int32_t both_negative = (x & y) >> 31;
+  return (y ^ both_negative) < (x ^ both_negative) ? b : a;
+}
+
+/// `round_up` of a number between those of the smallest normal floats, in integers: nothing
+/// flushes these.
+[[nodiscard]] constexpr float round_up_tiny(double value) noexcept {
+  constexpr std::uint64_t kOne = std::uint64_t{1} << 52U;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const std::uint64_t exponent = bits >> 52U & 0x7FFU;
+  const std::uint64_t mantissa = (bits & (kOne - 1)) | (exponent == 0 ? 0 : kOne);
+  // In units of 2^-149, the smallest float. All of a smaller number is shifted out.
+  const std::uint64_t shift = exponent < 863 ? 63 : 1023 + 52 - 149 - exponent;
+  const std::uint64_t whole = mantissa >> shift;
+  const bool is_negative = bits >> 63U != 0;
+  const std::uint64_t units = whole + (!is_negative && whole << shift != mantissa ? 1 : 0);
+  return std::bit_cast<float>(static_cast<std::uint32_t>(units) | (is_negative ? kSign : 0));
+}
+
+}  // namespace detail
+
+/// The number itself: a conversion would make 0 of a denormal one if the host flushes these.
 [[nodiscard]] constexpr double to_double(float value) noexcept {
-  constexpr std::uint32_t kSign = 0x80000000U;
-  constexpr std::uint32_t kExponent = 0x7F800000U;
   const auto bits = std::bit_cast<std::uint32_t>(value);
-  if ((bits & kExponent) != 0) [[likely]]
+  if ((bits & detail::kExponent) != 0) [[likely]]
     return static_cast<double>(value);
-  const double size = static_cast<double>(static_cast<std::int32_t>(bits & ~kSign)) * 0x1p-149;
-  return (bits & kSign) != 0 ? -size : size;
+  const double size =
+      static_cast<double>(static_cast<std::int32_t>(bits & ~detail::kSign)) * 0x1p-149;
+  return (bits & detail::kSign) != 0 ? -size : size;
 }
 
 /// The float after a finite or -infinite `value`, going up. By its bits: cheaper than
@@ -35,50 +67,16 @@ namespace winnow {
   return std::bit_cast<float>((bits & 0x7FFFFFFFU) == 0 ? 1U : next);
 }
 
-namespace detail {
-
-/// `round_up` where nothing is flushed.
-[[nodiscard]] constexpr float round_up_unflushed(double value) noexcept {
-  const float nearest = static_cast<float>(value);
-  // Of a mask: which of the two it is cannot be foreseen, and a branch would cost more.
-  const std::uint32_t up = static_cast<double>(nearest) < value ? ~0U : 0U;
-  const auto bits = std::bit_cast<std::uint32_t>(nearest);
-  const auto above = std::bit_cast<std::uint32_t>(next_up(nearest));
-  return std::bit_cast<float>(bits ^ ((bits ^ above) & up));
-}
-
-/// `add_down` where nothing is flushed. The rounding error of the sum is found exactly (Knuth,
-/// TAOCP vol. 2, 4.2.2, theorem B); in other directions of rounding its sign is right.
-[[nodiscard]] inline double add_down_unflushed(double a, double b) noexcept {
-  const double sum = a + b;
-  const double shadow = sum - a;
-  const double error = (a - (sum - shadow)) + (b - shadow);
-  // One less in its bits, or one more of a negative sum; without a branch, as above. A sum of 0 has
-  // no error.
-  const std::int64_t below = error < 0.0 ? 1 : 0;
-  const auto bits = std::bit_cast<std::int64_t>(sum);
-  return std::bit_cast<double>(bits - below * (2 * (bits >> 63) + 1));
-}
-
-/// The same with flushing switched off meanwhile.
-[[nodiscard]] WINNOW_API float round_up_tiny(double value) noexcept;
-[[nodiscard]] WINNOW_API double add_down_tiny(double a, double b) noexcept;
-
-/// True if `value` is not 0, but less than 2^(exponent - 1023).
-[[nodiscard]] constexpr bool is_tiny(double value, std::uint64_t exponent) noexcept {
-  const std::uint64_t size = std::bit_cast<std::uint64_t>(value) & ~(std::uint64_t{1} << 63U);
-  return size - 1 < (exponent << 52U) - 1;
-}
-
-}  // namespace detail
-
 /// Smallest float that is >= `value`. NaN stays NaN; above the float range gives +infinity.
 [[nodiscard]] constexpr float round_up(double value) noexcept {
-  constexpr std::uint64_t kLeastNormalFloat = 1023 - 126;
-  if (detail::is_tiny(value, kLeastNormalFloat)) [[unlikely]] {
-    if (!std::is_constant_evaluated()) return detail::round_up_tiny(value);
-  }
-  return detail::round_up_unflushed(value);
+  const float nearest = static_cast<float>(value);
+  const auto bits = std::bit_cast<std::uint32_t>(nearest);
+  if ((bits & detail::kExponent) == 0) [[unlikely]]
+    return detail::round_up_tiny(value);
+  // Of a mask: which of the two it is cannot be foreseen, and a branch would cost more.
+  const std::uint32_t up = static_cast<double>(nearest) < value ? ~0U : 0U;
+  const std::uint32_t above = (bits & detail::kSign) != 0 ? bits - 1U : bits + 1U;
+  return std::bit_cast<float>(bits ^ ((bits ^ above) & up));
 }
 
 /// Largest float that is <= `value`. NaN stays NaN; below the float range gives -infinity.
@@ -92,14 +90,19 @@ namespace detail {
   return static_cast<float>(value < -kMost ? -kMost : (kMost < value ? kMost : value));
 }
 
-/// Largest double that is <= the exact a + b, for finite sums.
+/// Largest double that is <= the exact a + b, for finite sums. The rounding error of the sum is
+/// itself a double and found exactly (Knuth, TAOCP vol. 2, 4.2.2, theorem B); if the host does not
+/// round to nearest, its sign is right. If the host flushes denormal numbers, that holds for
+/// numbers of at least 2^-959, as all floats and products of two are, and for 0.
 [[nodiscard]] inline double add_down(double a, double b) noexcept {
-  // A sum is flushed only if both are so small that it has no rounding error of its own.
-  constexpr std::uint64_t kFarAboveDenormal = 64;
-  if (detail::is_tiny(a, kFarAboveDenormal) || detail::is_tiny(b, kFarAboveDenormal)) [[unlikely]] {
-    return detail::add_down_tiny(a, b);
-  }
-  return detail::add_down_unflushed(a, b);
+  const double sum = a + b;
+  const double shadow = sum - a;
+  const double error = (a - (sum - shadow)) + (b - shadow);
+  // One less in its bits, or one more of a negative sum; without a branch, as above. A sum of 0 has
+  // no error.
+  const std::int64_t below = error < 0.0 ? 1 : 0;
+  const auto bits = std::bit_cast<std::int64_t>(sum);
+  return std::bit_cast<double>(bits - below * (2 * (bits >> 63) + 1));
 }
 
 /// Smallest double that is >= the exact a + b, for finite sums.

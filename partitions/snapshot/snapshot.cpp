@@ -90,6 +90,7 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
 }  // namespace
 
 Status Partition::save(Column<std::byte>& out) const {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(status_, "Partition::save");
   state_->write_deferred();
   const Status status =

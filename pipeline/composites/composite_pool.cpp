@@ -385,6 +385,7 @@ Status CompositePool::tell(mid::IdSet& set, ShapeId surface, bool now) noexcept 
 }
 
 Status CompositePool::set_solid(ShapeId id, bool solid) {
+  const DefaultEnvironment environment;
   if (mesh(id) == nullptr) return Status::invalid_key;
   if (solid && !is_solid(id)) {
     const Status status = mid::check_solid(*state_, id);
