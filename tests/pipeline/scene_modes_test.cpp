@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/scene_sweep.h>
 
 #include <bit>
 #include <cfloat>
@@ -47,6 +48,13 @@ class Bits {
   void add_all(const Many& many) {
     bits_.push_back(many.size());
     for (const auto& one : many) add(one);
+  }
+  void add(const SceneImpact& impact) {
+    bits_.push_back(std::uint64_t{impact.a.id} << 32U | impact.b.id);
+    bits_.push_back(std::uint64_t{impact.part_a} << 32U | impact.part_b);
+    add(impact.time);
+    add(impact.gap);
+    add(impact.normal);
   }
   void add(const SceneOverlap& overlap) {
     bits_.push_back(std::uint64_t{overlap.key.id} << 32U | overlap.part);
@@ -192,6 +200,46 @@ void ask(TinyWorld& world, Bits& bits, SceneTally& tally) {
   bits.add_all(lists.hits);
 }
 
+/// A box that starts beside each body and moves through it, and how far all are from the next.
+void ask_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
+  SceneQueries queries(world.scene());
+  for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
+    double place[3];
+    world.place(i, place);
+    const double reach = 2.0 * world.size();
+    const Pose from = Pose::at(place[0] - reach, place[1], place[2]);
+    const Pose to = Pose::at(place[0] + reach, place[1], place[2]);
+    SceneHit hit;
+    EXPECT_EQ(queries.closest(MotionCast{world.box(), RigidMotion::between(from, to)}, hit, {},
+                              1e-3 * world.size()),
+              Status::ok);
+    ++tally.questions;
+    tally.missed += hit.key == Key{} ? 1U : 0U;
+    bits.add(hit);
+    SceneDistance distance;
+    EXPECT_EQ(
+        queries.distance(world.keys()[i], world.keys()[(i + 1) % TinyWorld::kBodies], distance),
+        Status::ok);
+    bits.add(distance);
+  }
+}
+
+/// The first body passes through the one beside it.
+void sweep(TinyWorld& world, Bits& bits, SceneTally& tally) {
+  SceneSweep sweep(world.scene());
+  double place[3];
+  world.place(2, place);
+  const Key mover = world.keys()[0];
+  const Pose end = Pose::at(place[0], place[1], place[2]);
+  SweepOptions options;
+  options.tolerance = 1e-3 * world.size();
+  EXPECT_EQ(sweep.sweep({&mover, 1}, PoseView(std::span<const Pose>(&end, 1)), options),
+            Status::ok);
+  ++tally.questions;
+  tally.missed += sweep.impacts().empty() ? 1U : 0U;
+  bits.add_all(sweep.impacts());
+}
+
 /// Bodies that touch or overlap their neighbours, and then move.
 void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
   Contacts contacts;
@@ -223,6 +271,8 @@ TEST_P(SceneModes, miss_nothing_and_answer_the_same) {
     const FloatModeScope scope(mode);
     TinyWorld world(GetParam(), mesh_size, execution);
     ask(world, bits, tally);
+    ask_moving(world, bits, tally);
+    sweep(world, bits, tally);
     collide(world, bits, tally);
     return tally;
   };

@@ -1,6 +1,9 @@
 // Every question about boxes in every floating-point mode of a host: nothing is missed, and the
 // answers are those of the default mode. What is right was found in that mode, in exact arithmetic.
 
+#include <winnow/core/kdop.h>
+#include <winnow/core/sphere.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -68,6 +71,15 @@ Answer answer_of(const PairBuffer& pairs) {
   Answer answer;
   for (const Pair& pair : pairs.pairs()) {
     answer.found.push_back(std::uint64_t{pair.first} << 32U | pair.second);
+  }
+  answer.bits = answer.found;
+  return answer;
+}
+
+Answer answer_of(const PairEvents& events) {
+  Answer answer;
+  for (const KeyPair& pair : events.begun()) {
+    answer.found.push_back(std::uint64_t{pair.first.id} << 32U | pair.second.id);
   }
   answer.bits = answer.found;
   return answer;
@@ -186,7 +198,49 @@ Wanted wanted_of(const std::vector<Pair>& pairs) {
   return wanted;
 }
 
-/// Pairs of the scene, with the boxes of the scene the other way round, and with these as a view.
+template <typename Bound>
+Wanted wanted_among(const std::vector<Bound>& bounds) {
+  Wanted wanted;
+  for (std::size_t first = 0; first < bounds.size(); ++first) {
+    for (std::size_t second = first + 1; second < bounds.size(); ++second) {
+      if (bounds[first].overlaps(bounds[second])) wanted.all.push_back(first << 32U | second);
+    }
+  }
+  return wanted;
+}
+
+constexpr PairOptions kCanonical{.order = Order::canonical};
+
+template <typename Bound>
+Answer ask_volumes(std::string_view structure, Volume volume, const std::vector<Bound>& bounds) {
+  Partition partition(structure_named(structure),
+                      {.execution = Execution::serial(), .volume = volume});
+  std::vector<Key> keys(bounds.size());
+  EXPECT_EQ(partition.insert(std::span<const Bound>(bounds), {}, keys), Status::ok);
+  PairBuffer pairs;
+  EXPECT_EQ(partition.self_pairs(pairs, kCanonical), Status::ok);
+  return answer_of(pairs);
+}
+
+/// Pairs among spheres and among k-DOPs about the boxes of a scene.
+Questions pairs_of_volumes(const QuestionSet& set, std::string_view structure) {
+  Questions questions;
+  std::vector<Sphere> spheres;
+  std::vector<Kdop<26>> kdops;
+  for (const Aabb& box : set.boxes) {
+    spheres.push_back(Sphere::around(box));
+    kdops.push_back(Kdop<26>::around(box));
+  }
+  questions.ask = [spheres, kdops, structure](const Partition&) {
+    return Answers{ask_volumes(structure, Volume::sphere, spheres),
+                   ask_volumes(structure, Volume::kdop26, kdops)};
+  };
+  questions.wanted = {wanted_among(spheres), wanted_among(kdops)};
+  return questions;
+}
+
+/// Pairs of the scene, those that begin, pairs with the boxes of the scene the other way round, and
+/// with these as a view.
 Questions pairs_of(const QuestionSet& set, std::string_view structure) {
   Questions questions;
   const std::vector<Aabb> others(set.boxes.rbegin(), set.boxes.rend());
@@ -195,12 +249,14 @@ Questions pairs_of(const QuestionSet& set, std::string_view structure) {
     Partition other(structure_named(structure), {.execution = Execution::serial()});
     std::vector<Key> keys(others.size());
     EXPECT_EQ(other.insert(BoxView(others), {}, keys), Status::ok);
-    const PairOptions canonical{.order = Order::canonical};
     PairBuffer pairs;
-    EXPECT_EQ(partition.self_pairs(pairs, canonical), Status::ok);
+    EXPECT_EQ(partition.self_pairs(pairs, kCanonical), Status::ok);
     answers.push_back(answer_of(pairs));
+    PairEvents events;
+    EXPECT_EQ(partition.self_pairs(events), Status::ok);
+    answers.push_back(answer_of(events));
     PairBuffer cross;
-    EXPECT_EQ(partition.pairs_with(other, cross, canonical), Status::ok);
+    EXPECT_EQ(partition.pairs_with(other, cross, kCanonical), Status::ok);
     answers.push_back(answer_of(cross));
     EXPECT_EQ(partition.overlap(BoxView(others), cross, {}, Order::canonical), Status::ok);
     answers.push_back(answer_of(cross));
@@ -208,6 +264,7 @@ Questions pairs_of(const QuestionSet& set, std::string_view structure) {
   };
   const std::vector<Object> other_objects = numbered(others);
   questions.wanted.push_back(wanted_of(true_pairs(set.objects)));
+  questions.wanted.push_back(questions.wanted.back());
   questions.wanted.push_back(wanted_of(cross_pairs(set.objects, other_objects)));
   questions.wanted.push_back(wanted_of(cross_pairs(other_objects, set.objects)));
   return questions;
@@ -300,6 +357,10 @@ TEST_P(FloatModes, regions_and_nearest_miss_no_tiny_box) {
 
 TEST_P(FloatModes, pairs_miss_no_tiny_box) {
   check(pairs_of);
+}
+
+TEST_P(FloatModes, pairs_miss_no_tiny_volume) {
+  check(pairs_of_volumes);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FloatModes, testing::ValuesIn(all_float_modes()),
