@@ -45,10 +45,12 @@ struct Aabb {
 
   /// Grows to contain `other`.
   void merge(const Aabb& other) noexcept {
-    for (int axis = 0; axis < 3; ++axis) {
-      min[axis] = detail::lesser(min[axis], other.min[axis]);
-      max[axis] = -detail::lesser(-max[axis], -other.max[axis]);
-    }
+    const auto lesser = [](const Vec3f& a, const Vec3f& b) {
+      return Vec3f(detail::lesser(a.x(), b.x()), detail::lesser(a.y(), b.y()),
+                   detail::lesser(a.z(), b.z()));
+    };
+    min = lesser(min, other.min);
+    max = -lesser(-max, -other.max);
   }
 
   /// The same corners, float by float.

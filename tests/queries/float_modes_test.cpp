@@ -364,8 +364,8 @@ TEST_P(FloatModes, pairs_miss_no_tiny_volume) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FloatModes, testing::ValuesIn(all_float_modes()),
-                         [](const testing::TestParamInfo<FloatMode>& info) {
-                           std::string name = to_string(info.param);
+                         [](const testing::TestParamInfo<FloatMode>& mode) {
+                           std::string name = to_string(mode.param);
                            std::replace(name.begin(), name.end(), ' ', '_');
                            return name;
                          });
