@@ -101,12 +101,14 @@ std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
 
 void ask_rays(const Partition& partition, const std::vector<Ray>& rays, Answers& answers) {
   HitBuffer all;
-  EXPECT_EQ(partition.all(RayBatch(rays), all), Status::ok);
-  std::vector<Hit> hits(rays.size());
+  const Status status = partition.all(RayBatch(rays), all);
+  EXPECT_EQ(status, Status::ok);
   std::vector<Key> keys(rays.size());
   std::vector<float> t(rays.size());
   const HitColumns columns{.key = keys.data(), .t = t.data()};
-  for (std::size_t i = 0; i < rays.size(); ++i) answers.push_back(answer_of(all.of(i)));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    answers.push_back(status == Status::ok ? answer_of(all.of(i)) : Answer{});
+  }
   for (const bool any : {false, true}) {
     EXPECT_EQ(
         any ? partition.any(RayBatch(rays), columns) : partition.closest(RayBatch(rays), columns),
