@@ -157,7 +157,8 @@ TEST(Rounding, is_the_same_in_every_mode_of_a_host) {
 
 TEST(Rounding, of_sums_is_outward_in_every_mode) {
   Random random(6);
-  const std::vector<double> numbers = some_numbers(scaled(400), random);
+  std::vector<double> numbers = some_numbers(scaled(400), random);
+  std::erase_if(numbers, [](double x) { return x != 0.0 && std::abs(x) < 0x1p-959; });
   for (const FloatMode& mode : all_float_modes()) {
     std::size_t inward = 0;
     for (std::size_t i = 0; i < 20 * numbers.size(); ++i) {

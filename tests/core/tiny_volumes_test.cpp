@@ -76,6 +76,33 @@ TEST(TinyVolumes, have_the_same_boxes_in_every_mode) {
   });
 }
 
+TEST(TinyVolumes, from_an_origin_are_the_same_in_every_mode) {
+  Random random(73);
+  std::vector<double> numbers{0.0, -0.0, 1.0, 0x1p-1074, -0x1p-1074, 0x1p-1022, -0x1p-960};
+  while (numbers.size() < scaled(300)) {
+    const double size = random.log_uniform(1e-320, 1e-30);
+    numbers.push_back(random.chance(0.5) ? size : -size);
+  }
+  const auto some_point = [&] {
+    const auto some = [&] { return numbers[random.below(numbers.size())]; };
+    return Vec3d(some(), some(), some());
+  };
+  for (std::size_t i = 0; i < scaled(300); ++i) {
+    const Vec3d min = some_point();
+    const Vec3d max = some_point();
+    const Vec3d origin = random.chance(0.2) ? min : some_point();
+    const Aabb standard = Aabb::outward(min, max, origin);
+    for (const FloatMode& mode : all_float_modes()) {
+      Aabb box;
+      {
+        const FloatModeScope scope(mode);
+        box = Aabb::outward(min, max, origin);
+      }
+      EXPECT_EQ(bits_of(box), bits_of(standard)) << to_string(mode);
+    }
+  }
+}
+
 TEST(TinyVolumes, have_the_same_kdops_in_every_mode) {
   expect_the_same_in_every_mode([](const Aabb& box) { return Kdop<26>::around(box); });
   expect_the_same_in_every_mode([](const Aabb& box) {

@@ -240,13 +240,13 @@ void sweep(TinyWorld& world, Bits& bits, SceneTally& tally) {
   bits.add_all(sweep.impacts());
 }
 
-/// Bodies that touch or overlap their neighbours, and then move.
+/// A dynamic body that is moved to where others are, one after the other.
 void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
   Contacts contacts;
-  for (int frame = 0; frame < 3; ++frame) {
-    const Key mover = world.keys()[0];
+  const Key mover = world.keys()[1];
+  for (const std::size_t other : {0U, 2U, 3U}) {
     double place[3];
-    world.place(static_cast<std::size_t>(frame + 1), place);
+    world.place(other, place);
     Pose pose;
     for (int k = 0; k < 3; ++k) pose.position[k] = place[k];
     EXPECT_EQ(world.scene().move(mover, pose), Status::ok);
