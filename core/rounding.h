@@ -90,19 +90,20 @@ inline constexpr std::uint32_t kExponent = 0x7F800000U;
   return static_cast<float>(value < -kMost ? -kMost : (kMost < value ? kMost : value));
 }
 
-/// Largest double that is <= the exact a + b, for finite sums. The rounding error of the sum is
-/// itself a double and found exactly (Knuth, TAOCP vol. 2, 4.2.2, theorem B); if the host does not
-/// round to nearest, its sign is right. If the host flushes denormal numbers, that holds for
-/// numbers of at least 2^-959, as all floats and products of two are, and for 0.
+/// Largest double that is <= the exact a + b, for finite sums. If the host flushes denormal
+/// numbers, for numbers of at least 2^-959, as all floats and products of two are, and for 0.
 [[nodiscard]] inline double add_down(double a, double b) noexcept {
-  const double sum = a + b;
-  const double shadow = sum - a;
-  const double error = (a - (sum - shadow)) + (b - shadow);
-  // One less in its bits, or one more of a negative sum; without a branch, as above. A sum of 0 has
-  // no error.
-  const std::int64_t below = error < 0.0 ? 1 : 0;
+  const bool swapped = std::abs(a) < std::abs(b);
+  const double greater = swapped ? b : a;
+  const double smaller = swapped ? a : b;
+  const double sum = greater + smaller;
+  // What the sum has of the smaller one is a double, whichever way the sum was rounded (Boldo,
+  // Graillat and Muller, "On the robustness of the 2Sum and Fast2Sum algorithms", ACM TOMS 44(1),
+  // 2017). A sum of 0 has no error.
+  const bool above = smaller < sum - greater;
+  // One less in its bits, or one more of a negative sum; without a branch, as above.
   const auto bits = std::bit_cast<std::int64_t>(sum);
-  return std::bit_cast<double>(bits - below * (2 * (bits >> 63) + 1));
+  return std::bit_cast<double>(bits - (above ? (bits >> 63) | 1 : 0));
 }
 
 /// Smallest double that is >= the exact a + b, for finite sums.
