@@ -76,8 +76,18 @@ CompositeSweep::CompositeSweep(const PartTraversal& parts, const ShapeCast& cast
       cast_(cast),
       tolerance_(tolerance) {}
 
+void CompositeSweep::note_contact(const double from[3], const ConvexPart& part,
+                                  impact::RestingContacts& resting) const noexcept {
+  const Approach approach(*this, from, part);
+  approach.each(0.0, [&](const ConvexPart& own, double most) {
+    PartTables tables(parts_.shapes());
+    CastMotions(approach.pair(tables, own), max_t()).note(tables.tables(), resting);
+    return most;
+  });
+}
+
 bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
+                           const Known& known, SweepMeeting& meeting) const noexcept {
   const Approach approach(*this, from, part);
   bool found = false;
   approach.each(limit, [&](const ConvexPart& own, double most) {
@@ -87,6 +97,7 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     CastTouch touch;
     if (approach.any_is_behind(own)) return most;
     if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return most;
+    if (CastMotions(pair, max_t()).part(tables.tables(), known.resting)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;
     meeting = meeting_of(touch);

@@ -10,9 +10,11 @@ namespace winnow {
 class CompositeSweep final : public SweptShape {
  public:
   CompositeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
+  [[nodiscard]] bool meets_at_start() const noexcept override { return cast_.touching; }
+  void note_contact(const double from[3], const ConvexPart& part,
+                    impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
-                           SweepMeeting& meeting) const noexcept override;
+                           const Known& known, SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 

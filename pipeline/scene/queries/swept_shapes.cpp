@@ -102,6 +102,25 @@ void describe_meeting(const ShapeTables& tables, const CastPair& pair, const Con
   }
 }
 
+CastMotions::CastMotions(const CastPair& pair, double max_t) noexcept
+    : moving_{pair.moving, RigidMotion::standing(pair.from)},
+      standing_{pair.standing, RigidMotion::standing(pair.pose)} {
+  for (int i = 0; i < 3; ++i) moving_.motion.travel[i] = max_t * pair.direction[i];
+  is_finite_ = moving_.motion.is_valid();
+}
+
+void CastMotions::note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept {
+  if (is_finite_) resting.note(tables, moving_, standing_);
+}
+
+bool CastMotions::part(const ShapeTables& tables,
+                       const impact::RestingContacts* resting) const noexcept {
+  return resting != nullptr && is_finite_ && resting->part(tables, moving_, standing_);
+}
+
+void SweptShape::note_contact(const double[3], const ConvexPart&,
+                              impact::RestingContacts&) const noexcept {}
+
 double corner_doubt(const ConvexPart& part) noexcept {
   if (part.triangle == nullptr) return 0.0;
   double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
@@ -117,7 +136,7 @@ RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
       ray_(ray) {}
 
 bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
-                     const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
+                     const Known& /*known*/, SweepMeeting& meeting) const noexcept {
   const double thickness = corner_doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
@@ -266,8 +285,15 @@ void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const n
   meeting.height = normal.dot(start) - meeting.t * closing + low - mid::kSlack * sizes;
 }
 
+void ShapeSweep::note_contact(const double from[3], const ConvexPart& part,
+                              impact::RestingContacts& resting) const noexcept {
+  PartTables tables(shapes_);
+  CastMotions(pair(tables, from, part), max_t()).note(tables.tables(), resting);
+}
+
 bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                       const SweepMeeting* before, SweepMeeting& meeting) const noexcept {
+                       const Known& known, SweepMeeting& meeting) const noexcept {
+  const SweepMeeting* const before = known.before;
   double free_until = 0.0;
   if (part.triangle != nullptr) {
     if (before != nullptr && is_beyond(part, *before)) return false;
@@ -283,6 +309,7 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
     std::copy_n(before->normal, 3, asked.parting);
   CastTouch touch;
   if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
+  if (CastMotions(asked, max_t()).part(tables.tables(), known.resting)) return false;
   meeting = meeting_of(touch);
   set_height(from, meeting);
   return true;

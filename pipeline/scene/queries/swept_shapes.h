@@ -2,6 +2,7 @@
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
+#include "pipeline/motion/resting_contacts.h"
 #include "pipeline/scene/queries/shape_cast.h"
 
 namespace winnow {
@@ -27,6 +28,23 @@ struct SweepMeeting {
 void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
                       SweepMeeting& meeting) noexcept;
 
+/// The two of a pair over the whole of a cast, which ends at `max_t`.
+class CastMotions {
+ public:
+  CastMotions(const CastPair& pair, double max_t) noexcept;
+
+  /// Notes the contact of the two at the start.
+  void note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
+  /// True if there are contacts at the start along which the two slide, or part.
+  [[nodiscard]] bool part(const ShapeTables& tables,
+                          const impact::RestingContacts* resting) const noexcept;
+
+ private:
+  impact::MovingPart moving_;
+  impact::MovingPart standing_;
+  bool is_finite_;
+};
+
 /// By this much of its coordinates a box is grown before the tests of boxes, which round them.
 inline constexpr double kSweptBoxGrowth = 0x1p-47;
 
@@ -48,12 +66,22 @@ class SweptShape {
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
   /// Null for a shape.
   [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
+  /// False if it does not meet what it touches at the start and slides along, or leaves.
+  [[nodiscard]] virtual bool meets_at_start() const noexcept { return true; }
+  /// Notes its contact with a part at the start.
+  virtual void note_contact(const double from[3], const ConvexPart& part,
+                            impact::RestingContacts& resting) const noexcept;
 
-  /// True if it meets the part by t = limit, starting at `from`. `before` is a meeting with another
-  /// part at that t, if there is one.
+  /// What is known of a body when it is held against one of its parts.
+  struct Known {
+    /// A meeting with another part at the limit, if there is one.
+    const SweepMeeting* before = nullptr;
+    /// Contacts with the body at the start, if they are no meetings.
+    const impact::RestingContacts* resting = nullptr;
+  };
+  /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   const SweepMeeting* before,
-                                   SweepMeeting& meeting) const noexcept = 0;
+                                   const Known& known, SweepMeeting& meeting) const noexcept = 0;
   /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
   /// the meeting that is shown.
   virtual void describe(const double from[3], const ConvexPart& part,
@@ -77,8 +105,7 @@ class RaySweep final : public SweptShape {
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
-                           SweepMeeting& meeting) const noexcept override;
+                           const Known& known, SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 
@@ -94,9 +121,11 @@ class RaySweep final : public SweptShape {
 class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
+  [[nodiscard]] bool meets_at_start() const noexcept override { return cast_.touching; }
+  void note_contact(const double from[3], const ConvexPart& part,
+                    impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
-                           SweepMeeting& meeting) const noexcept override;
+                           const Known& known, SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 
