@@ -98,8 +98,9 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
       gap = pair.gap(axis);
     }
   }
-  contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()), gap > 0.0};
-  return contact.apart || !only_apart_;
+  contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()),
+             gap > 0.0 && touch_ != StartTouch::is_entered};
+  return contact.apart || touch_ != StartTouch::meets;
 }
 
 void RestingContacts::keep(const Contact& contact) noexcept {
@@ -120,20 +121,27 @@ void RestingContacts::note(const ShapeTables& tables, const MovingPart& a,
 
 bool RestingContacts::parts(const Contact& contact, OrderedPair& ordered) const noexcept {
   MovingPair& pair = ordered.pair();
-  const double least = least_gap(pair, ordered.turned(contact.normal));
+  const Vec normal = ordered.turned(contact.normal);
+  const double least = least_gap(pair, normal);
   if (contact.apart) return least > 0.0;
+  pair.place(0.0);
+  const double first = pair.gap(normal) + pair.noise();
   const solver::Scale scaled(pair.problem().exponent);
-  return least + pair.noise() >= scaled(contact.gap) - tolerance(pair);
+  const double slack = tolerance(pair);
+  const bool is_flush = first >= scaled(contact.gap) - slack;
+  return is_flush && least + pair.noise() >= std::min(first, 0.0) - slack;
 }
 
 bool RestingContacts::part(const ShapeTables& tables, const MovingPart& a,
                            const MovingPart& b) const noexcept {
+  if (count_ == 0) return false;
   OrderedPair pair(tables, a, b);
   if (!pair.is_there()) return false;
   const auto by = [&](const Contact& contact) { return parts(contact, pair); };
   if (std::any_of(contacts_.begin(), contacts_.begin() + count_, by)) return true;
+  // What it touches beyond those that are kept.
   Contact own;
-  return find(tables, pair, own) && by(own);
+  return count_ == kMost && find(tables, pair, own) && by(own);
 }
 
 }  // namespace winnow::impact

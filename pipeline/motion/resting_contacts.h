@@ -24,7 +24,7 @@ class RestingContacts {
   /// that share a point do not get deeper if it is by no more than that; they are no contacts if
   /// they meet at the start.
   RestingContacts(double share, double length, StartTouch touch) noexcept
-      : share_(share), length_(length), only_apart_(touch == StartTouch::meets) {}
+      : share_(share), length_(length), touch_(touch) {}
 
   /// Notes the contact of two convex parts, if they have one.
   void note(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
@@ -38,7 +38,7 @@ class RestingContacts {
     Vec normal;
     /// Along it, in the caller's lengths; below 0 where the parts overlap.
     double gap;
-    /// The gap is surely above 0.
+    /// The gap is surely above 0, and must stay so.
     bool apart;
   };
   class OrderedPair;
@@ -54,7 +54,7 @@ class RestingContacts {
 
   double share_;
   double length_;
-  bool only_apart_;
+  StartTouch touch_;
   std::size_t count_ = 0;
   std::array<Contact, kMost> contacts_;
 };

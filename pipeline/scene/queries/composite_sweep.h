@@ -10,7 +10,6 @@ namespace winnow {
 class CompositeSweep final : public SweptShape {
  public:
   CompositeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
-  [[nodiscard]] bool meets_at_start() const noexcept override { return cast_.touching; }
   void note_contact(const double from[3], const ConvexPart& part,
                     impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
@@ -23,7 +22,6 @@ class CompositeSweep final : public SweptShape {
 
   const PartTraversal& parts_;
   const ShapeCast& cast_;
-  const double tolerance_;
 };
 
 }  // namespace winnow

@@ -66,8 +66,10 @@ class SweptShape {
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
   /// Null for a shape.
   [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
+  /// A length by which it may be early.
+  [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// False if it does not meet what it touches at the start and slides along, or leaves.
-  [[nodiscard]] virtual bool meets_at_start() const noexcept { return true; }
+  [[nodiscard]] bool meets_at_start() const noexcept { return meets_at_start_; }
   /// Notes its contact with a part at the start.
   virtual void note_contact(const double from[3], const ConvexPart& part,
                             impact::RestingContacts& resting) const noexcept;
@@ -88,15 +90,26 @@ class SweptShape {
                         SweepMeeting& meeting) const noexcept = 0;
 
  protected:
-  SweptShape(const PreciseBox& extent, const double* start, const double* direction,
-             double max_t) noexcept
-      : extent_(extent), start_(start), direction_(direction), max_t_(max_t) {}
+  SweptShape(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
+      : extent_(extent),
+        start_(cast.pose.position),
+        direction_(cast.direction),
+        max_t_(cast.max_t),
+        tolerance_(tolerance),
+        meets_at_start_(cast.touching) {}
+  explicit SweptShape(const ShapeRay& ray) noexcept
+      : extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
+        start_(ray.origin),
+        direction_(ray.direction),
+        max_t_(ray.max_t) {}
 
  private:
   PreciseBox extent_;
   const double* start_;
   const double* direction_;
   double max_t_;
+  double tolerance_ = 0.0;
+  bool meets_at_start_ = true;
 };
 
 /// The ray must outlive it.
@@ -121,7 +134,6 @@ class RaySweep final : public SweptShape {
 class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
-  [[nodiscard]] bool meets_at_start() const noexcept override { return cast_.touching; }
   void note_contact(const double from[3], const ConvexPart& part,
                     impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
@@ -147,7 +159,6 @@ class ShapeSweep final : public SweptShape {
 
   const ShapePool& shapes_;
   const ShapeCast& cast_;
-  const double tolerance_;
   /// From the axes of the world to those of the shape.
   Eigen::Matrix3d to_shape_;
   /// Of its box, about where it starts.
@@ -169,6 +180,9 @@ class BodyMeeting {
 
  private:
   void take(const ConvexPart& part, const SweepMeeting& meeting) noexcept;
+  /// Notes the contacts with a composite body at the start.
+  void note_contacts(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& placed,
+                     impact::RestingContacts& resting) const noexcept;
 
   SweepMeeting meeting_;
   ConvexPart part_;
