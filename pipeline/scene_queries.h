@@ -160,9 +160,9 @@ class WINNOW_API SceneQueries {
   /// never later than the true time of impact and at most `tolerance` (a length along the path,
   /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
   /// of the angle of impact, and 1e-15 of the path. Nothing is too thin to be hit. t = 0 if they
-  /// overlap at the start (but see ShapeCast::touching). Of a composite shape that moves it is the first time of all its parts;
-  /// it is asked part by part, those alone that what stands comes near. Half-spaces do not move:
-  /// `unsupported`.
+  /// overlap at the start (but see ShapeCast::touching). Of a composite shape that moves it is the
+  /// first time of all its parts; it is asked part by part, those alone that what stands comes
+  /// near. Half-spaces do not move: `unsupported`.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
   /// The first hit of every body.

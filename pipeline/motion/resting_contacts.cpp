@@ -16,8 +16,8 @@
 namespace winnow::impact {
 namespace {
 
-/// Normals of which the cosine is larger are the same but for rounding.
-constexpr double kSameNormal = 1.0 - 1e-14;
+/// Normals that differ by less are the same but for rounding.
+constexpr double kSameNormal = 1e-14;
 /// A face whose normal differs by less than this may be what closest points are on.
 constexpr double kFaceOfContact = 0.99;
 /// More than rounding takes of a gap, in units of noise.
@@ -86,16 +86,18 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
   const Vec normal = Vec::Map(answer.normal);
   Vec best = normal;
   double gap = pair.gap(normal);
-  // Closest points that all but coincide show their direction badly, faces do not.
+  // Closest points that all but coincide show their direction badly, faces do not; and one face has
+  // the same normal as those that lie flush with it.
+  double least = std::min(gap > 0.0 ? 0.0 : gap, gap - pair.noise());
   for (const solver::Core* const core : {&pair.a(), &pair.b()}) {
     for (std::uint32_t i = 0; i < normal_count(*core); ++i) {
       const Vec face = solver::normal(*core, i);
       const double cosine = face.dot(normal);
       if (std::abs(cosine) < kFaceOfContact) continue;
       const Vec axis = cosine > 0.0 ? face : Vec(-face);
-      if (pair.gap(axis) <= gap) continue;
+      if (pair.gap(axis) <= least) continue;
       best = axis;
-      gap = pair.gap(axis);
+      gap = least = pair.gap(axis);
     }
   }
   contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()),
@@ -105,7 +107,7 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
 
 void RestingContacts::keep(const Contact& contact) noexcept {
   for (Contact& known : std::span(contacts_.data(), count_)) {
-    if (known.normal.dot(contact.normal) < kSameNormal) continue;
+    if ((known.normal - contact.normal).squaredNorm() > kSameNormal * kSameNormal) continue;
     if (contact.gap < known.gap) known = contact;
     return;
   }
