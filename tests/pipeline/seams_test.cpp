@@ -196,7 +196,7 @@ std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
 
 /// Fixed bodies, none of which are flush, and of which one has its upper side in z = 0 and one
 /// reaches up to x = 1 from the right, or rises from there.
-struct Corner {
+struct FloorCorner {
   std::vector<BodyDefinition> bodies;
 };
 
@@ -212,8 +212,8 @@ BodyDefinition box_from(ShapePool& shapes, const Eigen::Vector3d& least,
   return body;
 }
 
-std::vector<Corner> corners_of(SeamWorld& world) {
-  std::vector<Corner> corners;
+std::vector<FloorCorner> corners_of(SeamWorld& world) {
+  std::vector<FloorCorner> corners;
   const auto box = [&](double x, double y, double z, double hx, double hy, double hz,
                        double angle = 0.0) {
     return box_from(world.shapes, {x, y, z}, {hx, hy, hz}, angle);
@@ -250,8 +250,8 @@ std::vector<Corner> corners_of(SeamWorld& world) {
   }
   for (const double slope : {0.12, 0.4, 1.0}) {
     const double deep = 0.2;
-    Corner foot{{floors[0], box(1 + deep * std::sin(slope), -5, -deep * std::cos(slope), 2, 5,
-                                0.5 * deep, slope)}};
+    FloorCorner foot{{floors[0], box(1 + deep * std::sin(slope), -5, -deep * std::cos(slope), 2, 5,
+                                     0.5 * deep, slope)}};
     corners.push_back(foot);
   }
   return corners;
@@ -308,9 +308,9 @@ TEST(Seams, are_none_where_nothing_is_flush) {
   SeamWorld world;
   Random random(83);
   const std::vector<BodyDefinition> standing = standing_bodies(world.shapes);
-  const std::vector<Corner> corners = corners_of(world);
+  const std::vector<FloorCorner> corners = corners_of(world);
   std::size_t walls = 0;
-  for (const Corner& corner : corners) {
+  for (const FloorCorner& corner : corners) {
     for (const BodyDefinition& body : standing) {
       const Placement placed{Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
                                                 random.uniform(-1, 1), random.uniform(-1, 1))

@@ -87,7 +87,7 @@ void CompositeSweep::note_contact(const double from[3], const ConvexPart& part,
 }
 
 bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                           const Known& known, SweepMeeting& meeting) const noexcept {
+                           const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
   const Approach approach(*this, from, part);
   bool found = false;
   approach.each(limit, [&](const ConvexPart& own, double most) {

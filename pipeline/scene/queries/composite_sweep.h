@@ -13,7 +13,8 @@ class CompositeSweep final : public SweptShape {
   void note_contact(const double from[3], const ConvexPart& part,
                     impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const Known& known, SweepMeeting& meeting) const noexcept override;
+                           const KnownMeetings& known,
+                           SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 

@@ -136,7 +136,7 @@ RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
     : SweptShape(ray), shapes_(shapes), ray_(ray) {}
 
 bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
-                     const Known& /*known*/, SweepMeeting& meeting) const noexcept {
+                     const KnownMeetings& /*known*/, SweepMeeting& meeting) const noexcept {
   const double thickness = corner_doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
@@ -290,7 +290,7 @@ void ShapeSweep::note_contact(const double from[3], const ConvexPart& part,
 }
 
 bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                       const Known& known, SweepMeeting& meeting) const noexcept {
+                       const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
   const SweepMeeting* const before = known.before;
   double free_until = 0.0;
   if (part.triangle != nullptr) {
@@ -368,7 +368,7 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   };
   auto look = [&](const ConvexPart& part, double most) {
     most = std::min(most, limit);
-    const SweptShape::Known known{found ? &meeting_ : nullptr, at_rest};
+    const SweptShape::KnownMeetings known{found ? &meeting_ : nullptr, at_rest};
     return swept.meets(from_, part, most, known, meeting) ? improve(part) : most;
   };
   if (swept.ray() == nullptr) {

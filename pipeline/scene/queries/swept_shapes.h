@@ -75,7 +75,7 @@ class SweptShape {
                             impact::RestingContacts& resting) const noexcept;
 
   /// What is known of a body when it is held against one of its parts.
-  struct Known {
+  struct KnownMeetings {
     /// A meeting with another part at the limit, if there is one.
     const SweepMeeting* before = nullptr;
     /// Contacts with the body at the start, if they are no meetings.
@@ -83,7 +83,8 @@ class SweptShape {
   };
   /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   const Known& known, SweepMeeting& meeting) const noexcept = 0;
+                                   const KnownMeetings& known,
+                                   SweepMeeting& meeting) const noexcept = 0;
   /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
   /// the meeting that is shown.
   virtual void describe(const double from[3], const ConvexPart& part,
@@ -118,7 +119,8 @@ class RaySweep final : public SweptShape {
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const Known& known, SweepMeeting& meeting) const noexcept override;
+                           const KnownMeetings& known,
+                           SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 
@@ -137,7 +139,8 @@ class ShapeSweep final : public SweptShape {
   void note_contact(const double from[3], const ConvexPart& part,
                     impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const Known& known, SweepMeeting& meeting) const noexcept override;
+                           const KnownMeetings& known,
+                           SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
 
