@@ -65,14 +65,14 @@ struct SceneOptions {
   /// has one for a pair of bodies at all; a frame takes a tenth longer without a margin, and up to
   /// half where the margin is wide. Off: all manifolds of all parts, raw.
   bool contact_reduction = false;
-  /// Fixed bodies that lie flush side by side (boxes, tiles of terrain) are one floor to what
-  /// slides over them: at levels distance and manifold a contact of a dynamic body with one of them
-  /// is left out if all its points, on the fixed body's surface, lie in the plane of a contact with
-  /// another fixed body that is as deep, or below it, by 1/1000 of the dynamic body's radius, and
-  /// its normal differs from that one's by more than 5 degrees and less than 120: it is with a side
-  /// or an edge of a seam then. Steps, walls and ridges stay. Pairs with fixed bodies are not
-  /// carried over, and the search, O(n log n + pairs of contacts of one body whose normals are that
-  /// far apart), runs on the thread that calls.
+  /// Fixed bodies that lie flush are one floor to what slides over them: at levels distance and
+  /// manifold a contact of a dynamic body with one is left out if another fixed body holds it in a
+  /// plane, as deep or deeper, all points of the contact are in the plane or below it, the normals
+  /// differ by 5 to 120 degrees, and the body (of a composite one the parts touched) does not rise
+  /// above the plane there, by more than 1/1000 of the dynamic body's radius or more steeply than 5
+  /// degrees: it is with a side or an edge of a seam then. Steps, kerbs, walls, slopes and ridges
+  /// stay. Pairs with fixed bodies are not carried over, and the search, O(n log n + pairs of
+  /// contacts of one body whose normals differ so), runs on the thread that calls.
   bool seamless_floors = false;
   /// Contacts tell where each pair and each point was in the last frame (Contacts::previous_pair
   /// and previous_point), so that a solver starts from the impulses that it found then. Takes 4

@@ -105,12 +105,18 @@ struct ShapeCast {
   /// By which it moves while t grows by 1; finite, not zero.
   double direction[3] = {1.0, 0.0, 0.0};
   double max_t = 1.0;  ///< finite, >= 0
+  /// The shape meets what it touches at the start at t = 0. False: only if it gets deeper into it
+  /// by more than the tolerance; if it slides along it or leaves it, the hit is with what it runs
+  /// into later, which may be another part of the same body.
+  bool touching = true;
 };
 
 /// A shape of the scene's pools that moves and turns.
 struct MotionCast {
   ShapeId shape;       ///< convex, a mesh, a height field or a compound; no half-space
   RigidMotion motion;  ///< between two poses, or at velocities
+  /// As ShapeCast has it.
+  bool touching = true;
 };
 
 /// Questions to the exact shapes of a scene. One object per thread: it keeps scratch memory from
@@ -154,9 +160,9 @@ class WINNOW_API SceneQueries {
   /// never later than the true time of impact and at most `tolerance` (a length along the path,
   /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
   /// of the angle of impact, and 1e-15 of the path. Nothing is too thin to be hit. t = 0 if they
-  /// overlap at the start. Of a composite shape that moves it is the first time of all its parts;
-  /// it is asked part by part, those alone that what stands comes near. Half-spaces do not move:
-  /// `unsupported`.
+  /// overlap at the start (but see ShapeCast::touching). Of a composite shape that moves it is the
+  /// first time of all its parts; it is asked part by part, those alone that what stands comes
+  /// near. Half-spaces do not move: `unsupported`.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
   /// The first hit of every body.

@@ -2,7 +2,8 @@
 // other shape passes. A box around it that sweeps through the frame for a while contains it
 // (Passage), and meets first what is met first, so that a time found bounds what is looked at
 // after it. Where the way bends so much that the box meets many parts, the time is halved, the
-// earlier half first.
+// earlier half first. An impact is held against the contacts that the bodies have at the start,
+// which are looked for when the first one is found.
 
 #include "pipeline/motion/body_impact.h"
 
@@ -21,13 +22,32 @@ constexpr int kFewParts = 8;
 /// and is grown, or goes on, by more than this share of the radius.
 constexpr double kLoose = 0.04;
 
+void grow(double by, BoxSweep& box) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    box.min[i] -= by;
+    box.max[i] += by;
+  }
+}
+
+/// Of parts that move, at the start.
+[[nodiscard]] bool share_a_point(const ShapeTables& tables, const MovingPart& a,
+                                 const MovingPart& b) noexcept {
+  const Impact impact = find_impact(tables, a, b, 1e-9, {0.0, 0.0});
+  return touches_at_start(impact);
+}
+
 class BodyImpactSearch {
  public:
-  BodyImpactSearch(const PartTraversal& parts, double tolerance) noexcept
-      : parts_(parts), tolerance_(tolerance) {}
+  BodyImpactSearch(const PartTraversal& parts, const MovingShape& a, const MovingShape& b,
+                   const ImpactRequest& request) noexcept
+      : parts_(parts),
+        a_(a),
+        b_(b),
+        request_(request),
+        resting_(request.tolerance, 0.0, request.touch) {}
 
-  [[nodiscard]] BodyImpact run(const MovingShape& a, const MovingShape& b, const Interval& within) {
-    meet(a, b, within);
+  [[nodiscard]] BodyImpact run() {
+    meet(a_, b_, request_.within);
     return found_;
   }
 
@@ -36,23 +56,54 @@ class BodyImpactSearch {
   void walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
             const Passage& passage, const Interval& given, int halvings);
   [[nodiscard]] bool meets_many(const MovingShape& walked, const BoxSweep& way) const;
-  void test(const MovingShape& a, const MovingShape& b, const Interval& within) noexcept;
+  void test(const MovingShape& a, const MovingShape& b, const Interval& within);
+  [[nodiscard]] bool is_left_out(const ShapeTables& tables, const MovingPart& a,
+                                 const MovingPart& b, const Impact& impact);
+  void note_contacts();
 
   const PartTraversal& parts_;
-  const double tolerance_;
+  const MovingShape& a_;
+  const MovingShape& b_;
+  const ImpactRequest& request_;
   BodyImpact found_;
+  RestingContacts resting_;
+  bool has_noted_ = false;
+  /// Pairs of parts are noted in place of being tested.
+  bool notes_ = false;
 };
 
-void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b,
-                            const Interval& within) noexcept {
+void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const Interval& within) {
   PartPair pair(parts_.shapes());
   const MovingPart moving_a = pair.put(0, a);
   const MovingPart moving_b = pair.put(1, b);
-  const BodyImpact found{find_impact(pair.tables(), moving_a, moving_b, tolerance_, within),
-                         a.shape.part, b.shape.part};
+  if (notes_) {
+    resting_.note(pair.tables(), moving_a, moving_b);
+    return;
+  }
+  const BodyImpact found{
+      find_impact(pair.tables(), moving_a, moving_b, request_.tolerance, within), a.shape.part,
+      b.shape.part};
   const std::uint32_t samples = found_.impact.samples + found.impact.samples;
-  if (comes_before(found, found_)) found_ = found;
+  if (comes_before(found, found_) &&
+      !is_left_out(pair.tables(), moving_a, moving_b, found.impact)) {
+    found_ = found;
+  }
   found_.impact.samples = samples;
+}
+
+/// True of an impact with what the bodies touch at the start.
+bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& a,
+                                   const MovingPart& b, const Impact& impact) {
+  if (request_.touch == StartTouch::meets && touches_at_start(impact)) return false;
+  if (request_.touch == StartTouch::left_out && share_a_point(tables, a, b)) return true;
+  if (!has_noted_) note_contacts();
+  return resting_.part(tables, a, b);
+}
+
+void BodyImpactSearch::note_contacts() {
+  has_noted_ = notes_ = true;
+  meet(a_, b_, {0.0, 0.0});
+  notes_ = false;
 }
 
 /// Of two composite shapes the larger one is traversed first, by the way of the other, and that by
@@ -79,9 +130,10 @@ bool BodyImpactSearch::meets_many(const MovingShape& walked, const BoxSweep& way
 
 void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
                             const Passage& passage, const Interval& given, int halvings) {
-  const Interval within = before(given, found_);
+  const Interval within = notes_ ? given : before(given, found_);
   if (within.first > within.last) return;
-  const BoxSweep way = passage.sweep(within);
+  BoxSweep way = passage.sweep(within);
+  if (notes_) grow(request_.tolerance * other.own_radius, way);
   // Of two composite shapes a long way brings many parts near each other, too.
   const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
   if (halvings < kMostHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
@@ -95,7 +147,9 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
   parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way,
              [&](const ConvexPart& part, double limit) {
                const MovingShape own = moving_part(parts_, part, walked.motion);
-               meet(mirrored ? other : own, mirrored ? own : other, before(within, found_));
+               const Interval left_of = notes_ ? within : before(within, found_);
+               meet(mirrored ? other : own, mirrored ? own : other, left_of);
+               if (notes_) return limit;
                const double left = before(within, found_).last - within.first;
                return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon))
                                    : limit;
@@ -105,24 +159,25 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
 }  // namespace
 
 BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, const MovingBody& b,
-                            double tolerance, const Interval& within, double until) {
+                            const ImpactRequest& request) {
   const MovingShape shape = whole_shape(parts, b.shape, b.motion);
   const Interval window = Passage(parts, a.motion, shape).window(parts.radius(a.shape));
-  const Interval both{std::max(window.first, within.first), std::min(window.last, within.last)};
-  if (both.first > std::min(both.last, until)) return {};
-  return find_impact_of_balls(parts, a, b, tolerance, both, until);
+  ImpactRequest inside = request;
+  inside.within = {std::max(window.first, request.within.first),
+                   std::min(window.last, request.within.last)};
+  if (inside.within.first > std::min(inside.within.last, request.until)) return {};
+  return find_impact_of_balls(parts, a, b, inside);
 }
 
 BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
-                                const MovingBody& b, double tolerance, const Interval& within,
-                                double until) {
-  if (!a.shape.is_composite() && !b.shape.is_composite()) {
-    return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},
-                        tolerance, within, until)};
-  }
+                                const MovingBody& b, const ImpactRequest& request) {
   const MovingShape first = whole_shape(parts, a.shape, a.motion);
   const MovingShape second = whole_shape(parts, b.shape, b.motion);
-  return BodyImpactSearch(parts, tolerance).run(first, second, within);
+  if (request.touch != StartTouch::meets || a.shape.is_composite() || b.shape.is_composite()) {
+    return BodyImpactSearch(parts, first, second, request).run();
+  }
+  return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},
+                      request.tolerance, request.within, request.until)};
 }
 
 }  // namespace winnow::impact

@@ -2,6 +2,7 @@
 
 #include "pipeline/composites/parts.h"
 #include "pipeline/motion/impact_search.h"
+#include "pipeline/motion/resting_contacts.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -36,16 +37,25 @@ struct BodyImpact {
   return {within.first, found.impact.hit ? std::min(within.last, found.impact.time) : within.last};
 }
 
-/// The first impact within an interval, before which they are apart, of shapes that are there and
-/// motions that are valid; of bodies that share a point at the start that of the parts that overlap
-/// the deepest. `tolerance` is a share of the size of the smaller of the parts that meet. An impact
-/// after `until` may be given as none; one that is not later is the same whatever `until` is.
+/// What is looked for.
+struct ImpactRequest {
+  /// A share of the size of the smaller of the parts that meet.
+  double tolerance;
+  /// The bodies are apart before, but for touching at the start.
+  Interval within{0.0, 1.0};
+  /// An impact after it may be given as none; one that is not later is the same whatever it is.
+  double until = 1.0;
+  StartTouch touch = StartTouch::meets;
+};
+
+/// The first impact within an interval of shapes that are there and motions that are valid; of
+/// bodies that share a point at the start, and meet then, that of the parts that overlap the
+/// deepest. Parts of a composite shape that slide or part along a contact of the bodies at the start
+/// do not meet: see RestingContacts.
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
-                                          const MovingBody& b, double tolerance,
-                                          const Interval& within = {0.0, 1.0}, double until = 1.0);
+                                          const MovingBody& b, const ImpactRequest& request);
 /// The same of an interval in which the balls around the two overlap.
 [[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
-                                              const MovingBody& b, double tolerance,
-                                              const Interval& within, double until = 1.0);
+                                              const MovingBody& b, const ImpactRequest& request);
 
 }  // namespace winnow::impact

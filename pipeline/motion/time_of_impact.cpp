@@ -114,7 +114,7 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
     } else {
       const impact::BodyImpact found =
           impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
-                                   {bodies.shapes[b], bodies.motions[b]}, options.tolerance);
+                                   {bodies.shapes[b], bodies.motions[b]}, {options.tolerance});
       write(i, found.impact, found.part_a, found.part_b);
     }
   }

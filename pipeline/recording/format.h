@@ -117,8 +117,9 @@ struct RecordedPair {
   return one < other ? Pair{one, other} : Pair{other, one};
 }
 
-/// Which hits of a ray or a moving shape were asked for.
-enum class HitForm : std::uint8_t { closest, any, all };
+/// Which hits of a ray or a moving shape were asked for; of the latter also without those that it
+/// only touches at the start.
+enum class HitForm : std::uint8_t { closest, any, all, closest_from_touch, all_from_touch };
 
 /// How pairs were asked for.
 enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };

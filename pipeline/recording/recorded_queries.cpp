@@ -25,6 +25,13 @@ void put_motion(CallWriter& call, const MotionCast& cast) {
   call.put_bytes(&cast.motion, sizeof cast.motion);
 }
 
+/// Of what touches at the start as well, or else only of what is met from there.
+template <typename Cast>
+[[nodiscard]] HitForm form_of(const Cast& cast, HitForm form) noexcept {
+  if (cast.touching) return form;
+  return form == HitForm::all ? HitForm::all_from_touch : HitForm::closest_from_touch;
+}
+
 /// Bytes of a struct of doubles are its numbers.
 static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
 
@@ -155,7 +162,7 @@ Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filt
       cast.shape, RecordedCall::ask_shape_cast, filter,
       [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
-        put_cast(call.put(HitForm::closest).put(number).put(tolerance), cast);
+        put_cast(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
         return digest_of_answers(hit);
       });
 }
@@ -166,7 +173,7 @@ Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hi
       cast.shape, RecordedCall::ask_shape_cast, filter,
       [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
-        put_cast(call.put(HitForm::all).put(number).put(tolerance), cast);
+        put_cast(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
         return digest_of_answers(hits);
       });
 }
@@ -177,7 +184,7 @@ Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Fil
       cast.shape, RecordedCall::ask_motion_cast, filter,
       [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
-        put_motion(call.put(HitForm::closest).put(number).put(tolerance), cast);
+        put_motion(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
         return digest_of_answers(hit);
       });
 }
@@ -188,7 +195,7 @@ Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& h
       cast.shape, RecordedCall::ask_motion_cast, filter,
       [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
-        put_motion(call.put(HitForm::all).put(number).put(tolerance), cast);
+        put_motion(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
         return digest_of_answers(hits);
       });
 }

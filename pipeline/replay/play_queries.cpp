@@ -141,14 +141,15 @@ Status ReplayState::ask_overlap(ReplayedWorld& of) {
 
 template <typename Moving>
 Status ReplayState::ask_cast(ReplayedWorld& of) {
-  const auto form = in.get_enum(HitForm::all);
+  const auto form = in.get_enum(HitForm::all_from_touch);
   Moving cast;
+  cast.touching = form < HitForm::closest_from_touch;
   if (!read_shape(of, cast.shape)) return reading();
   const auto tolerance = in.get<double>();
   read(in, cast);
   if (!read_question()) return reading();
   if (form == HitForm::any) return Status::invalid_argument;
-  if (form == HitForm::all) {
+  if (form == HitForm::all || form == HitForm::all_from_touch) {
     std::span<const SceneHit> hits;
     const Status answered = of.queries->all(cast, hits, filter.filter(), tolerance);
     return answered == Status::ok ? compare(hits) : answered;

@@ -1,14 +1,24 @@
 // Fixed bodies that lie flush are one floor: contacts with the seams between them are left out.
 //
-// Where a body rests on one of them, its manifold has a plane: through the point of the floor's
-// surface that the body is deepest in, across the normal. All of the body is above that plane, but
-// for the depth. Another fixed body that it touches with points in the plane or below, and along
-// another normal, holds it with nothing that the first one does not: that is a side or an edge of a
-// seam. A step, a wall or the far side of a ditch has points above the plane as soon as it holds.
-// Flush bodies are as deep along the first one's normal, and the shortest way out of the other is
-// no longer, so that it is the less deep one that goes, and no two put each other out.
+// A manifold of a body with a fixed one has a plane: through the point of the fixed surface in
+// which the body is deepest, across the normal. The body lies above that plane, but for the depth.
+// A contact with another fixed body is one with a side or an edge of a seam if
+// - it is no deeper, and along another normal,
+// - all its points lie in the plane or below it, and
+// - the other body does not rise above the plane there: the tangent plane of the contact cuts the
+//   plane in a line, and the other body lies below the plane through that line that rises, away
+//   from the body, by the angle by which normals of one surface may differ.
+// A wall, a kerb, a step and the foot of a slope rise above the plane where the body touches them,
+// however high above it the points are. Flush bodies are as deep along the first one's normal, and
+// the shortest way out of the other is no longer, so that it is the less deep one that goes, and no
+// two put each other out.
 
 #include "pipeline/scene/collision.h"
+#include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/frame.h"
+
+#include <winnow/core/eigen.h>
+#include <winnow/core/rotation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,33 +30,114 @@ namespace {
 
 using mid::Vec;
 
-/// Of the body's radius: points so far above a plane are in it.
+/// A share of the body's radius: what rises so far above a plane is in it.
 constexpr double kPlaneShare = 1e-3;
-/// Of the radius: of two that are equally deep but for this, either may be the floor.
+/// A share of the radius: of two that are equally deep but for this, either may be the floor.
 constexpr double kEqualShare = 1e-6;
-/// Of the angle between two normals: a ceiling is no seam.
+/// The cosine of the angle between two normals: a ceiling is no seam.
 constexpr double kOppositeCosine = -0.5;
+/// The sine of the angle that kRegionCosine is the cosine of.
+constexpr double kRegionSine = 0.08715574274765817;
 
 [[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
   return scene.motion[pair.a] == Motion::fixed || scene.motion[pair.b] == Motion::fixed;
 }
 
-/// True if `other` is held where `floor` holds already.
-[[nodiscard]] bool is_seam(const FloorContact& other, const FloorContact& floor,
-                           double radius) noexcept {
-  const Vec up = Vec::Map(floor.normal);
-  const double cosine = up.dot(Vec::Map(other.normal));
-  if (floor.floor == other.floor || floor.distance > other.distance + kEqualShare * radius ||
-      cosine >= kRegionCosine || cosine < kOppositeCosine) {
-    return false;
+/// Whether a contact of a body is one with a seam.
+class SeamJudge {
+ public:
+  /// `limit`: answers about parts that are no farther apart are contacts.
+  SeamJudge(const SceneState& scene, double radius, double limit) noexcept
+      : scene_(scene), radius_(radius), limit_(limit) {}
+
+  /// True if `other` holds the body where `floor` holds it already.
+  [[nodiscard]] bool is_seam(const FloorContact& other, const FloorContact& floor) const noexcept {
+    const Vec up = Vec::Map(floor.normal);
+    const double cosine = up.dot(Vec::Map(other.normal));
+    if (floor.floor == other.floor || floor.distance > other.distance + kEqualShare * radius_ ||
+        cosine >= kRegionCosine || cosine < kOppositeCosine) {
+      return false;
+    }
+    const double plane = up.dot(Vec::Map(floor.point[floor.deepest]));
+    const bool is_below = std::all_of(
+        other.point, other.point + other.count,
+        [&](const double(&p)[3]) { return up.dot(Vec::Map(p)) <= plane + kPlaneShare * radius_; });
+    return is_below && !rises(other, up, plane);
   }
-  const double plane = up.dot(Vec::Map(floor.point[floor.deepest])) + kPlaneShare * radius;
-  return std::all_of(other.point, other.point + other.count,
-                     [&](const double(&p)[3]) { return up.dot(Vec::Map(p)) <= plane; });
-}
+
+ private:
+  /// True if the body of a contact rises above the plane up . x = `plane` where it is touched.
+  [[nodiscard]] bool rises(const FloorContact& contact, const Vec& up,
+                           double plane) const noexcept {
+    const Vec normal = Vec::Map(contact.normal);
+    const double cosine = up.dot(normal);
+    const Vec side = normal - cosine * up;
+    const double sine = side.norm();
+    const Vec steepest = kRegionCosine * up + kRegionSine / sine * side;
+    // From the point of contact up its tangent plane to the other plane.
+    const Vec point = Vec::Map(contact.point[contact.deepest]);
+    const double climb = (kRegionCosine - kRegionSine * cosine / sine) * (plane - up.dot(point));
+    return highest(contact, steepest) > steepest.dot(point) + climb + kPlaneShare * radius_;
+  }
+
+  /// How far the fixed body of a contact, or those of its parts that are touched, reaches along a
+  /// unit direction, as seen from the dynamic body's position.
+  [[nodiscard]] double highest(const FloorContact& contact, const Vec& along) const noexcept {
+    const Vec apart = Vec::Map(scene_.pose[contact.floor].position) -
+                      Vec::Map(scene_.pose[contact.body].position);
+    double most = -mid::kInfinity;
+    if (contact.source == FloorContact::Source::convex) {
+      Pose pose = scene_.pose[contact.floor];
+      Vec::Map(pose.position) = apart;
+      most = highest(scene_.shapes.tables(), scene_.shape[contact.floor], pose, along);
+    } else {
+      const bool floor_is_a = scene_.composite[contact.pair].a == contact.floor;
+      most = highest_of_parts(contact, along, floor_is_a);
+      if (floor_is_a) most += along.dot(apart);
+    }
+    // Surfaces that have moved out, or in: corners that move in go farther than sides do.
+    const double rest = scene_.offsets_of(contact.floor).rest;
+    return most + (rest < 0.0 ? rest * (kRegionCosine + kRegionSine) : rest);
+  }
+
+  /// The same from the position of body a of the pair.
+  [[nodiscard]] double highest_of_parts(const FloorContact& contact, const Vec& along,
+                                        bool floor_is_a) const noexcept {
+    const PrimitivePairs& parts = scene_.parts->pairs;
+    const NarrowResult& answers = scene_.parts->answers;
+    const ShapeTables tables = parts.tables(scene_.shapes);
+    const auto highest_of = [&](std::uint32_t k) {
+      const std::uint32_t primitive = floor_is_a ? parts.pairs[k].a : parts.pairs[k].b;
+      return highest(tables, parts.shapes[primitive], parts.poses[primitive], along);
+    };
+    if (contact.source == FloorContact::Source::part) {
+      return highest_of(answers.pair_of(contact.answer));
+    }
+    double most = -mid::kInfinity;
+    const Vec normal = floor_is_a ? Vec(Vec::Map(contact.normal)) : Vec(-Vec::Map(contact.normal));
+    for (std::uint32_t k = parts.first[contact.pair]; k < parts.first[contact.pair + 1]; ++k) {
+      const std::uint32_t at = scene_.parts->slot[k];
+      const Vec own(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
+      const bool is_in_region =
+          answers.distance()[at] <= limit_ && own.dot(normal) >= kRegionCosine;
+      if (is_in_region) most = std::max(most, highest_of(k));
+    }
+    return most;
+  }
+
+  [[nodiscard]] static double highest(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                                      const Vec& along) noexcept {
+    const Vec own = as_eigen(rotation_of(tame(pose.orientation))).transpose() * along;
+    return along.dot(Vec::Map(pose.position)) + mid::extent(tables, shape, own).high;
+  }
+
+  const SceneState& scene_;
+  double radius_;
+  double limit_;
+};
 
 /// Contacts of one body by their normals. Most are with the same plane, of which none is a seam of
-/// another: a plate on n tiles is told so in O(n).
+/// another: a plate on n tiles takes O(n).
 class FloorGroups {
  public:
   /// `order`: room for a number for each contact.
@@ -67,13 +158,14 @@ class FloorGroups {
   }
 
   /// Whether one of the others that were not dropped is a floor to it.
-  [[nodiscard]] bool is_seam_of_any(const FloorContact& one, double radius) const noexcept {
+  [[nodiscard]] bool is_seam_of_any(const FloorContact& one,
+                                    const SeamJudge& judge) const noexcept {
     std::uint32_t at = 0;
     for (std::size_t g = 0; g < count_; at = end_[g++]) {
       if (!may_be_floor(g, Vec::Map(one.normal))) continue;
       for (std::uint32_t i = at; i < end_[g]; ++i) {
         const FloorContact& floor = contacts_[order_[i]];
-        if (floor.source != FloorContact::Source::dropped && is_seam(one, floor, radius)) {
+        if (floor.source != FloorContact::Source::dropped && judge.is_seam(one, floor)) {
           return true;
         }
       }
@@ -116,8 +208,10 @@ class FloorGroups {
 /// Takes the points of manifolds, to a point on the fixed body's surface each.
 class Collision::FloorWriter {
  public:
-  FloorWriter(const SceneState& scene, const BodyPair& pair) noexcept
+  /// Of pair `index` in its list.
+  FloorWriter(const SceneState& scene, const BodyPair& pair, std::uint32_t index) noexcept
       : floor_is_a_(scene.motion[pair.a] == Motion::fixed) {
+    contact_.pair = index;
     contact_.body = floor_is_a_ ? pair.b : pair.a;
     contact_.floor = floor_is_a_ ? pair.a : pair.b;
     const Vec from = Vec::Map(scene.pose[pair.a].position);
@@ -176,14 +270,14 @@ bool Collision::list_floor_contacts() {
   scene_.floor_contacts.clear();
   for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
     if (!is_floor_pair(scene_, scene_.convex[i])) continue;
-    FloorWriter writer(scene_, scene_.convex[i]);
+    FloorWriter writer(scene_, scene_.convex[i], i);
     if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, i, nullptr, writer)) {
       return false;
     }
   }
   for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
     if (!is_floor_pair(scene_, scene_.composite[i])) continue;
-    FloorWriter writer(scene_, scene_.composite[i]);
+    FloorWriter writer(scene_, scene_.composite[i], i);
     if (reduces_ ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
   }
   return true;
@@ -253,8 +347,9 @@ void Collision::drop_seams_of(FloorContact* first, FloorContact* end) noexcept {
   const double radius = scene_.radius(first->body);
   if (end - first < 2 || !std::isfinite(radius)) return;
   const FloorGroups groups({first, end}, scene_.floor_order.data());
+  const SeamJudge judge(scene_, radius, limit_);
   for (FloorContact* one = first; one != end; ++one) {
-    if (!groups.is_seam_of_any(*one, radius)) continue;
+    if (!groups.is_seam_of_any(*one, judge)) continue;
     drop(*one);
     one->source = FloorContact::Source::dropped;
   }

@@ -12,7 +12,9 @@ struct FloorContact {
 
   std::uint32_t body;
   std::uint32_t floor;
-  /// Where it is answered: of its source.
+  /// Which of the convex or of the composite pairs it is of.
+  std::uint32_t pair;
+  /// Where the answer lies, in its source.
   std::uint32_t answer;
   Source source;
   /// How many points there are, on the fixed body's surface; the deepest of them.

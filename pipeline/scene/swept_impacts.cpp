@@ -52,8 +52,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
                               std::uint8_t* hits_of) const noexcept {
   const auto answer = [&](std::size_t i, const impact::BodyImpact& found_impact) {
     const impact::Impact& impact = found_impact.impact;
-    const bool touches_before = impact.time == 0.0 && impact.gap <= 0.0;
-    hits_of[i] = impact.hit && (options.touching || !touches_before) ? 1 : 0;
+    hits_of[i] = impact.hit && (options.touching || !touches_at_start(impact)) ? 1 : 0;
     if (hits_of[i] != 0) impacts_of[i] = found_impact;
   };
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
@@ -73,9 +72,11 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
     if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
       batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].until);
     } else {
-      answer(i,
-             impact::find_impact_of_balls(parts, {bodies.shape[a], of_a}, {bodies.shape[b], of_b},
-                                          options.tolerance, approach.window()));
+      const impact::ImpactRequest request{
+          options.tolerance, approach.window(), 1.0,
+          options.touching ? impact::StartTouch::meets : impact::StartTouch::left_out};
+      answer(i, impact::find_impact_of_balls(parts, {bodies.shape[a], of_a},
+                                             {bodies.shape[b], of_b}, request));
     }
   }
   batch.run([&](std::size_t i, const impact::Impact& impact, bool) { answer(i, {impact}); });

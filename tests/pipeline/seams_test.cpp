@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -169,38 +171,238 @@ TEST(Seams, steps_walls_ditches_and_valleys_stay) {
   EXPECT_FALSE(ditch.touches_second(Pose::at(-0.49, 0.0, 0.49)));
 }
 
+/// Shapes that stand in corners: of most only the bottom edge comes near a wall.
+std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    const double half = i < 4 ? 0.5 : 0.25;
+    corners.emplace_back(i % 2 == 0 ? half : -half, i / 2 % 2 == 0 ? half : -half, i < 4 ? 0 : 1);
+  }
+  ShapeId frustum;
+  EXPECT_EQ(shapes.add_hull(corners, 0.0, frustum), Status::ok);
+  const auto leaning = [&](ShapeId shape, double angle) {
+    Pose pose;
+    pose.orientation[0] = std::cos(0.5 * angle);
+    pose.orientation[2] = std::sin(0.5 * angle);
+    return BodyDefinition{.shape = shape, .pose = pose};
+  };
+  return {{.shape = frustum},
+          {.shape = add(shapes, ConeShape{0.5, 0.5})},
+          {.shape = add(shapes, SphereShape{0.5})},
+          {.shape = add(shapes, CylinderShape{0.3, 0.3, 0.0})},
+          leaning(add(shapes, BoxShape{{0.02, 0.3, 1.5}, 0.0}), -0.35),
+          leaning(add(shapes, CapsuleShape{0.1, 0.6}), -0.2)};
+}
+
+/// Fixed bodies, none of which are flush, and of which one has its upper side in z = 0 and one
+/// reaches up to x = 1 from the right, or rises from there.
+struct FloorCorner {
+  std::vector<BodyDefinition> bodies;
+};
+
+/// A box whose least corner is where it says, turned about y there.
+BodyDefinition box_from(ShapePool& shapes, const Eigen::Vector3d& least,
+                        const Eigen::Vector3d& half, double angle = 0.0) {
+  BodyDefinition body{.shape = add(shapes, BoxShape{{half.x(), half.y(), half.z()}, 0.0}),
+                      .motion = Motion::fixed};
+  const Eigen::AngleAxisd turn(-angle, Eigen::Vector3d::UnitY());
+  Eigen::Vector3d::Map(body.pose.position) = least + turn * half;
+  body.pose.orientation[0] = std::cos(0.5 * angle);
+  body.pose.orientation[2] = -std::sin(0.5 * angle);
+  return body;
+}
+
+std::vector<FloorCorner> corners_of(SeamWorld& world) {
+  std::vector<FloorCorner> corners;
+  const auto box = [&](double x, double y, double z, double hx, double hy, double hz,
+                       double angle = 0.0) {
+    return box_from(world.shapes, {x, y, z}, {hx, hy, hz}, angle);
+  };
+  const BodyDefinition floors[] = {
+      box(-7, -5, -2, 4, 5, 1),
+      box(-7, -5, -2, 8, 5, 1),
+      {.shape = add(world.shapes, HalfSpaceShape{{0, 0, 1}, 0}), .motion = Motion::fixed},
+      world.tile(Tiles::meshes, -0.9, 0),
+      world.tile(Tiles::fields, -0.9, 0),
+      world.tile(Tiles::compounds, -0.9, 0)};
+  // A wall of triangles that crosses the floor.
+  BodyDefinition sheet{.shape = world.mesh, .pose = Pose::at(1, 0.1, 0.3), .motion = Motion::fixed};
+  sheet.pose.orientation[0] = sheet.pose.orientation[2] = std::sqrt(0.5);
+  const CompoundChild courses[] = {{world.block, Pose::at(0, 0, -0.6)},
+                                   {world.block, Pose::at(0, 0, 1.4)}};
+  ShapeId bricks;
+  EXPECT_EQ(world.composites.add_compound(courses, bricks), Status::ok);
+  const BodyDefinition walls[] = {
+      box(1, -5, -1, 1, 5, 3),
+      box(1, -5, 0, 1, 5, 3),
+      box(1, -5, -0.01, 1, 5, 0.03),
+      sheet,
+      {.shape = bricks, .pose = Pose::at(3, 0, 0), .motion = Motion::fixed}};
+  for (const BodyDefinition& floor : floors) {
+    for (const BodyDefinition& wall : walls) {
+      // And one across to it, in its corner.
+      corners.push_back({{floor, wall, box(-5, 0.5, -1, 6.5, 1, 3)}});
+    }
+    // Kerbs, and the feet of slopes.
+    for (const double height : {0.004, 0.05}) {
+      corners.push_back({{floor, box(1, -5, -1, 1, 5, 0.5 * (1 + height))}});
+    }
+  }
+  for (const double slope : {0.12, 0.4, 1.0}) {
+    const double deep = 0.2;
+    FloorCorner foot{{floors[0], box(1 + deep * std::sin(slope), -5, -deep * std::cos(slope), 2, 5,
+                                     0.5 * deep, slope)}};
+    corners.push_back(foot);
+  }
+  return corners;
+}
+
+/// Everything turned and put elsewhere.
+struct Placement {
+  Eigen::Quaterniond turn;
+  Eigen::Vector3d at;
+
+  [[nodiscard]] BodyDefinition operator()(BodyDefinition body) const {
+    const double(&q)[4] = body.pose.orientation;
+    const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    Eigen::Vector3d::Map(body.pose.position) = turn * Eigen::Vector3d::Map(body.pose.position) + at;
+    const double to[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
+    std::copy_n(to, 4, body.pose.orientation);
+    return body;
+  }
+};
+
+/// A body that stands in a corner, so deep in the floor and in the wall to its right.
+BodyDefinition in_corner(const ShapePool& shapes, BodyDefinition body, double in_floor,
+                         double in_wall) {
+  const Aabb box = shapes.bounds(body.shape, body.pose);
+  body.pose.position[0] = 1.0 - static_cast<double>(box.max[0]) + in_wall;
+  body.pose.position[2] = -static_cast<double>(box.min[2]) - in_floor;
+  return body;
+}
+
+/// What a scene of these bodies shows.
+std::vector<double> shown_contacts(const SeamWorld& world,
+                                   const std::vector<BodyDefinition>& bodies, ContactLevel level,
+                                   SceneOptions options) {
+  options.composites = &world.composites;
+  Scene scene(world.shapes, options);
+  std::vector<Key> keys(bodies.size());
+  EXPECT_EQ(scene.add(bodies, keys), Status::ok);
+  Contacts contacts;
+  EXPECT_EQ(scene.collide(level, contacts), Status::ok);
+  std::vector<double> shown;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    shown.insert(shown.end(), {static_cast<double>(contacts.a()[i].id),
+                               static_cast<double>(contacts.b()[i].id)});
+    for (std::uint32_t m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1];
+         ++m) {
+      shown.insert(shown.end(), {contacts.distance()[m], contacts.normal(0)[m]});
+    }
+  }
+  return shown;
+}
+
+/// Bottom edges of bodies that stand on a floor touch a wall in the floor's plane.
+TEST(Seams, are_none_where_nothing_is_flush) {
+  SeamWorld world;
+  Random random(83);
+  const std::vector<BodyDefinition> standing = standing_bodies(world.shapes);
+  const std::vector<FloorCorner> corners = corners_of(world);
+  std::size_t walls = 0;
+  for (const FloorCorner& corner : corners) {
+    for (const BodyDefinition& body : standing) {
+      const Placement placed{Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
+                                                random.uniform(-1, 1), random.uniform(-1, 1))
+                                 .normalized(),
+                             {random.uniform(-9, 9), random.uniform(-9, 9), 5}};
+      std::vector<BodyDefinition> bodies;
+      for (const BodyDefinition& fixed : corner.bodies) bodies.push_back(placed(fixed));
+      const double in_floor = std::max(random.uniform(-0.004, 0.012), 0.0);
+      const double in_wall = random.uniform(-0.004, 0.01);
+      bodies.push_back(placed(in_corner(world.shapes, body, in_floor, in_wall)));
+      const bool has_offsets = random.chance(0.3);
+      for (BodyDefinition& each : bodies) {
+        if (has_offsets) each.offsets = {0.003, random.uniform(-0.001, 0.001)};
+      }
+      SceneOptions options{.margin = random.chance(0.5) ? 0.005 : 0.0,
+                           .contact_reduction = random.chance(0.5)};
+      for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
+        options.seamless_floors = false;
+        const std::vector<double> all = shown_contacts(world, bodies, level, options);
+        options.seamless_floors = true;
+        EXPECT_EQ(shown_contacts(world, bodies, level, options), all)
+            << &corner - corners.data() << ' ' << &body - standing.data() << ' ' << in_floor << ' '
+            << in_wall;
+        walls += all.size() > 4 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(walls, 100U);
+}
+
 /// A manifold as the rule of SceneOptions::seamless_floors sees it.
 struct FloorManifold {
   Key floor;
+  /// Of the floor, a tile.
+  Pose pose;
   Eigen::Vector3d up;
   double distance;
   std::vector<Eigen::Vector3d> points;
   bool is_dropped = false;
 
   /// Of pair i, which has one, with floors as a.
-  FloorManifold(const Contacts& contacts, std::size_t i)
+  FloorManifold(const Contacts& contacts, std::size_t i, const Pose& at_pose)
       : floor(contacts.a()[i]),
+        pose(at_pose),
         up(contacts.normal(0)[i], contacts.normal(1)[i], contacts.normal(2)[i]),
         distance(contacts.distance()[i]) {
     for (std::uint32_t p = contacts.point_first()[i]; p < contacts.point_first()[i + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
-      const Eigen::Vector3d at = Eigen::Map<const Point>(point.position).cast<double>();
+      const Eigen::Vector3d at = Eigen::Map<const Point>(point.position).cast<double>() +
+                                 Eigen::Vector3d::Map(pose.position);
       points.push_back(at + 0.5 * static_cast<double>(point.depth) * up);
     }
   }
+
+  /// The most of the tile's corners along a direction.
+  [[nodiscard]] double highest(const Eigen::Vector3d& along) const {
+    const double(&q)[4] = pose.orientation;
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+    double most = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3d corner(i & 1 ? 2 : -2, i & 2 ? 2 : -2, i & 4 ? 1 : -1);
+      most = std::max(most, along.dot(Eigen::Vector3d::Map(pose.position) + turn * corner));
+    }
+    return most;
+  }
 };
 
+/// Whether the tile rises by more than 5 degrees, away from the body, above the line in which the
+/// manifold's tangent plane cuts the other plane.
+bool rises(const FloorManifold& one, const Eigen::Vector3d& up, double plane, double slack) {
+  const double angle = std::acos(up.dot(one.up));
+  const Eigen::Vector3d side = (one.up - up * std::cos(angle)) / std::sin(angle);
+  const Eigen::Vector3d climb = up * std::sin(angle) - side * std::cos(angle);
+  const Eigen::Vector3d on_line =
+      one.points[0] + climb * (plane - up.dot(one.points[0])) / std::sin(angle);
+  const double tilt = std::acos(kRegionCosine);
+  const Eigen::Vector3d steepest = up * std::cos(tilt) + side * std::sin(tilt);
+  return one.highest(steepest) - steepest.dot(on_line) > slack;
+}
+
 /// Points come deepest first.
-bool is_seam_of(const FloorManifold& one, const Eigen::Vector3d& one_at, const FloorManifold& other,
-                const Eigen::Vector3d& other_at, double radius) {
+bool is_seam_of(const FloorManifold& one, const FloorManifold& other, double radius) {
   const double cosine = one.up.dot(other.up);
   if (other.is_dropped || other.distance > one.distance + 1e-6 * radius ||
       cosine >= kRegionCosine || cosine < -0.5) {
     return false;
   }
-  const double plane = other.up.dot(other.points[0] + other_at) + 1e-3 * radius;
-  return std::ranges::all_of(
-      one.points, [&](const Eigen::Vector3d& at) { return other.up.dot(at + one_at) <= plane; });
+  const double plane = other.up.dot(other.points[0]);
+  const double slack = 1e-3 * radius;
+  const bool is_below = std::ranges::all_of(
+      one.points, [&](const Eigen::Vector3d& at) { return other.up.dot(at) <= plane + slack; });
+  return is_below && !rises(one, other.up, plane, slack);
 }
 
 /// 8 x 8 tiles and a plate on all of them. Those that are not flush are tilted and a little higher
@@ -223,17 +425,15 @@ std::vector<BodyDefinition> plate_on_tiles(const SeamWorld& world, ShapeId plate
 /// Ids of the floors whose manifolds stay, by the rule, each held against each.
 std::vector<ObjectId> kept_floors(const Scene& scene, const Contacts& contacts, double radius) {
   std::vector<FloorManifold> raw;
-  std::vector<Eigen::Vector3d> place;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     BodyDefinition body;
     EXPECT_EQ(scene.body(contacts.a()[i], body), Status::ok);
-    raw.emplace_back(contacts, i);
-    place.push_back(Eigen::Vector3d::Map(body.pose.position));
+    raw.emplace_back(contacts, i, body.pose);
   }
   std::vector<ObjectId> kept;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     for (std::size_t k = 0; k < raw.size() && !raw[i].is_dropped; ++k) {
-      raw[i].is_dropped = k != i && is_seam_of(raw[i], place[i], raw[k], place[k], radius);
+      raw[i].is_dropped = k != i && is_seam_of(raw[i], raw[k], radius);
     }
     if (!raw[i].is_dropped) kept.push_back(raw[i].floor.id);
   }

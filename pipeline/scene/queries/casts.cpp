@@ -436,7 +436,7 @@ struct RayInScene {
     const RaySweep swept(state.scene.shapes, ray);
     const Difference from = difference(ray.origin, state.scene.pose[body].position);
     SweepMeeting found;
-    if (!swept.meets(from.difference, part, most, nullptr, found)) return false;
+    if (!swept.meets(from.difference, part, most, {}, found)) return false;
     meeting = RayMeetsBody::at(body, part.part, found.t, found.normal);
     return true;
   }

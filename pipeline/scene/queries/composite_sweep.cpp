@@ -22,10 +22,11 @@ class CompositeSweep::Approach {
     standing_.thickness = corner_doubt(standing_);
   }
 
-  /// Calls look(own part, limit), as PartTraversal::met does, for those that may be met by then.
+  /// Calls look(own part, limit), as PartTraversal::met does, for those that may be met by then, or
+  /// come as near as `more`.
   template <typename Look>
-  void each(double limit, Look&& look) const {
-    sweep_.parts_.met(moving_, way(limit), look);
+  void each(double limit, Look&& look, double more = 0.0) const {
+    sweep_.parts_.met(moving_, way(limit, more), look);
   }
 
   /// One of the two stands behind the other, which is a one-sided triangle.
@@ -47,8 +48,8 @@ class CompositeSweep::Approach {
 
  private:
   /// Of the box of what stands, or of one of the whole shape where that has no end.
-  [[nodiscard]] BoxSweep way(double limit) const noexcept {
-    const PreciseBox box = sweep_.parts_.box(standing_).grown(standing_.thickness);
+  [[nodiscard]] BoxSweep way(double limit, double more) const noexcept {
+    const PreciseBox box = sweep_.parts_.box(standing_).grown(standing_.thickness + more);
     const PreciseBox& own = sweep_.extent();
     const double reach = std::max(own.min.cwiseAbs().maxCoeff(), own.max.cwiseAbs().maxCoeff()) +
                          std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
@@ -70,14 +71,23 @@ class CompositeSweep::Approach {
 
 CompositeSweep::CompositeSweep(const PartTraversal& parts, const ShapeCast& cast,
                                double tolerance) noexcept
-    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
-                 cast.direction, cast.max_t),
+    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
       parts_(parts),
-      cast_(cast),
-      tolerance_(tolerance) {}
+      cast_(cast) {}
+
+void CompositeSweep::note_contact(const double from[3], const ConvexPart& part,
+                                  impact::RestingContacts& resting) const noexcept {
+  const Approach approach(*this, from, part);
+  auto note = [&](const ConvexPart& own, double most) {
+    PartTables tables(parts_.shapes());
+    CastMotions(approach.pair(tables, own), max_t()).note(tables.tables(), resting);
+    return most;
+  };
+  approach.each(0.0, note, tolerance());
+}
 
 bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
+                           const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
   const Approach approach(*this, from, part);
   bool found = false;
   approach.each(limit, [&](const ConvexPart& own, double most) {
@@ -86,7 +96,8 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     pair.max_t = most = std::min(most, limit);
     CastTouch touch;
     if (approach.any_is_behind(own)) return most;
-    if (!cast_shape(tables.tables(), pair, tolerance_, touch)) return most;
+    if (!cast_shape(tables.tables(), pair, tolerance(), touch)) return most;
+    if (CastMotions(pair, max_t()).part(tables.tables(), known.resting)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;
     meeting = meeting_of(touch);

@@ -10,8 +10,10 @@ namespace winnow {
 class CompositeSweep final : public SweptShape {
  public:
   CompositeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
+  void note_contact(const double from[3], const ConvexPart& part,
+                    impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
+                           const KnownMeetings& known,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
@@ -21,7 +23,6 @@ class CompositeSweep final : public SweptShape {
 
   const PartTraversal& parts_;
   const ShapeCast& cast_;
-  const double tolerance_;
 };
 
 }  // namespace winnow

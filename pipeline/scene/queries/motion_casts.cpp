@@ -83,8 +83,11 @@ SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& with
                                 double until) const {
   const PlacedShape placed = state_.placed(body);
   const RigidMotion stands = RigidMotion::standing(placed.pose);
-  const impact::BodyImpact found = impact::find_body_impact(
-      state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands}, tolerance_, within, until);
+  const impact::StartTouch touch =
+      cast_.touching ? impact::StartTouch::meets : impact::StartTouch::is_entered;
+  const impact::BodyImpact found =
+      impact::find_body_impact(state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands},
+                               {tolerance_, within, until, touch});
   SceneHit hit;
   const impact::Impact& impact = found.impact;
   if (!impact.hit) return hit;

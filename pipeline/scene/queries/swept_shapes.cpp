@@ -12,13 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit) noexcept {
+/// Of its box, which is `more` larger to all sides.
+BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit,
+                    double more = 0.0) noexcept {
   const Vector3d start = Vector3d::Map(from);
   const PreciseBox& extent = swept.extent();
   const double reach = start.cwiseAbs().maxCoeff() +
                        std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
   const PreciseBox box =
-      PreciseBox{start + extent.min, start + extent.max}.grown(kSweptBoxGrowth * reach);
+      PreciseBox{start + extent.min, start + extent.max}.grown(kSweptBoxGrowth * reach + more);
   BoxSweep sweep = box.standing();
   std::copy_n(swept.direction(), 3, sweep.direction);
   sweep.max_t = limit;
@@ -102,6 +104,25 @@ void describe_meeting(const ShapeTables& tables, const CastPair& pair, const Con
   }
 }
 
+CastMotions::CastMotions(const CastPair& pair, double max_t) noexcept
+    : moving_{pair.moving, RigidMotion::standing(pair.from)},
+      standing_{pair.standing, RigidMotion::standing(pair.pose)} {
+  for (int i = 0; i < 3; ++i) moving_.motion.travel[i] = max_t * pair.direction[i];
+  is_finite_ = moving_.motion.is_valid();
+}
+
+void CastMotions::note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept {
+  if (is_finite_) resting.note(tables, moving_, standing_);
+}
+
+bool CastMotions::part(const ShapeTables& tables,
+                       const impact::RestingContacts* resting) const noexcept {
+  return resting != nullptr && is_finite_ && resting->part(tables, moving_, standing_);
+}
+
+void SweptShape::note_contact(const double[3], const ConvexPart&,
+                              impact::RestingContacts&) const noexcept {}
+
 double corner_doubt(const ConvexPart& part) noexcept {
   if (part.triangle == nullptr) return 0.0;
   double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
@@ -112,12 +133,10 @@ double corner_doubt(const ConvexPart& part) noexcept {
 }
 
 RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
-    : SweptShape({Vector3d::Zero(), Vector3d::Zero()}, ray.origin, ray.direction, ray.max_t),
-      shapes_(shapes),
-      ray_(ray) {}
+    : SweptShape(ray), shapes_(shapes), ray_(ray) {}
 
 bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
-                     const SweepMeeting* /*before*/, SweepMeeting& meeting) const noexcept {
+                     const KnownMeetings& /*known*/, SweepMeeting& meeting) const noexcept {
   const double thickness = corner_doubt(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
@@ -148,11 +167,9 @@ bool RaySweep::enters(const ShapeRay& ray, const ConvexPart& part,
 }
 
 ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept
-    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast.pose.position,
-                 cast.direction, cast.max_t),
+    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
       shapes_(parts.shapes()),
       cast_(cast),
-      tolerance_(tolerance),
       to_shape_(as_eigen(rotation_of(tame(cast.pose.orientation))).transpose()),
       middle_(0.5 * (extent().min + extent().max)) {}
 
@@ -188,7 +205,7 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
     const double closing = -side_of * normal.dot(way);
     const double noise = mid::kSlack * normal.cwiseAbs().sum() * way.cwiseAbs().sum();
     // A way without end that does not close, as far as can be told, is left to others.
-    const double most = limit + tolerance_ / way.norm();
+    const double most = limit + tolerance() / way.norm();
     const double closing_at_most = std::max(closing, 0.0) + noise;
     if (rest > closing_at_most * most) return true;
     free_until = std::min(rest / closing_at_most * (1.0 - mid::kSlack), limit);
@@ -266,8 +283,15 @@ void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const n
   meeting.height = normal.dot(start) - meeting.t * closing + low - mid::kSlack * sizes;
 }
 
+void ShapeSweep::note_contact(const double from[3], const ConvexPart& part,
+                              impact::RestingContacts& resting) const noexcept {
+  PartTables tables(shapes_);
+  CastMotions(pair(tables, from, part), max_t()).note(tables.tables(), resting);
+}
+
 bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                       const SweepMeeting* before, SweepMeeting& meeting) const noexcept {
+                       const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
+  const SweepMeeting* const before = known.before;
   double free_until = 0.0;
   if (part.triangle != nullptr) {
     if (before != nullptr && is_beyond(part, *before)) return false;
@@ -282,7 +306,8 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
   if (before != nullptr && !before->overlaps_at_start)
     std::copy_n(before->normal, 3, asked.parting);
   CastTouch touch;
-  if (!cast_shape(tables.tables(), asked, tolerance_, touch)) return false;
+  if (!cast_shape(tables.tables(), asked, tolerance(), touch)) return false;
+  if (CastMotions(asked, max_t()).part(tables.tables(), known.resting)) return false;
   meeting = meeting_of(touch);
   set_height(from, meeting);
   return true;
@@ -301,14 +326,27 @@ void BodyMeeting::take(const ConvexPart& part, const SweepMeeting& meeting) noex
   if (part.triangle != nullptr) triangle_ = *part.triangle;
 }
 
+void BodyMeeting::note_contacts(const PartTraversal& parts, const SweptShape& swept,
+                                const PlacedShape& placed,
+                                impact::RestingContacts& resting) const noexcept {
+  auto note = [&](const ConvexPart& part, double most) {
+    swept.note_contact(from_, part, resting);
+    return most;
+  };
+  parts.met(placed, sweep_from(swept, from_, 0.0, swept.tolerance()), note);
+}
+
 bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& body,
                        double limit, bool any) noexcept {
   SweepMeeting meeting;
+  impact::RestingContacts resting(0.0, swept.tolerance(), impact::StartTouch::is_entered);
+  const impact::RestingContacts* const at_rest = swept.meets_at_start() ? nullptr : &resting;
   if (!body.shape.is_composite()) {
     std::copy_n(swept.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
     const ConvexPart whole{body.shape, body.pose};
-    if (!swept.meets(from_, whole, limit, nullptr, meeting)) return false;
+    if (at_rest != nullptr) swept.note_contact(from_, whole, resting);
+    if (!swept.meets(from_, whole, limit, {nullptr, at_rest}, meeting)) return false;
     take(whole, meeting);
     return true;
   }
@@ -319,6 +357,7 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   std::copy_n(start.difference, 3, from_);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
+  if (at_rest != nullptr) note_contacts(parts, swept, placed, resting);
   bool found = false;
   const auto improve = [&](const ConvexPart& part) {
     if (found && meeting.t == meeting_.t && part_.part < part.part) return limit;
@@ -329,8 +368,8 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   };
   auto look = [&](const ConvexPart& part, double most) {
     most = std::min(most, limit);
-    return swept.meets(from_, part, most, found ? &meeting_ : nullptr, meeting) ? improve(part)
-                                                                                : most;
+    const SweptShape::KnownMeetings known{found ? &meeting_ : nullptr, at_rest};
+    return swept.meets(from_, part, most, known, meeting) ? improve(part) : most;
   };
   if (swept.ray() == nullptr) {
     parts.met(placed, sweep_from(swept, from_, limit), look);

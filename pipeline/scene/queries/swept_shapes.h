@@ -2,6 +2,7 @@
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
+#include "pipeline/motion/resting_contacts.h"
 #include "pipeline/scene/queries/shape_cast.h"
 
 namespace winnow {
@@ -27,6 +28,23 @@ struct SweepMeeting {
 void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
                       SweepMeeting& meeting) noexcept;
 
+/// The two of a pair over the whole of a cast, which ends at `max_t`.
+class CastMotions {
+ public:
+  CastMotions(const CastPair& pair, double max_t) noexcept;
+
+  /// Notes the contact of the two at the start.
+  void note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
+  /// True if there are contacts at the start along which the two slide, or part.
+  [[nodiscard]] bool part(const ShapeTables& tables,
+                          const impact::RestingContacts* resting) const noexcept;
+
+ private:
+  impact::MovingPart moving_;
+  impact::MovingPart standing_;
+  bool is_finite_;
+};
+
 /// By this much of its coordinates a box is grown before the tests of boxes, which round them.
 inline constexpr double kSweptBoxGrowth = 0x1p-47;
 
@@ -48,11 +66,24 @@ class SweptShape {
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
   /// Null for a shape.
   [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
+  /// A length by which it may be early.
+  [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
+  /// False if it does not meet what it touches at the start and slides along, or leaves.
+  [[nodiscard]] bool meets_at_start() const noexcept { return meets_at_start_; }
+  /// Notes its contact with a part at the start.
+  virtual void note_contact(const double from[3], const ConvexPart& part,
+                            impact::RestingContacts& resting) const noexcept;
 
-  /// True if it meets the part by t = limit, starting at `from`. `before` is a meeting with another
-  /// part at that t, if there is one.
+  /// What is known of a body when it is held against one of its parts.
+  struct KnownMeetings {
+    /// A meeting with another part at the limit, if there is one.
+    const SweepMeeting* before = nullptr;
+    /// Contacts with the body at the start, if they are no meetings.
+    const impact::RestingContacts* resting = nullptr;
+  };
+  /// True if it meets the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   const SweepMeeting* before,
+                                   const KnownMeetings& known,
                                    SweepMeeting& meeting) const noexcept = 0;
   /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
   /// the meeting that is shown.
@@ -60,15 +91,26 @@ class SweptShape {
                         SweepMeeting& meeting) const noexcept = 0;
 
  protected:
-  SweptShape(const PreciseBox& extent, const double* start, const double* direction,
-             double max_t) noexcept
-      : extent_(extent), start_(start), direction_(direction), max_t_(max_t) {}
+  SweptShape(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
+      : extent_(extent),
+        start_(cast.pose.position),
+        direction_(cast.direction),
+        max_t_(cast.max_t),
+        tolerance_(tolerance),
+        meets_at_start_(cast.touching) {}
+  explicit SweptShape(const ShapeRay& ray) noexcept
+      : extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
+        start_(ray.origin),
+        direction_(ray.direction),
+        max_t_(ray.max_t) {}
 
  private:
   PreciseBox extent_;
   const double* start_;
   const double* direction_;
   double max_t_;
+  double tolerance_ = 0.0;
+  bool meets_at_start_ = true;
 };
 
 /// The ray must outlive it.
@@ -77,7 +119,7 @@ class RaySweep final : public SweptShape {
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
+                           const KnownMeetings& known,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
@@ -94,8 +136,10 @@ class RaySweep final : public SweptShape {
 class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
+  void note_contact(const double from[3], const ConvexPart& part,
+                    impact::RestingContacts& resting) const noexcept override;
   [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const SweepMeeting* before,
+                           const KnownMeetings& known,
                            SweepMeeting& meeting) const noexcept override;
   void describe(const double from[3], const ConvexPart& part,
                 SweepMeeting& meeting) const noexcept override;
@@ -118,7 +162,6 @@ class ShapeSweep final : public SweptShape {
 
   const ShapePool& shapes_;
   const ShapeCast& cast_;
-  const double tolerance_;
   /// From the axes of the world to those of the shape.
   Eigen::Matrix3d to_shape_;
   /// Of its box, about where it starts.
@@ -140,6 +183,9 @@ class BodyMeeting {
 
  private:
   void take(const ConvexPart& part, const SweepMeeting& meeting) noexcept;
+  /// Notes the contacts with a composite body at the start.
+  void note_contacts(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& placed,
+                     impact::RestingContacts& resting) const noexcept;
 
   SweepMeeting meeting_;
   ConvexPart part_;

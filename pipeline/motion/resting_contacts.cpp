@@ -1,0 +1,149 @@
+// A direction along which two parts are apart at the start, and which their motions do not close,
+// is a proof that they are apart all the time. The normals of contacts at the start are such
+// directions to all parts that lie flush with those in contact: to the triangles of a floor that
+// something slides over. Closest points show such a proof anew for each part, but not where the gap
+// is hardly larger than what rounding takes, or below 0.
+
+#include "pipeline/motion/resting_contacts.h"
+
+#include <winnow/pipeline/narrow_phase.h>
+#include "pipeline/solver/problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace winnow::impact {
+namespace {
+
+/// Normals that differ by less are the same but for rounding.
+constexpr double kSameNormal = 1e-14;
+/// A face whose normal differs by less than this may be what closest points are on.
+constexpr double kFaceOfContact = 0.99;
+/// More than rounding takes of a gap, in units of noise.
+constexpr double kRounded = 8.0;
+
+/// The smallest of a gap that changes evenly, less what it may fall below its chord.
+[[nodiscard]] double least_gap(MovingPair& pair, const Vec& normal) noexcept {
+  pair.place(0.0);
+  const double swept = pair.swept_gap(normal);
+  const double least = std::min(swept, swept - pair.swept_closing(normal));
+  if (pair.has_half_space()) return least;
+  // What it sweeps as it turns may be far more than what it takes of the gap.
+  const double sag = 0.5 * pair.curvature(normal);
+  const double first = pair.gap(normal);
+  pair.place(1.0);
+  const double last = pair.gap(normal);
+  const double bent = last - first >= sag ? first : std::min(first, last) - 0.25 * sag;
+  return std::max(least, bent);
+}
+
+}  // namespace
+
+/// Two parts in the order of the solver. Two half-spaces have no such pair.
+class RestingContacts::OrderedPair {
+ public:
+  OrderedPair(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept
+      : mirrored_(solver::is_prepared_mirrored(a.shape.kind(), b.shape.kind())),
+        shape_{mirrored_ ? b.shape : a.shape, mirrored_ ? a.shape : b.shape},
+        pair_(tables, mirrored_ ? b : a, mirrored_ ? a : b) {}
+
+  [[nodiscard]] MovingPair& pair() noexcept { return pair_; }
+  [[nodiscard]] bool is_there() const noexcept {
+    return pair_.a().kind != solver::CoreKind::half_space;
+  }
+  /// A normal of the caller's order in that of the solver, and back.
+  [[nodiscard]] Vec turned(const Vec& normal) const noexcept {
+    return mirrored_ ? Vec(-normal) : normal;
+  }
+  /// False of shapes that the solver refuses.
+  [[nodiscard]] bool distance_at_start(const ShapeTables& tables, PairAnswer& answer) noexcept {
+    Pose pose[2];
+    pair_.poses(0.0, pose[0], pose[1]);
+    const NarrowOptions options{.level = ContactLevel::distance};
+    return collide(tables, shape_[0], pose[0], shape_[1], pose[1], options, answer) == Status::ok;
+  }
+
+ private:
+  bool mirrored_;
+  ShapeId shape_[2];
+  MovingPair pair_;
+};
+
+double RestingContacts::tolerance(const MovingPair& pair) const noexcept {
+  const solver::Scale scaled(pair.problem().exponent);
+  return std::max(share_ * pair.size() + scaled(length_), kRounded * pair.noise());
+}
+
+bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
+                           Contact& contact) const noexcept {
+  MovingPair& pair = ordered.pair();
+  PairAnswer answer;
+  if (!ordered.is_there() || !ordered.distance_at_start(tables, answer)) return false;
+  const solver::Scale scaled(pair.problem().exponent);
+  pair.place(0.0);
+  if (scaled(answer.distance) > tolerance(pair)) return false;
+  const Vec normal = Vec::Map(answer.normal);
+  Vec best = normal;
+  double gap = pair.gap(normal);
+  // Closest points that all but coincide show their direction badly, faces do not; and one face has
+  // the same normal as those that lie flush with it.
+  double least = std::min(gap > 0.0 ? 0.0 : gap, gap - pair.noise());
+  for (const solver::Core* const core : {&pair.a(), &pair.b()}) {
+    for (std::uint32_t i = 0; i < normal_count(*core); ++i) {
+      const Vec face = solver::normal(*core, i);
+      const double cosine = face.dot(normal);
+      if (std::abs(cosine) < kFaceOfContact) continue;
+      const Vec axis = cosine > 0.0 ? face : Vec(-face);
+      if (pair.gap(axis) <= least) continue;
+      best = axis;
+      gap = least = pair.gap(axis);
+    }
+  }
+  contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()),
+             gap > 0.0 && touch_ != StartTouch::is_entered};
+  return contact.apart || touch_ != StartTouch::meets;
+}
+
+void RestingContacts::keep(const Contact& contact) noexcept {
+  for (Contact& known : std::span(contacts_.data(), count_)) {
+    if ((known.normal - contact.normal).squaredNorm() > kSameNormal * kSameNormal) continue;
+    if (contact.gap < known.gap) known = contact;
+    return;
+  }
+  if (count_ < kMost) contacts_[count_++] = contact;
+}
+
+void RestingContacts::note(const ShapeTables& tables, const MovingPart& a,
+                           const MovingPart& b) noexcept {
+  OrderedPair pair(tables, a, b);
+  Contact contact;
+  if (find(tables, pair, contact)) keep(contact);
+}
+
+bool RestingContacts::parts(const Contact& contact, OrderedPair& ordered) const noexcept {
+  MovingPair& pair = ordered.pair();
+  const Vec normal = ordered.turned(contact.normal);
+  const double least = least_gap(pair, normal);
+  if (contact.apart) return least > 0.0;
+  pair.place(0.0);
+  const double first = pair.gap(normal) + pair.noise();
+  const solver::Scale scaled(pair.problem().exponent);
+  const double slack = tolerance(pair);
+  const bool is_flush = first >= scaled(contact.gap) - slack;
+  return is_flush && least + pair.noise() >= std::min(first, 0.0) - slack;
+}
+
+bool RestingContacts::part(const ShapeTables& tables, const MovingPart& a,
+                           const MovingPart& b) const noexcept {
+  if (count_ == 0) return false;
+  OrderedPair pair(tables, a, b);
+  if (!pair.is_there()) return false;
+  const auto by = [&](const Contact& contact) { return parts(contact, pair); };
+  if (std::any_of(contacts_.begin(), contacts_.begin() + count_, by)) return true;
+  // What it touches beyond those that are kept.
+  Contact own;
+  return count_ == kMost && find(tables, pair, own) && by(own);
+}
+
+}  // namespace winnow::impact
