@@ -32,6 +32,15 @@ inline constexpr std::uint32_t kFeatureKindShift = 30;
 /// Directions whose sine with the axis is less are along it.
 inline constexpr double kAlongAxis = 1e-9;
 
+/// Of faces with more corners than that every second (third, ...) is a corner of their patch.
+inline constexpr std::uint32_t kPatchRoom = 64;
+
+/// A direction across a normal that stays in the body while that trembles: of its axes the first
+/// that is no closer to the normal than this cosine, turned about the normal by the golden part of
+/// a half turn (cosine and sine), far from the axes of all regular polygons.
+inline constexpr double kAxisCosine = 0.6;
+inline constexpr double kOffAxes[2] = {0.36237489008048024, 0.9320324238132276};
+
 /// Of sets that are known by their farthest points: those in directions that are off by less than
 /// this tangent lie across a normal, if they are in one plane but for this share of their distance.
 inline constexpr double kSampleTilt = 0.04;
@@ -77,7 +86,7 @@ std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[
 /// As a share of how far a patch reaches: depths that differ by less are equal. Of points that are
 /// equally deep some are kept that stay the same while bodies tremble, by some ten-thousandths of a
 /// radian; the first has the depth of the deepest.
-inline constexpr double kTiedDepth = 2e-5;
+inline constexpr double kTiedDepth = 4e-5;
 /// The same as a depth: of points of contact by how far they are from the first.
 double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
 

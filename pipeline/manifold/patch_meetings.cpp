@@ -15,9 +15,6 @@ namespace {
 // Slopes that differ by less are the same.
 constexpr double kSameRise = 1e-9;
 
-// Cosine and sine of the golden part of a half turn: far from the axes of all regular polygons.
-constexpr double kOffAxes[2] = {0.36237489008048024, 0.9320324238132276};
-
 // A direction fixed in a body: off the edge of the least name, from the end of the lesser name, to
 // the inside. `at` writes where a vertex is.
 template <typename At>

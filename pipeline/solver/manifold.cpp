@@ -211,9 +211,11 @@ std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
 // points of what is round come together, and count as the one of them that is farthest out.
 void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
   constexpr std::uint32_t kSamples = 8;
-  int least = 0;
-  (core.rotation.transpose() * outward).cwiseAbs().minCoeff(&least);
-  const Vec u = without(core.rotation.col(least), outward);
+  const Vec d = core.rotation.transpose() * outward;
+  int axis = 0;
+  while (axis < 2 && !(std::abs(d[axis]) <= kAxisCosine)) ++axis;
+  const Vec side = without(core.rotation.col(axis), outward);
+  const Vec u = side * kOffAxes[0] + outward.cross(side) * kOffAxes[1];
   const Vec v = outward.cross(u);
   const Range width[2] = {project(core, u), project(core, v)};
   const double apart =

@@ -14,7 +14,7 @@ namespace winnow::solver {
 class SupportingPatch {
  public:
   /// No patch has more vertices.
-  static constexpr std::uint32_t kRoom = 64;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   /// The feature that lies farthest along `outward`: a box's face, a triangle, a segment, a hull's
   /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side, the

@@ -77,7 +77,7 @@ class CurvedPatch {
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 32;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   struct Local {
     double x;

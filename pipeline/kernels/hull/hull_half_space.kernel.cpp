@@ -44,7 +44,7 @@ class StandingPoints {
   [[nodiscard]] std::uint32_t vertex(std::uint32_t i) const { return vertex_[i]; }
 
  private:
-  static constexpr std::uint32_t kRoom = 64;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   void add(std::uint32_t vertex) { vertex_[count_++] = vertex; }
   void add_within(std::uint32_t vertex) {
