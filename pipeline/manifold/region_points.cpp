@@ -10,9 +10,10 @@
 namespace winnow {
 namespace {
 
-/// As a share of what the points of a region span: of points that are farther by less than this,
-/// either may stay.
+/// As a share of what the points of a region span: of points that are farther by less than the
+/// first, either may stay; what is wider by less than the second is not.
 constexpr double kTiedSpan = 1e-3;
+constexpr double kLeastWider = 1e-4;
 
 /// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), one to one.
 [[nodiscard]] std::uint64_t scrambled(std::uint64_t x) noexcept {
@@ -174,10 +175,10 @@ const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const no
 void RegionPoints::thin() noexcept {
   bool stays[kRoom] = {};
   double unused = 0.0;
-  static_assert(kDirections == std::size(kSixteenthsOfTurn));
-  for (std::uint32_t k = 0; k < kDirections; ++k) {
-    const double c = kSixteenthsOfTurn[k][0];
-    const double s = kSixteenthsOfTurn[k][1];
+  const double first[2] = {dot(direction_, frame_.axis[0]), dot(direction_, frame_.axis[1])};
+  for (const auto& turn : kSixteenthsOfTurn) {
+    const double c = turn[0] * first[0] - turn[1] * first[1];
+    const double s = turn[0] * first[1] + turn[1] * first[0];
     double most = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < count_; ++i) {
       most = std::max(most, c * point_[i].x + s * point_[i].y);

@@ -51,7 +51,6 @@ class RegionPoints {
 
  private:
   static constexpr std::uint32_t kRoom = 64;
-  static constexpr std::uint32_t kDirections = 16;
 
   struct Point {
     double x;

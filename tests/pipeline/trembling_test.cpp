@@ -127,16 +127,18 @@ class Stage {
     stands("wider cylinder", made(CylinderShape{2.0, 0.5}), 0.5);
     stands("own block", own(OwnSet::block, 2.0, 2.0, 0.5), 0.5);
     stands("own drum", own(OwnSet::drum, 1.2, 1.2, 0.5), 0.5);
-    const Surface surface = grid(12, 0.65F, Cut::same, [](float, float) { return 0.0F; });
+    // No shape stands with an edge of its own on one of these.
+    Surface surface = grid(12, 0.65F, Cut::same, [](float, float) { return 0.0F; });
+    for (Point& vertex : surface.vertices) vertex += Point(0.07F, 0.11F, 0.0F);
     ShapeId mesh;
     EXPECT_EQ(composites.add_mesh(surface.vertices,
                                   IndexView(std::span<const std::uint32_t>(surface.corners)), mesh),
               Status::ok);
     stands("mesh", mesh, 0.0);
-    const ShapeId tile = made(BoxShape{{0.5, 0.5, 0.5}});
+    const ShapeId tile = made(BoxShape{{0.55, 0.55, 0.5}});
     std::vector<CompoundChild> tiles;
     for (int i = 0; i < 16; ++i) {
-      tiles.push_back({tile, Pose::at(i % 4 - 1.5, i / 4 - 1.5, -0.5)});
+      tiles.push_back({tile, Pose::at(1.1 * (i % 4) - 1.6, 1.1 * (i / 4) - 1.55, -0.5)});
     }
     ShapeId compound;
     EXPECT_EQ(composites.add_compound(tiles, compound), Status::ok);
