@@ -135,10 +135,10 @@ class Stage {
                                   IndexView(std::span<const std::uint32_t>(surface.corners)), mesh),
               Status::ok);
     stands("mesh", mesh, 0.0);
-    const ShapeId tile = made(BoxShape{{0.55, 0.55, 0.5}});
+    const ShapeId tile = made(BoxShape{{0.575, 0.575, 0.5}});
     std::vector<CompoundChild> tiles;
     for (int i = 0; i < 16; ++i) {
-      tiles.push_back({tile, Pose::at(1.1 * (i % 4) - 1.6, 1.1 * (i / 4) - 1.55, -0.5)});
+      tiles.push_back({tile, Pose::at(1.15 * (i % 4) - 1.645, 1.15 * (i / 4) - 1.605, -0.5)});
     }
     ShapeId compound;
     EXPECT_EQ(composites.add_compound(tiles, compound), Status::ok);
