@@ -225,7 +225,7 @@ void EventWriter::take_frame(PairBuffer::Provenance provenance) noexcept {
 }
 
 // Without memory: the buffer has held all of these pairs at once.
-bool EventWriter::undo(PairBuffer& out) noexcept {
+bool EventWriter::undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept {
   PairEvents& e = events_;
   e.begun_.clear();
   e.ended_.clear();
@@ -246,6 +246,8 @@ bool EventWriter::undo(PairBuffer& out) noexcept {
     PairTracker::set_size(out, e.before_.size());
   }
   e.persisting_ = out.size();
+  e.provenance_ = provenance;
+  PairTracker::set_provenance(out, provenance);
   return true;
 }
 

@@ -72,18 +72,10 @@ class EventWriter {
 
   /// Ends a query: the events tell of this frame, and know whose the ids are in it.
   void take_frame(PairBuffer::Provenance provenance) noexcept;
-  /// Puts the pairs of the last frame back into the buffer, in any order: none begin or end. False
-  /// if the events do not tell of that frame; it is for the caller to empty the buffer then.
-  [[nodiscard]] bool undo(PairBuffer& out) noexcept;
-  /// Gives the frame that the events tell of, which `out` holds, another name.
-  static void rename_frame(PairBuffer& out, PairEvents& events,
-                           PairBuffer::Provenance provenance) noexcept {
-    PairTracker::set_provenance(out, provenance);
-    events.provenance_ = provenance;
-  }
-  void rename_frame(PairBuffer& out, PairBuffer::Provenance provenance) noexcept {
-    rename_frame(out, events_, provenance);
-  }
+  /// Puts the pairs of the last frame back into the buffer, in any order, and gives that frame
+  /// another name: none begin or end. False if the events do not tell of that frame; the caller
+  /// empties the buffer then.
+  [[nodiscard]] bool undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept;
 
  private:
   /// Which pairs of the last frame are not in the buffer but elsewhere: none, those from `kept_` on

@@ -169,15 +169,16 @@ void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* even
   pairs_.tracked_serial = provenance.serial;
 }
 
-// A refused query leaves the buffer empty or, if events follow it, as they know it. Either is asked
-// about all pairs next, so that what comes then does not depend on where memory ended.
+// A refused query leaves the buffer empty or, if events follow it, with the pairs of the last
+// frame. The next query looks for all pairs in either case: its answer does not depend on which
+// request was refused.
 void PartitionState::undo_self_pairs(PairBuffer& out, bool calm,
                                      EventWriter* events) const noexcept {
-  // Of the pairs that are watched some may be noted as of a frame that nobody has seen.
+  // Some of the watched pairs may be noted as of a frame that was not answered.
   if (calm) pairs_.tracked_serial = 0;
-  if (events == nullptr || !events->undo(out)) return out.clear();
+  const PairBuffer::Provenance untracked{pairs_.identity, ++pairs_.last_serial};
+  if (events == nullptr || !events->undo(out, untracked)) return out.clear();
   LinkedPairs(out).loosen();
-  events->rename_frame(out, {pairs_.identity, ++pairs_.last_serial});
 }
 
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
