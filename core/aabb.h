@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/export.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/vec3.h>
 
@@ -24,14 +25,8 @@ struct Aabb {
   /// from 0 floats are coarse (8 apart at 1e8): boxes that are measured from a point among the
   /// objects are as tight there, and as cheap to prune by, as those of objects around 0. The
   /// difference of two doubles is rounded outward, too, so nothing sticks out.
-  [[nodiscard]] static Aabb outward(const Vec3d& min, const Vec3d& max, const Vec3d& origin) {
-    Aabb box;
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = round_down(add_down(min[axis], -origin[axis]));
-      box.max[axis] = round_up(add_up(max[axis], -origin[axis]));
-    }
-    return box;
-  }
+  [[nodiscard]] WINNOW_API static Aabb outward(const Vec3d& min, const Vec3d& max,
+                                               const Vec3d& origin) noexcept;
 
   /// True if a partition takes this box: no NaN, min <= max, and not wholly at infinity.
   [[nodiscard]] bool is_valid() const noexcept {
@@ -50,8 +45,12 @@ struct Aabb {
 
   /// Grows to contain `other`.
   void merge(const Aabb& other) noexcept {
-    min = min.min(other.min);
-    max = max.max(other.max);
+    const auto lesser = [](const Vec3f& a, const Vec3f& b) {
+      return Vec3f(detail::lesser(a.x(), b.x()), detail::lesser(a.y(), b.y()),
+                   detail::lesser(a.z(), b.z()));
+    };
+    min = lesser(min, other.min);
+    max = -lesser(-max, -other.max);
   }
 
   /// The same corners, float by float.

@@ -1,5 +1,6 @@
 #include <winnow/core/execution.h>
 #include "core/threads/atomic_ref.h"
+#include "core/threads/float_environment.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +11,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
-#endif
-
-#if defined(__SSE__) && !defined(__wasm__)
-#include <xmmintrin.h>
-#else
-#include <cfenv>
 #endif
 
 namespace winnow {
@@ -83,38 +78,17 @@ void run_in_arena(SharedTasks& tasks) {
 }
 #endif
 
-#if defined(__SSE__) && !defined(__wasm__)
-// Of code that is compiled for SSE it is all in one register.
-using FloatEnvironment = unsigned;
-FloatEnvironment float_environment() noexcept {
-  return _mm_getcsr();
-}
-void enter(const FloatEnvironment& environment) noexcept {
-  _mm_setcsr(environment);
-}
-#else
-using FloatEnvironment = std::fenv_t;
-FloatEnvironment float_environment() noexcept {
-  FloatEnvironment environment;
-  std::fegetenv(&environment);
-  return environment;
-}
-void enter(const FloatEnvironment& environment) noexcept {
-  std::fesetenv(&environment);
-}
-#endif
-
 /// Tasks that a host's threads run in the environment of the caller, and end in their own.
 struct HostedTasks {
   SharedTasks& tasks;
-  FloatEnvironment callers = float_environment();
+  FloatControl callers = float_control();
 
   static void run(void* hosted, std::size_t share) {
     const auto& self = *static_cast<const HostedTasks*>(hosted);
-    const FloatEnvironment own = float_environment();
-    enter(self.callers);
+    const FloatControl own = float_control();
+    set_float_control(self.callers);
     self.tasks.run(share);
-    enter(own);
+    set_float_control(own);
   }
 };
 
@@ -137,6 +111,7 @@ void Execution::run(std::size_t count, void* context, void (*task)(void*, std::s
   SharedTasks tasks(count, threads, context, task);
   if (jobs_.parallel_for != nullptr) {
     HostedTasks hosted{tasks};
+    const HostEnvironment around;
     return jobs_.parallel_for(jobs_.context, tasks.shares(), HostedTasks::run, &hosted);
   }
 #if WINNOW_HAVE_TBB

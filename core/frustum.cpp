@@ -1,5 +1,6 @@
 #include <winnow/core/eigen.h>
 #include <winnow/core/frustum.h>
+#include "core/threads/float_environment.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -43,6 +44,7 @@ Aabb around(const Corners& corners) noexcept {
 
 Frustum Frustum::perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f& up,
                              float vertical_fov, float aspect, float near_t, float far_t) noexcept {
+  const DefaultEnvironment environment;
   const Eigen::Vector3d f = as_eigen(forward).cast<double>().normalized();
   const Eigen::Vector3d r = f.cross(as_eigen(up).cast<double>()).normalized();
   const Eigen::Vector3d u = r.cross(f);
@@ -74,6 +76,7 @@ Frustum Frustum::perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f
 }
 
 Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth) noexcept {
+  const DefaultEnvironment environment;
   const Eigen::Matrix4d m = clip_from_world;
   if (!m.allFinite()) return invalid();
   const bool from_zero = near_depth == NearDepth::zero;
@@ -108,6 +111,7 @@ Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth)
 }
 
 bool Frustum::is_valid() const noexcept {
+  const DefaultEnvironment environment;
   return bounds.is_valid() &&
          std::all_of(planes.begin(), planes.end(), [](const Plane& p) { return p.is_valid(); });
 }

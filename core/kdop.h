@@ -51,16 +51,20 @@ struct Kdop {
   [[nodiscard]] static Kdop around(const Aabb& box) noexcept {
     Kdop result;
     const auto directions = kdop_directions<K>();
+    double low[3];
+    double high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = to_double(box.min[axis]);
+      high[axis] = to_double(box.max[axis]);
+    }
     for (std::size_t s = 0; s < kSlabs; ++s) {
       double lo = 0.0;
       double hi = 0.0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const int weight = directions[s][axis];
         if (weight == 0) continue;
-        const auto a = static_cast<double>(box.min[axis]);
-        const auto b = static_cast<double>(box.max[axis]);
-        lo = add_down(lo, weight > 0 ? a : -b);
-        hi = add_up(hi, weight > 0 ? b : -a);
+        lo = add_down(lo, weight > 0 ? low[axis] : -high[axis]);
+        hi = add_up(hi, weight > 0 ? high[axis] : -low[axis]);
       }
       result.min[s] = round_down(lo);
       result.max[s] = round_up(hi);
@@ -75,8 +79,8 @@ struct Kdop {
       const Vec3d p = points[i];
       const Kdop one = around(Aabb::outward(p, p));
       for (std::size_t s = 0; s < kSlabs; ++s) {
-        result.min[s] = one.min[s] < result.min[s] ? one.min[s] : result.min[s];
-        result.max[s] = one.max[s] > result.max[s] ? one.max[s] : result.max[s];
+        result.min[s] = detail::lesser(result.min[s], one.min[s]);
+        result.max[s] = -detail::lesser(-result.max[s], -one.max[s]);
       }
     }
     return result;

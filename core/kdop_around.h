@@ -11,21 +11,21 @@
 namespace winnow {
 
 /// The k-DOP of a rotated box, rounded outward: in each slab larger than the tightest by at most
-/// 1e-14 of the sum of the box's coordinates and edges, and by two ulp at each end. The box is
-/// valid.
+/// 1e-14 of the sum of the box's coordinates and edges, and at each end by two ulp and the smallest
+/// normal float. The box is valid.
 template <int K>
 [[nodiscard]] Kdop<K> kdop_around(const OrientedBox& box) noexcept {
   constexpr auto directions = kdop_directions<K>();
-  constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
-  constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  constexpr float kUlp = 1.2e-7F;                              // a little more than 2^-23
+  constexpr float kLeast = std::numeric_limits<float>::min();  // less may be flushed
   double center[3];
   double edge[3][3];  // half edges as vectors
   double size = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    center[axis] = static_cast<double>(box.center[axis]);
+    center[axis] = to_double(box.center[axis]);
     size += std::abs(center[axis]);
     for (int i = 0; i < 3; ++i) {
-      edge[i][axis] = static_cast<double>(box.axes(axis, i)) * static_cast<double>(box.half[i]);
+      edge[i][axis] = to_double(box.axes(axis, i)) * to_double(box.half[i]);
       size += std::abs(edge[i][axis]);
     }
   }

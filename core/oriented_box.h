@@ -31,10 +31,10 @@ struct OrientedBox {
     for (int axis = 0; axis < 3; ++axis) {
       double reach = 0.0;
       for (int i = 0; i < 3; ++i) {
-        reach += std::abs(static_cast<double>(axes(axis, i))) * static_cast<double>(half[i]);
+        reach += std::abs(to_double(axes(axis, i))) * to_double(half[i]);
       }
       reach *= 1.0 + 1e-15;
-      const auto c = static_cast<double>(center[axis]);
+      const double c = to_double(center[axis]);
       box.min[axis] = round_down(add_down(c, -reach));
       box.max[axis] = round_up(add_up(c, reach));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/rounding.h>
 #include <winnow/core/vec3.h>
 
 #include <array>
@@ -58,7 +59,7 @@ struct PointView {
   }
   /// Coordinate `axis` of point `i`.
   [[nodiscard]] double coordinate(std::size_t i, std::size_t axis) const noexcept {
-    if (single[axis] != nullptr) return static_cast<double>(at(single[axis], i));
+    if (single[axis] != nullptr) return to_double(at(single[axis], i));
     return at(precise[axis], i);
   }
 

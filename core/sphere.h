@@ -21,16 +21,21 @@ struct Sphere {
 
   /// Closed overlap test, computed in double; exact for centres and radii of similar size.
   [[nodiscard]] bool overlaps(const Sphere& other) const noexcept {
-    const double reach = static_cast<double>(radius) + static_cast<double>(other.radius);
-    return (center.cast<double>() - other.center.cast<double>()).squared_norm() <= reach * reach;
+    const double reach = to_double(radius) + to_double(other.radius);
+    double square = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double gap = to_double(center[axis]) - to_double(other.center[axis]);
+      square += gap * gap;
+    }
+    return square <= reach * reach;
   }
 
   /// The smallest float box that contains the ball.
   [[nodiscard]] Aabb bounds() const noexcept {
     Aabb box;
-    const auto r = static_cast<double>(radius);
+    const double r = to_double(radius);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto c = static_cast<double>(center[axis]);
+      const double c = to_double(center[axis]);
       box.min[axis] = round_down(add_down(c, -r));
       box.max[axis] = round_up(add_up(c, r));
     }
@@ -45,16 +50,16 @@ struct Sphere {
     Sphere sphere;
     double square = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto lo = static_cast<double>(box.min[axis]);
-      const auto hi = static_cast<double>(box.max[axis]);
+      const double lo = to_double(box.min[axis]);
+      const double hi = to_double(box.max[axis]);
       const auto c = static_cast<float>(0.5 * (lo + hi));
-      const double up = hi - static_cast<double>(c);
-      const double down = static_cast<double>(c) - lo;
+      const double up = hi - to_double(c);
+      const double down = to_double(c) - lo;
       const double reach = up < down ? down : up;
       sphere.center[axis] = c;
       square += reach * reach;
     }
-    sphere.radius = round_up(std::sqrt(square) * (1.0 + 1e-15));
+    sphere.radius = round_up(std::sqrt(square) * (1.0 + 2e-15));
     return sphere;
   }
 };

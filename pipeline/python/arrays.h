@@ -57,7 +57,7 @@ class Numbers {
     const std::byte* const p = data_ + static_cast<std::ptrdiff_t>(i) * stride_ +
                                static_cast<std::ptrdiff_t>(j) * inner_[0] +
                                static_cast<std::ptrdiff_t>(k) * inner_[1];
-    if (single_) return static_cast<double>(*reinterpret_cast<const float*>(p));
+    if (single_) return to_double(*reinterpret_cast<const float*>(p));
     return *reinterpret_cast<const double*>(p);
   }
   /// True if entries lie one after another without gaps, components too.

@@ -15,7 +15,7 @@
 #include "pipeline/python/shared_shapes.h"
 #include "pipeline/python/snapshots.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/aabb.h>
 #include <winnow/simd/isa.h>
 
 namespace winnow::python {
@@ -98,11 +98,15 @@ void add_errors(py::module_& module) {
   from.expect(low.count());
   auto down = fresh<float>(low.count(), 3);
   auto up = fresh<float>(low.count(), 3);
-  float* const to[2] = {down.mutable_data(), up.mutable_data()};
+  float* to[2] = {down.mutable_data(), up.mutable_data()};
+  const auto place = [](const Numbers& numbers, std::size_t i) {
+    return Vec3d(numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2));
+  };
   for (std::size_t i = 0; i < low.count(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      to[0][3 * i + axis] = round_down(add_down(low.at(i, axis), -from.at(i, axis)));
-      to[1][3 * i + axis] = round_up(add_up(high.at(i, axis), -from.at(i, axis)));
+    const Aabb box = Aabb::outward(place(low, i), place(high, i), place(from, i));
+    for (int axis = 0; axis < 3; ++axis) {
+      *to[0]++ = box.min[axis];
+      *to[1]++ = box.max[axis];
     }
   }
   return py::make_tuple(down, up);

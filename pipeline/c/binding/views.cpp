@@ -37,7 +37,7 @@ template <typename Number, std::size_t kColumns>
                                winnow_number number) noexcept {
   const std::byte* at = static_cast<const std::byte*>(column) + i * stride;
   return number == WINNOW_DOUBLE ? *reinterpret_cast<const double*>(at)
-                                 : static_cast<double>(*reinterpret_cast<const float*>(at));
+                                 : to_double(*reinterpret_cast<const float*>(at));
 }
 
 /// Calls `read(i)` for each entry of `count` that is meant. Numbers that are none are left to who
