@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "core/threads/float_environment.h"
 #include "partitions/state/box_partition.h"
 #include "partitions/state/partition_state.h"
 
@@ -29,6 +30,7 @@ Partition make_box_partition(StructureKind structure, const PartitionOptions& op
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options,
                      const VolumeInput* input) noexcept {
+  const DefaultEnvironment environment;
   if (structure.info() == nullptr || input == nullptr) return;
   state_ = PartitionState::make(structure, options, *input);
   status_ = state_ == nullptr ? Status::out_of_memory : Status::ok;
@@ -49,6 +51,7 @@ StructureKind Partition::structure() const noexcept {
 }
 
 Status Partition::set_structure(StructureKind structure) {
+  const DefaultEnvironment environment;
   Status status = status_;
   if (structure.info() == nullptr) {
     status = Status::invalid_argument;
@@ -76,6 +79,7 @@ Margin Partition::margin() const noexcept {
 
 Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                          std::span<Key> keys) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->insert(boxes, data, keys),
                 "Partition::insert");
 }
@@ -87,6 +91,7 @@ Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
 
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                          std::span<Key> keys) {
+  const DefaultEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(spheres, data, keys); });
 }
@@ -94,30 +99,36 @@ Status Partition::insert(std::span<const Sphere> spheres, std::span<const Client
 template <int K>
 Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                          std::span<Key> keys) {
+  const DefaultEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(kdops, data, keys); });
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes, entries),
                 "Partition::update");
 }
 
 Status Partition::update(Key key, const Aabb& box) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(key, box), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
+  const DefaultEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.update(keys, spheres); });
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
+  const DefaultEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.update(keys, kdops); });
 }
@@ -133,10 +144,12 @@ template Status Partition::update(std::span<const Key>, std::span<const Kdop<18>
 template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>>);
 
 Status Partition::remove(std::span<const Key> keys) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->remove(keys), "Partition::remove");
 }
 
 Status Partition::remove(Key key) {
+  const DefaultEnvironment environment;
   return mutate("Partition::remove", state_, status_, 1,
                 [&](Rows& rows) { return rows.remove(key); });
 }
@@ -150,6 +163,7 @@ void Partition::release_memory() noexcept {
 }
 
 Status Partition::reserve(std::size_t objects, Pages pages) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->reserve(objects, pages),
                 "Partition::reserve");
 }
@@ -167,6 +181,7 @@ Status Partition::bounds(Key key, Aabb& box) const noexcept {
 }
 
 Status Partition::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return status_;
   return keys.size() == boxes.size() ? state_->bounds(keys, boxes) : Status::size_mismatch;
 }
@@ -187,6 +202,7 @@ ClientData Partition::client_data_of(ObjectId id) const noexcept {
 }
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->set_filter(keys, filters),
                 "Partition::set_filter");
 }
@@ -202,10 +218,12 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 }
 
 Status Partition::refresh() const {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->make_ready(), "Partition::refresh");
 }
 
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
   if (const Status status = state_->settle(); status != Status::ok) return status;

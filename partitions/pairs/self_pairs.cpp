@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
+#include "core/threads/float_environment.h"
 #include "partitions/pairs/event_writer.h"
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
@@ -75,6 +76,7 @@ struct PartitionState::SelfTasks {
 };
 
 Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {
+  const DefaultEnvironment environment;
   if (state_ != nullptr) return state_->find_self_pairs(out, options, nullptr);
   out.clear();
   return status_;
@@ -82,6 +84,7 @@ Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const 
 
 Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
                              const PairOptions& options) const {
+  const DefaultEnvironment environment;
   if (state_ != nullptr) return state_->find_self_pairs(out, options, &events);
   out.clear();
   events.clear();
@@ -89,17 +92,20 @@ Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
 }
 
 Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const {
+  const DefaultEnvironment environment;
   return state_ == nullptr ? status_ : state_->reserve_pairs(out, pairs, pages);
 }
 
 Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool alone,
                                  Pages pages) const {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return status_;
   if (!state_->reserve_events(out, pairs, pages)) return Status::out_of_memory;
   return alone ? reserve_pairs(EventWriter::own_buffer(out), pairs, pages) : Status::ok;
 }
 
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
+  const DefaultEnvironment environment;
   // In no order: the events are sorted, and nobody sees the pairs.
   return self_pairs(EventWriter::own_buffer(events), events,
                     {Order::fast, options.incremental, options.predicate});
@@ -355,6 +361,7 @@ void PartitionState::note_work(std::uint64_t tests, std::uint64_t queries,
 
 Status Partition::pairs_with(const Partition& other, PairBuffer& out,
                              const PairOptions& options) const {
+  const DefaultEnvironment environment;
   out.clear();
   if (state_ == nullptr || other.state_ == nullptr) {
     return state_ == nullptr ? status_ : other.status_;

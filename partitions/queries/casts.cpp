@@ -1,5 +1,6 @@
 // Rays and swept volumes.
 
+#include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/hit_writer.h"
@@ -191,26 +192,31 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
 }  // namespace
 
 Status Partition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+  const DefaultEnvironment environment;
   hit = {};
   return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().closest, cast, hit, filter);
 }
 
 Status Partition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
+  const DefaultEnvironment environment;
   hit = {};
   return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().any, cast, hit, filter);
 }
 
 Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
                           const Filter& filter) const {
+  const DefaultEnvironment environment;
   return state_ == nullptr ? status_
                            : find_hits(*state_, cast_kernels().closest, rays, hits, filter);
 }
 
 Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
+  const DefaultEnvironment environment;
   return state_ == nullptr ? status_ : find_hits(*state_, cast_kernels().any, rays, hits, filter);
 }
 
 Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
+  const DefaultEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   const PreparedCast prepared(cast);
@@ -235,6 +241,7 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
 }
 
 Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
+  const DefaultEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;

@@ -1,5 +1,6 @@
 // Nearest objects.
 
+#include "core/threads/float_environment.h"
 #include "partitions/queries/nearest.kernel.h"
 
 #include "partitions/queries/hit_writer.h"
@@ -34,6 +35,7 @@ NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
 
 Status Partition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
                           const Filter& filter) const {
+  const DefaultEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   const bool finite = from.min.all_finite() && from.max.all_finite() && from.is_valid();

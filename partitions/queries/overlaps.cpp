@@ -1,6 +1,7 @@
 // Which objects meet a region.
 
 #include <winnow/core/hits.h>
+#include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/query_filter.h"
@@ -113,6 +114,7 @@ PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
 
 Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
                           Order order) const {
+  const DefaultEnvironment environment;
   objects.clear();
   if (state_ == nullptr) return status_;
   const PreparedRegion prepared(region);
@@ -133,6 +135,7 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
 
 Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
                           Order order) const {
+  const DefaultEnvironment environment;
   out.clear();
   if (state_ == nullptr) return status_;
   const Execution& execution = state_->rows.execution();

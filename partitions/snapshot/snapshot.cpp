@@ -4,6 +4,7 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "partitions/state/partition_state.h"
 
 #include <utility>
@@ -89,6 +90,7 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
 }  // namespace
 
 Status Partition::save(Column<std::byte>& out) const {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(status_, "Partition::save");
   state_->write_deferred();
   const Status status =
@@ -101,6 +103,7 @@ Status Partition::save(Column<std::byte>& out) const {
 }
 
 Status Partition::load(std::span<const std::byte> saved) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : load_into(state_, saved), "Partition::load");
 }
 

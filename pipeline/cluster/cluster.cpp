@@ -1,6 +1,7 @@
 #include <winnow/pipeline/cluster.h>
 
 #include "core/memory/guarded.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/cluster/rank_bodies.h"
 #include "pipeline/cluster/rank_group.h"
 
@@ -160,6 +161,7 @@ std::uint32_t Cluster::hosted() const noexcept {
 }
 
 Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
+  const DefaultEnvironment environment;
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, [&] {
     if (fit) return state_->add(batches, answers);
@@ -172,18 +174,22 @@ Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> ans
 }
 
 Status Cluster::move(std::uint32_t rank, std::span<const BodyName> names, const BoxView& boxes) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.move(names, boxes); });
 }
 
 Status Cluster::move(std::uint32_t rank, std::span<const Key> keys, const BoxView& boxes) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.move(keys, boxes); });
 }
 
 Status Cluster::remove(std::uint32_t rank, std::span<const BodyName> names) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.remove(names); });
 }
 
 Status Cluster::self_pairs(Order order) {
+  const DefaultEnvironment environment;
   return collective(state_, [&] { return state_->self_pairs(order); });
 }
 
@@ -193,6 +199,7 @@ NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
 }
 
 Status Cluster::digest(ClusterDigest& digest) {
+  const DefaultEnvironment environment;
   return collective(state_, [&] { return state_->digest(digest); });
 }
 

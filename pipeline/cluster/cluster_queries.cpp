@@ -5,6 +5,7 @@
 #include <winnow/pipeline/cluster_queries.h>
 
 #include <winnow/pipeline/scene_queries.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/cluster/cluster_scene_state.h"
 #include "pipeline/cluster/outbox.h"
 #include "pipeline/composites/parts.h"
@@ -421,18 +422,21 @@ ClusterQueries::~ClusterQueries() {
 
 Status ClusterQueries::closest(std::span<const ClusterQuestions<ShapeRay>> rays,
                                std::span<Status> answers) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<RayClosest>(rays, answers, state_->hits);
 }
 
 Status ClusterQueries::all(std::span<const ClusterQuestions<ShapeRay>> rays,
                            std::span<Status> answers) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<RayAll>(rays, answers, state_->hits);
 }
 
 Status ClusterQueries::any(std::span<const ClusterQuestions<ShapeRay>> rays,
                            std::span<Status> answers) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   AnswersOfRanks<ClusterHit> found;
   const Status status = state_->ask<RayAny>(rays, answers, found);
@@ -449,12 +453,14 @@ Status ClusterQueries::any(std::span<const ClusterQuestions<ShapeRay>> rays,
 
 Status ClusterQueries::overlap(std::span<const ClusterQuestions<ShapeProbe>> shapes,
                                std::span<Status> answers) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<ProbeOverlap>(shapes, answers, state_->overlaps);
 }
 
 Status ClusterQueries::nearest(std::span<const ClusterQuestions<NearestProbe>> points,
                                std::span<Status> answers) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<PointNearest>(points, answers, state_->distances);
 }

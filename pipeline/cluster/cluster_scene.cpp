@@ -2,6 +2,7 @@
 
 #include "core/memory/byte_stream.h"
 #include "core/memory/guarded.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/cluster/cluster_scene_state.h"
 
 namespace winnow {
@@ -287,6 +288,7 @@ std::uint32_t ClusterScene::hosted() const noexcept {
 }
 
 Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers) {
+  const DefaultEnvironment environment;
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, [&] {
     if (fit) return state_->add(batches, answers);
@@ -299,12 +301,14 @@ Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<S
 }
 
 Status ClusterScene::replicate(const ClusterSceneBatch& batch) {
+  const DefaultEnvironment environment;
   Status refused = Status::ok;
   const Status status = collective(state_, [&] { return state_->replicate(batch, refused); });
   return status == Status::ok ? refused : status;
 }
 
 Status ClusterScene::move_replicated(std::span<const BodyName> names, std::span<const Pose> poses) {
+  const DefaultEnvironment environment;
   Status refused = Status::ok;
   const Status status =
       collective(state_, [&] { return state_->move_replicated(names, poses, refused); });
@@ -313,18 +317,22 @@ Status ClusterScene::move_replicated(std::span<const BodyName> names, std::span<
 
 Status ClusterScene::move(std::uint32_t rank, std::span<const BodyName> names,
                           const PoseView& poses) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.move(names, poses); });
 }
 
 Status ClusterScene::move(std::uint32_t rank, std::span<const Key> keys, const PoseView& poses) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.move(keys, poses); });
 }
 
 Status ClusterScene::remove(std::uint32_t rank, std::span<const BodyName> names) {
+  const DefaultEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.remove(names); });
 }
 
 Status ClusterScene::collide(ContactLevel level) {
+  const DefaultEnvironment environment;
   if (level > ContactLevel::manifold) return Status::invalid_argument;
   return collective(state_, [&] { return state_->collide(level); });
 }
@@ -336,6 +344,7 @@ const Contacts& ClusterScene::contacts(std::uint32_t rank) const noexcept {
 }
 
 Status ClusterScene::digest(ClusterDigest& digest) {
+  const DefaultEnvironment environment;
   return collective(state_, [&] { return state_->digest(digest); });
 }
 
@@ -349,6 +358,7 @@ Status ClusterScene::save(std::uint32_t rank, std::vector<std::byte>& bytes) con
 
 Status ClusterScene::restore(std::span<const std::span<const std::byte>> bytes,
                              std::span<Status> answers) {
+  const DefaultEnvironment environment;
   const bool fit = bytes.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, [&] {
     std::vector<RecordBatch> batches(hosted());

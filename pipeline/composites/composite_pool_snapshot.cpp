@@ -6,6 +6,7 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_places.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
 
 #include <utility>
@@ -203,6 +204,7 @@ Status CompositePool::save(Column<std::byte>& out) const {
 }
 
 Status CompositePool::load(std::span<const std::byte> saved, const Execution& execution) {
+  const DefaultEnvironment environment;
   ByteReader in = open_snapshot(saved, kCompositesMagic, kCompositesVersion);
   if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   if (!in.ok()) return logged(status_of(in), "CompositePool::load");
@@ -225,6 +227,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
 Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
                                      const std::array<double, 3>& scale, ShapeId& id,
                                      const Execution& execution) {
+  const DefaultEnvironment environment;
   if (!std::all_of(scale.begin(), scale.end(), mid::is_scale)) return Status::invalid_argument;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
@@ -238,6 +241,7 @@ Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
 }
 
 Status CompositePool::add_saved_height_field(std::span<const std::byte> saved, ShapeId& id) {
+  const DefaultEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
   Status status = s->fields.prepare();

@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -10,6 +11,7 @@ WINNOW_DEFINE_LINK(box, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
     return Status::invalid_shape;
   }

@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -16,6 +17,7 @@ WINNOW_DEFINE_LINK(cone, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cone();
   return put(cones_, ShapeKind::cone, shape, id);

@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -14,6 +15,7 @@ WINNOW_DEFINE_LINK(half_space, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
   if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
   // Scaled by its largest component first: squares of small normals would vanish.

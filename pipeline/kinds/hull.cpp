@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/hull_builder.h"
 #include "pipeline/shapes/put_shape.h"
@@ -29,18 +30,21 @@ Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
 }
 
 Status ShapePool::add_hull(const PointView& points, double rounding, ShapeId& id) {
+  const DefaultEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
 }
 
 Status ShapePool::add_hull(const PointView& points, const HullFaces& faces, double rounding,
                            ShapeId& id) {
+  const DefaultEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
 Status ShapePool::add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
                                  ShapeId& id) {
+  const DefaultEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_as_built(points, faces, memory_, hull); });
 }

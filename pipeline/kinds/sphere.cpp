@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -8,6 +9,7 @@ WINNOW_DEFINE_LINK(sphere, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   if (!are_lengths({shape.radius})) return Status::invalid_shape;
   link_kernels_of_sphere();
   return put(spheres_, ShapeKind::sphere, shape, id);

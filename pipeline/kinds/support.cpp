@@ -1,3 +1,4 @@
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -61,6 +62,7 @@ class SupportProbe {
 }  // namespace
 
 Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   if (!are_lengths({shape.radius, shape.rounding}) || shape.function == nullptr ||
       !SupportProbe(shape).is_convex(shape.radius)) {
     return Status::invalid_shape;

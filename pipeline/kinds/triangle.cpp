@@ -1,4 +1,5 @@
 #include <winnow/pipeline/mid_phase.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/put_shape.h"
 
@@ -16,6 +17,7 @@ WINNOW_DEFINE_LINK(triangle, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
+  const DefaultEnvironment environment;
   if (!are_lengths({shape.rounding})) return Status::invalid_shape;
   for (const auto& vertex : shape.vertex) {
     for (const double v : vertex) {

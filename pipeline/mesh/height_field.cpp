@@ -6,6 +6,7 @@
 #include <winnow/pipeline/triangle_mesh.h>
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/mesh/edge_bend.h"
 #include "pipeline/mesh/height_grid.h"
 
@@ -197,6 +198,7 @@ HeightField::~HeightField() {
 }
 
 Status HeightField::build(const HeightSamples& samples) {
+  const DefaultEnvironment environment;
   const Status status = check_field(samples);
   if (status != Status::ok) return status;
   State* fresh = new_in<State>(memory_, memory_);
@@ -221,6 +223,7 @@ Status HeightField::State::take(const HeightSamples& samples) noexcept {
 }
 
 Status HeightField::update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) {
+  const DefaultEnvironment environment;
   if (column > columns() || row > rows() || samples.columns > columns() - column ||
       samples.rows > rows() - row) {
     return Status::invalid_argument;
@@ -262,6 +265,7 @@ std::uint32_t HeightField::triangles() const noexcept {
 }
 
 bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noexcept {
+  const DefaultEnvironment environment;
   if (number >= triangles()) return false;
   const HeightGrid grid = state_->grid();
   const std::uint32_t column = number / 2 % grid.square_columns();
@@ -276,6 +280,7 @@ bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noe
 }
 
 std::uint8_t HeightField::active_edges(std::uint32_t number) const noexcept {
+  const DefaultEnvironment environment;
   static const EdgeBend kBend(MeshOptions{}.active_edge_angle);
   TriangleShape shape;
   std::uint8_t active = 7;
@@ -307,6 +312,7 @@ Status HeightField::save(Column<std::byte>& out) const {
 }
 
 Status HeightField::load(std::span<const std::byte> saved) {
+  const DefaultEnvironment environment;
   ByteReader in = open_snapshot(saved, kFieldMagic, kFieldVersion);
   HeightField fresh(memory_);
   if (in.ok() && !in.rest().empty()) {
@@ -329,6 +335,7 @@ Status HeightField::load(std::span<const std::byte> saved) {
 }
 
 Aabb HeightField::bounds() const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return {};
   const State& s = *state_;
   const float low = s.tiles[s.pyramid.tiles - 1];
@@ -341,6 +348,7 @@ Aabb HeightField::bounds() const noexcept {
 }
 
 double HeightField::radius() const noexcept {
+  const DefaultEnvironment environment;
   const Aabb box = bounds();
   if (!box.is_valid()) return 0.0;
   const Eigen::Vector3f farthest =

@@ -2,6 +2,7 @@
 
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/mesh/leaf_corners.h"
 #include "pipeline/mesh/mesh_edges.h"
 #include "pipeline/mesh/mesh_tree.h"
@@ -106,6 +107,7 @@ TriangleMesh::~TriangleMesh() {
 
 Status TriangleMesh::build(const PointView& vertices, const IndexView& triangles,
                            const MeshOptions& options, const Execution& execution) {
+  const DefaultEnvironment environment;
   const Status status = check(vertices, triangles, options);
   if (status != Status::ok) return status;
   State* fresh = new_in<State>(memory_, memory_);
@@ -153,6 +155,7 @@ Status TriangleMesh::State::take(const PointView& vertices, const IndexView& tri
 }
 
 Status TriangleMesh::refit(const PointView& vertices, const Execution& execution) {
+  const DefaultEnvironment environment;
   if (vertices.count != this->vertices()) return Status::size_mismatch;
   if (vertices.count == 0) return Status::ok;
   if (!has_columns(vertices)) return Status::invalid_argument;
@@ -256,6 +259,7 @@ Status TriangleMesh::save(Column<std::byte>& out) const {
 }
 
 Status TriangleMesh::load(std::span<const std::byte> saved, const Execution& execution) {
+  const DefaultEnvironment environment;
   ByteReader in = open_snapshot(saved, kMeshMagic, kMeshVersion);
   if (!in.ok()) return status_of(in);
   State* fresh = nullptr;
@@ -327,10 +331,12 @@ std::size_t TriangleMesh::vertices() const noexcept {
 }
 
 Aabb TriangleMesh::bounds() const noexcept {
+  const DefaultEnvironment environment;
   return state_ != nullptr ? state_->bounds : Aabb{};
 }
 
 double TriangleMesh::radius() const noexcept {
+  const DefaultEnvironment environment;
   return state_ != nullptr ? state_->radius : 0.0;
 }
 

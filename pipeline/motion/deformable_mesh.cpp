@@ -5,6 +5,7 @@
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "partitions/tree/block_tree.h"
 #include "partitions/tree/kd_order.h"
 #include "pipeline/motion/feature_proximity.h"
@@ -278,6 +279,7 @@ DeformableMesh::~DeformableMesh() {
 }
 
 Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) noexcept {
+  const DefaultEnvironment environment;
   if (triangles.count == 0 || rest.count == 0) return Status::invalid_shape;
   if (triangles.count > kMostFaces || rest.count > kMostVertices) return Status::too_many_objects;
   if (!has_three_columns(rest) || (triangles.wide == nullptr && triangles.narrow == nullptr) ||
@@ -301,6 +303,7 @@ Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) 
 
 Status DeformableMesh::move(const PointView& start, const PointView& end,
                             double distance) noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr || !(distance >= 0.0 && distance <= kFarthest)) {
     return Status::invalid_argument;
   }
@@ -335,6 +338,7 @@ std::array<std::uint32_t, 2> DeformableMesh::edge(std::size_t i) const noexcept 
 
 Status DeformableMesh::find_self(FeaturePair kind,
                                  const ResultChunks<Pair>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
   // In place, and without a branch: which pairs share a vertex is as hard to foresee as a coin.
   const auto take = [&](std::span<Pair> pairs) {
@@ -358,6 +362,7 @@ Status DeformableMesh::find_self(FeaturePair kind,
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
                                  const ResultChunks<Pair>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr || !state_->moved || other.state_ == nullptr || !other.state_->moved ||
       !(options_.origin == other.options_.origin)) {
     return Status::invalid_argument;
@@ -374,11 +379,13 @@ bool DeformableMesh::is_moved() const noexcept {
 }
 
 double DeformableMesh::reach() const noexcept {
+  const DefaultEnvironment environment;
   return state_->distance;
 }
 
 void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
                                 std::array<Vec3d, 3>& end) const noexcept {
+  const DefaultEnvironment environment;
   const std::uint32_t* const corner = state_->corners_of(face);
   for (std::size_t i = 0; i < 3; ++i) {
     start[i] = state_->start[corner[i]];
@@ -388,6 +395,7 @@ void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
 
 Status DeformableMesh::find_faces(const Aabb& box,
                                   const ResultChunks<Pair>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
   FeatureRows asking(options_.memory);
   if (!asking.make(1)) return Status::out_of_memory;
@@ -445,6 +453,7 @@ void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, c
 Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
                                     const FeatureImpactOptions& options,
                                     const ResultChunks<MeshImpact>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
       !(options.min_separation <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
@@ -476,6 +485,7 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
 
 Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
                                  const ResultChunks<MeshProximity>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
       !(thickness <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {

@@ -4,6 +4,7 @@
 #include <winnow/pipeline/deformable_mesh.h>
 
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/motion/face_impact.h"
 #include "pipeline/motion/passage.h"
 #include "pipeline/motion/result_chunk.h"
@@ -55,6 +56,7 @@ constexpr std::size_t kFacesPerStretch = 16;
 Status DeformableMesh::find_shape_impacts(
     const MeshObstacle& obstacle, const ImpactOptions& options,
     const ResultChunks<MeshShapeImpact>& chunks) const noexcept {
+  const DefaultEnvironment environment;
   const PartTraversal parts(obstacle.shapes, options.composites);
   if (!is_moved() || !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * reach())) {
     return Status::invalid_argument;

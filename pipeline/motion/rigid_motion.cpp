@@ -1,5 +1,6 @@
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/rigid_motion.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/motion/turn.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ double angle_of(double s, double c) noexcept {
 }  // namespace
 
 RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
+  const DefaultEnvironment environment;
   RigidMotion motion = standing(start);
   for (int i = 0; i < 3; ++i) motion.travel[i] = end.position[i] - start.position[i];
   if (!start.is_valid() || !end.is_valid()) {
@@ -46,6 +48,7 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
 
 RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)[3],
                                        const double (&angular)[3], double duration) noexcept {
+  const DefaultEnvironment environment;
   RigidMotion motion = standing(start);
   for (int i = 0; i < 3; ++i) {
     motion.travel[i] = linear[i] * duration;
@@ -55,6 +58,7 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 }
 
 bool RigidMotion::is_valid() const noexcept {
+  const DefaultEnvironment environment;
   // Of finite numbers it stays 0, of others it is no number.
   double sum = 0.0;
   double square = 0.0;
@@ -67,6 +71,7 @@ bool RigidMotion::is_valid() const noexcept {
 }
 
 Pose RigidMotion::at(double time) const noexcept {
+  const DefaultEnvironment environment;
   Pose pose = start;
   for (int i = 0; i < 3; ++i) pose.position[i] += time * travel[i];
   const double angle = impact::length_of(turn);

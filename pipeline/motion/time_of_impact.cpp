@@ -1,5 +1,6 @@
 #include <winnow/pipeline/time_of_impact.h>
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/impact_batch.h"
 
@@ -126,6 +127,7 @@ void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& 
 Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                       std::span<const BodyPair> pairs, const ImpactOptions& options,
                       ImpactResult& result) {
+  const DefaultEnvironment environment;
   const auto refuse = [&result](Status status) {
     static_cast<void>(result.resize(0));
     return status;

@@ -3,6 +3,7 @@
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/narrow/question.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
@@ -558,6 +559,7 @@ Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
 Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
                             NarrowResult& result) {
+  const DefaultEnvironment environment;
   const StageScope stage(WorkStage::narrow_phase);
   statistics_ = {};
   bad_body_ = ~0U;

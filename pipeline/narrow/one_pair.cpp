@@ -1,6 +1,7 @@
 // One pair of shapes: lanes of its kinds answer it where they can certify it, else the solver,
 // which takes many times as long.
 
+#include "core/threads/float_environment.h"
 #include "pipeline/narrow/question.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
@@ -116,6 +117,7 @@ Status collide(const ShapePool& shapes, ShapeId a, const Pose& pose_a, ShapeId b
 
 Status collide(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                const Pose& pose_b, const NarrowOptions& options, PairAnswer& answer) noexcept {
+  const DefaultEnvironment environment;
   if (options.margins.size() > 1) return Status::size_mismatch;
   if (!can_be_asked(options)) return Status::invalid_argument;
   if (!holds(tables, a) || !holds(tables, b)) return Status::invalid_key;

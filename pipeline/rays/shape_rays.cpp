@@ -1,5 +1,6 @@
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/shape_rays.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/rays/shape_entries.h"
 
 #include <Eigen/Geometry>
@@ -150,6 +151,7 @@ bool is_valid(const ShapeRay& ray) noexcept {
 
 Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
                 ShapeHit& hit) noexcept {
+  const DefaultEnvironment environment;
   if (shape.kind_index() >= kShapeKinds || shape.index() >= tables.count[shape.kind_index()]) {
     return Status::invalid_key;
   }

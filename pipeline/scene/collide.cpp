@@ -4,6 +4,7 @@
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/narrow/answer_slots.h"
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
@@ -14,6 +15,7 @@
 
 namespace winnow {
 Status Scene::collide(ContactLevel level, Contacts& contacts) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr || contacts.state_ == nullptr) {
     contacts.clear();
     return logged(Status::out_of_memory, "Scene::collide");

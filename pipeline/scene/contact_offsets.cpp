@@ -4,6 +4,7 @@
 
 #include "core/hooks/log.h"
 #include "core/sort/stretches.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
 
@@ -41,6 +42,7 @@ bool are_good(const ContactOffsets& offsets) noexcept {
 }
 
 Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_offsets");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_offsets");

@@ -7,6 +7,7 @@
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
 
@@ -389,6 +390,7 @@ Status Scene::save_contacts(const Contacts& contacts, Column<std::byte>& out) co
 }
 
 Status Scene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) const {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");
   ByteReader in = open_snapshot(saved, kContactsMagic, kContactsVersion);
   if (in.get<std::uint32_t>() != kShapeKinds) in.fail();

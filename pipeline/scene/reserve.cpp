@@ -3,6 +3,7 @@
 // are going to be.
 
 #include "core/memory/columns.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/contact_frame.h"
@@ -48,6 +49,7 @@ template <typename... T>
 }  // namespace
 
 Status Scene::reserve(const SceneRoom& room, Pages pages) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   if (!state_->options_are_good) return Status::invalid_argument;
   const Status good = check(room);
@@ -55,6 +57,7 @@ Status Scene::reserve(const SceneRoom& room, Pages pages) {
 }
 
 Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages) const {
+  const DefaultEnvironment environment;
   if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
   if (const Status good = check(room); good != Status::ok) return good;
   return out.state_->reserve(room, state_->options, pages) ? Status::ok : Status::out_of_memory;

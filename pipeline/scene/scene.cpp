@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -127,6 +128,7 @@ Status Scene::add(const BodyDefinition& body, Key& key) {
 }
 
 Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::add");
   SceneState& s = *state_;
   if (!s.options_are_good) return logged(Status::invalid_argument, "Scene::add");
@@ -164,6 +166,7 @@ Status Scene::remove(Key key) {
 }
 
 Status Scene::remove(std::span<const Key> keys) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::remove");
   SceneState& s = *state_;
   if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::remove");
@@ -193,6 +196,7 @@ void Scene::clear() noexcept {
 }
 
 Status Scene::move(Key key, const Pose& pose) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
   if (!state_->keys.is_valid(key)) return logged(Status::invalid_key, "Scene::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Scene::move");
@@ -201,6 +205,7 @@ Status Scene::move(Key key, const Pose& pose) {
 }
 
 Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
   SceneState& s = *state_;
   if (keys.size() != poses.count) return logged(Status::size_mismatch, "Scene::move");
@@ -223,6 +228,7 @@ Status Scene::set_motion(Key key, Motion motion) {
 }
 
 Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_motion");
   SceneState& s = *state_;
   if (!is_motion(motion)) return logged(Status::invalid_argument, "Scene::set_motion");
@@ -231,6 +237,7 @@ Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_shape");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_shape");
@@ -243,6 +250,7 @@ Status Scene::set_shape(Key key, ShapeId shape) {
 }
 
 Status Scene::set_filter(Key key, const ObjectFilter& filter) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_filter");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_filter");
@@ -283,6 +291,7 @@ Key Scene::key_of(ObjectId id) const noexcept {
 }
 
 Status Scene::refresh() {
+  const DefaultEnvironment environment;
   return logged(state_ != nullptr ? state_->refresh() : Status::out_of_memory, "Scene::refresh");
 }
 
@@ -298,6 +307,7 @@ Vec3d Scene::origin() const noexcept {
 }
 
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
     if (!set.partition.has_value()) continue;

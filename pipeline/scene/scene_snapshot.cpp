@@ -7,6 +7,7 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -348,6 +349,7 @@ Status Scene::save(Column<std::byte>& out) const {
 }
 
 Status Scene::load(std::span<const std::byte> saved) {
+  const DefaultEnvironment environment;
   return logged(state_ == nullptr ? Status::out_of_memory : load_scene(*state_, saved, nullptr),
                 "Scene::load");
 }

@@ -2,6 +2,7 @@
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/sweep_state.h"
 
 namespace winnow {
@@ -17,11 +18,13 @@ SceneSweep::~SceneSweep() {
 
 Status SceneSweep::sweep(std::span<const Key> keys, const PoseView& ends,
                          const SweepOptions& options) {
+  const DefaultEnvironment environment;
   return run(keys, options, [&] { return state_->take(keys, ends); });
 }
 
 Status SceneSweep::sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
                          const SweepOptions& options) {
+  const DefaultEnvironment environment;
   return run(keys, options, [&] { return state_->take(keys, motions); });
 }
 

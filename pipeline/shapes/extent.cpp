@@ -2,6 +2,7 @@
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/shapes/hypotenuse.h"
 #include "pipeline/shapes/support_core.h"
 
@@ -305,6 +306,7 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
 }  // namespace mid
 
 Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
+  const DefaultEnvironment environment;
   // Balls need no turn.
   const mid::Mat turn = id.kind() == ShapeKind::sphere
                             ? mid::Mat(mid::Mat::Identity())

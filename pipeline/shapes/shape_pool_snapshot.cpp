@@ -3,6 +3,7 @@
 #include "core/hooks/log.h"
 #include "core/memory/saved_places.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/shapes/hull_builder.h"
 #include "pipeline/shapes/hull_bytes.h"
 
@@ -84,6 +85,7 @@ Status ShapePool::save(Column<std::byte>& out) const {
 
 // Each shape is added as any other, and so checked, with the places free that they had.
 Status ShapePool::load(std::span<const std::byte> saved) {
+  const DefaultEnvironment environment;
   ByteReader in = open_snapshot(saved, kShapesMagic, kShapesVersion);
   ShapePool fresh(memory_);
   Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;

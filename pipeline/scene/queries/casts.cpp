@@ -5,6 +5,7 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
 #include <winnow/core/rounding.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/queries/composite_sweep.h"
@@ -750,15 +751,18 @@ Status ask_cast(QueryState* state, const ShapeCast& cast, double tolerance, Ask&
 }  // namespace
 
 Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  const DefaultEnvironment environment;
   return ask_one(state_, ray, filter, hit, false);
 }
 
 Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  const DefaultEnvironment environment;
   return ask_one(state_, ray, filter, hit, true);
 }
 
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
+  const DefaultEnvironment environment;
   if (const Status status = check(state_, ray); status != Status::ok) return status;
   const Status status = ask_all_alone(*state_, ray, filter);
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
@@ -767,15 +771,18 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
+  const DefaultEnvironment environment;
   return ask_each(state_, rays, filter, hits, false);
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
+  const DefaultEnvironment environment;
   return ask_each(state_, rays, filter, hits, true);
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+  const DefaultEnvironment environment;
   if (const Status status = check(state_, rays); status != Status::ok) return status;
   const Status status = ask_all(*state_, rays, filter);
   if (status != Status::ok) return status;
@@ -786,6 +793,7 @@ Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const F
 
 Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
                              double tolerance) {
+  const DefaultEnvironment environment;
   return ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
     return CastQuestion(*state_, swept, filter).closest(hit);
   });
@@ -793,6 +801,7 @@ Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter&
 
 Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
+  const DefaultEnvironment environment;
   const Status status = ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
     state_->hits.clear();
     return CastQuestion(*state_, swept, filter).all();

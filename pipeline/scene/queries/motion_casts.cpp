@@ -3,6 +3,7 @@
 // shapes.
 
 #include <winnow/core/aabb.h>
+#include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/passage.h"
 #include "pipeline/scene/queries/queries.h"
@@ -145,6 +146,7 @@ Status check(const QueryState* state, const MotionCast& cast, double tolerance) 
 
 Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
                              double tolerance) {
+  const DefaultEnvironment environment;
   const Status status = check(state_, cast, tolerance);
   if (status != Status::ok) return status;
   return MotionQuestion(*state_, cast, filter, tolerance).closest(hit);
@@ -152,6 +154,7 @@ Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter
 
 Status SceneQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
+  const DefaultEnvironment environment;
   Status status = check(state_, cast, tolerance);
   if (status == Status::ok) status = MotionQuestion(*state_, cast, filter, tolerance).all();
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};

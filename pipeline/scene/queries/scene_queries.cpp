@@ -2,6 +2,7 @@
 
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/two_shapes.h"
 #include "pipeline/shapes/frame.h"
@@ -164,6 +165,7 @@ Footprint SceneQueries::footprint() const noexcept {
 
 Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
                              const Filter& filter) {
+  const DefaultEnvironment environment;
   if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
   QueryState& state = *state_;
   if (!state.parts.contains(shape)) return Status::invalid_key;
@@ -196,6 +198,7 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
 
 Status SceneQueries::nearest(const double point[3], std::size_t count, double radius,
                              std::span<const SceneDistance>& bodies, const Filter& filter) {
+  const DefaultEnvironment environment;
   if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
   const Status status = NearestQuestion(*state_, point, filter).ask(count, radius);

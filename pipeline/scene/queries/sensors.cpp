@@ -4,6 +4,7 @@
 #include "core/hooks/log.h"
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -178,6 +179,7 @@ Sensors::~Sensors() {
 }
 
 Status Sensors::add(const SensorDefinition& sensor, Key& key) {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::add");
   SensorsState& s = *state_;
   if (const Status good = s.check(sensor); good != Status::ok) return logged(good, "Sensors::add");
@@ -199,6 +201,7 @@ Status Sensors::remove(Key key) {
 }
 
 Status Sensors::move(Key key, const Pose& pose) {
+  const DefaultEnvironment environment;
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Sensors::move");
   state_->sensors[key.id].pose = pose;
@@ -206,6 +209,7 @@ Status Sensors::move(Key key, const Pose& pose) {
 }
 
 Status Sensors::set(Key key, const SensorDefinition& sensor) {
+  const DefaultEnvironment environment;
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::set");
   if (const Status good = state_->check(sensor); good != Status::ok) {
     return logged(good, "Sensors::set");
@@ -221,6 +225,7 @@ Status Sensors::sensor(Key key, SensorDefinition& sensor) const noexcept {
 }
 
 Status Sensors::sense() {
+  const DefaultEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::sense");
   SensorsState& s = *state_;
   s.sensed.swap(s.before);

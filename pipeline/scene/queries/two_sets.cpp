@@ -1,5 +1,6 @@
 // SceneQueries: two bodies, or two sets of bodies: how far they are apart, and which overlap.
 
+#include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/box_gaps.kernel.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/two_shapes.h"
@@ -168,6 +169,7 @@ class ClosestBodies {
 }  // namespace
 
 Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit) {
+  const DefaultEnvironment environment;
   if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
   const KeyTable& keys = state_->scene.keys;
   if (!keys.is_valid(a) || !keys.is_valid(b)) return Status::invalid_key;
@@ -186,6 +188,7 @@ Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit)
 
 Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
                                     SetDistance& answer, double limit) {
+  const DefaultEnvironment environment;
   if (const Status status = check_sets(state_, a, b); status != Status::ok) return status;
   if (std::isnan(limit)) return Status::invalid_argument;
   SetPairs pairs(*state_, a, b);
@@ -196,6 +199,7 @@ Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key>
 
 Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
                               std::span<const KeyPair>& pairs, std::size_t most) {
+  const DefaultEnvironment environment;
   if (const Status status = check_sets(state_, a, b); status != Status::ok) return status;
   Column<KeyPair>& found = state_->overlapping;
   found.clear();
