@@ -5,18 +5,15 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 #endif
-#if defined(__SSE__) && !defined(__wasm__)
-#include <xmmintrin.h>
-#endif
 
 #include <array>
 #include <atomic>
-#include <cfenv>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "tests/support/config.h"
+#include "tests/support/float_modes.h"
 #include "tests/support/platform.h"
 
 #if WINNOW_TEST_THREADS
@@ -106,33 +103,7 @@ TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
 #endif
 
 #ifdef FE_UPWARD
-/// The caller's floating-point environment, restored at the end of a scope.
-class EnvironmentScope {
- public:
-  EnvironmentScope() { std::fegetenv(&before_); }
-  ~EnvironmentScope() {
-    std::fesetenv(&before_);
-#if defined(__SSE__) && !defined(__wasm__)
-    _mm_setcsr(register_before_);  // not all systems' environments hold all of it
-#endif
-  }
-  EnvironmentScope(const EnvironmentScope&) = delete;
-  EnvironmentScope& operator=(const EnvironmentScope&) = delete;
-
-  /// Rounds upward and, where this knows how to ask for that, flushes denormal numbers to zero.
-  static void change() {
-    std::fesetround(FE_UPWARD);
-#if defined(__SSE__) && !defined(__wasm__)
-    _mm_setcsr(_mm_getcsr() | 0x8040U);
-#endif
-  }
-
- private:
-  std::fenv_t before_{};
-#if defined(__SSE__) && !defined(__wasm__)
-  unsigned register_before_ = _mm_getcsr();
-#endif
-};
+constexpr FloatMode kOtherMode{FE_UPWARD, true, true};
 
 /// What a denormal number and a rounded sum are here.
 std::pair<float, float> arithmetic_here() {
@@ -158,8 +129,7 @@ TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
     EXPECT_TRUE(is_everywhere_as_here(execution));
     const auto before = arithmetic_here();
     {
-      const EnvironmentScope scope;
-      EnvironmentScope::change();
+      const FloatModeScope scope(kOtherMode);
       EXPECT_TRUE(is_everywhere_as_here(execution));
       EXPECT_FALSE(arithmetic_here() == before);
     }
@@ -178,8 +148,7 @@ TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
 TEST(Execution, leaves_a_thread_of_the_host_in_the_environment_that_it_had) {
   const auto backwards = jobs_of("reversed", 2);
   const auto in_another = [](void* context, std::size_t count, JobSystem::Task task, void* tasks) {
-    const EnvironmentScope scope;
-    EnvironmentScope::change();
+    const FloatModeScope scope(kOtherMode);
     const auto before = arithmetic_here();
     static_cast<const JobSystem*>(context)->parallel_for(nullptr, count, task, tasks);
     EXPECT_TRUE(arithmetic_here() == before);

@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 #include <winnow/core/rounding.h>
 
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "tests/support/exact.h"
+#include "tests/support/float_modes.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -114,6 +118,84 @@ TEST(Rounding, to_finite_floats_ends_at_the_largest) {
     EXPECT_EQ(finite_float(-beyond), -FLT_MAX);
   }
   EXPECT_TRUE(std::isnan(finite_float(std::nan(""))));
+}
+
+/// Numbers of any size, among them denormal floats and doubles.
+std::vector<double> some_numbers(std::size_t count, Random& random) {
+  std::vector<double> numbers{
+      0.0, -0.0, DBL_MIN,  -DBL_MIN, DBL_TRUE_MIN, -DBL_TRUE_MIN, FLT_MIN, -FLT_MIN, kDenormal,
+      1.0, -1.0, 0x1p-959, 0x1p-960, -0x1p-960,    1e-310,        -1e-310, 1e300,    1.5 * DBL_MIN};
+  while (numbers.size() < count) {
+    const double size =
+        random.chance(0.5) ? random.log_uniform(1e-50, 1e-30) : random.log_uniform(1e-320, 1e300);
+    numbers.push_back(random.chance(0.5) ? size : -size);
+  }
+  return numbers;
+}
+
+TEST(Rounding, is_the_same_in_every_mode_of_a_host) {
+  Random random(5);
+  const std::vector<double> numbers = some_numbers(scaled(4000), random);
+  std::vector<std::uint32_t> standard;
+  const auto append = [&](std::vector<std::uint32_t>& bits) {
+    for (const double number : numbers) {
+      const volatile double seen = number;
+      bits.push_back(std::bit_cast<std::uint32_t>(round_up(seen)));
+      bits.push_back(std::bit_cast<std::uint32_t>(round_down(seen)));
+    }
+  };
+  append(standard);
+  for (const FloatMode& mode : all_float_modes()) {
+    std::vector<std::uint32_t> bits;
+    {
+      const FloatModeScope scope(mode);
+      append(bits);
+    }
+    EXPECT_EQ(bits, standard) << to_string(mode);
+  }
+}
+
+TEST(Rounding, of_sums_is_outward_in_every_mode) {
+  Random random(6);
+  std::vector<double> numbers = some_numbers(scaled(400), random);
+  std::erase_if(numbers, [](double x) { return x != 0.0 && std::abs(x) < 0x1p-959; });
+  for (const FloatMode& mode : all_float_modes()) {
+    std::size_t inward = 0;
+    for (std::size_t i = 0; i < 20 * numbers.size(); ++i) {
+      const volatile double a = numbers[i % numbers.size()];
+      volatile double b = numbers[random.below(numbers.size())];
+      if (random.chance(0.1)) b = -a;
+      volatile double down = 0.0;
+      volatile double up = 0.0;
+      {
+        const FloatModeScope scope(mode);
+        down = add_down(a, b);
+        up = add_up(a, b);
+      }
+      inward += down == add_down(a, b) && up == add_up(a, b) ? 0U : 1U;
+      // In exact arithmetic, which has no denormal terms.
+      if (std::abs(a) < 1e-250 || std::abs(b) < 1e-250) continue;
+      const Exact sum = Exact(a) + Exact(b);
+      inward += Exact(down) <= sum && sum <= Exact(up) ? 0U : 1U;
+    }
+    EXPECT_EQ(inward, 0U) << to_string(mode);
+  }
+}
+
+TEST(Rounding, of_a_float_to_double_keeps_it) {
+  for (const FloatMode& mode : all_float_modes()) {
+    for (const float value : {0.0F, -0.0F, kDenormal, -kDenormal, FLT_MIN - kDenormal, FLT_MIN,
+                              1.0F, -FLT_MAX, kInfF, -kInfF}) {
+      const volatile float given = value;
+      volatile double seen = 0.0;
+      {
+        const FloatModeScope scope(mode);
+        seen = to_double(given);
+      }
+      EXPECT_EQ(seen, static_cast<double>(value)) << to_string(mode);
+      EXPECT_EQ(std::signbit(seen), std::signbit(value)) << to_string(mode);
+    }
+  }
 }
 
 TEST(Rounding, of_vectors_is_component_wise) {

@@ -15,7 +15,6 @@
 #include <winnow/winnow.h>
 
 #include <algorithm>
-#include <cfenv>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -26,10 +25,7 @@
 #include <vector>
 
 #include "tests/digests/digest.h"
-
-#if defined(__x86_64__)
-#include <xmmintrin.h>
-#endif
+#include "tests/support/float_modes.h"
 
 // There are no threads in WASI.
 #if !defined(__wasi__)
@@ -39,55 +35,18 @@
 namespace winnow::test {
 namespace {
 
-/// How a host may have set its processor.
-struct Mode {
-  const char* name;
-  int rounding;
-  bool flushes = false;  ///< denormal numbers to zero
-};
-constexpr Mode kModes[] = {{"nearest", FE_TONEAREST},
+constexpr FloatMode kModes[] = {{FE_TONEAREST},
 #ifdef FE_DOWNWARD
-                           {"down", FE_DOWNWARD},
-                           {"up", FE_UPWARD},
-                           {"zero", FE_TOWARDZERO},
+                                {FE_DOWNWARD},
+                                {FE_UPWARD},
+                                {FE_TOWARDZERO},
 #endif
-                           {"flushed", FE_TONEAREST, true}};
+                                {FE_TONEAREST, true, true}};
 
-/// Sets a mode for one scope.
-class ModeScope {
- public:
-  explicit ModeScope(const Mode& mode) {
-    std::fegetenv(&before_);
-    std::fesetround(mode.rounding);
-#if defined(__x86_64__)
-    // The bits FZ and DAZ.
-    if (mode.flushes) _mm_setcsr(_mm_getcsr() | 0x8040U);
-#elif defined(__aarch64__)
-    if (mode.flushes) set_flag_of_flushing();
-#endif
-  }
-  ~ModeScope() {
-    std::fesetenv(&before_);
-#if defined(__x86_64__)
-    _mm_setcsr(register_before_);  // not all systems' environments hold all of it
-#endif
-  }
-  ModeScope(const ModeScope&) = delete;
-  ModeScope& operator=(const ModeScope&) = delete;
-
- private:
-#if defined(__aarch64__)
-  static void set_flag_of_flushing() {
-    std::uint64_t control = 0;
-    asm volatile("mrs %0, fpcr" : "=r"(control));
-    asm volatile("msr fpcr, %0" : : "r"(control | std::uint64_t{1} << 24U));  // the bit FZ
-  }
-#endif
-  std::fenv_t before_{};
-#if defined(__x86_64__)
-  unsigned register_before_ = _mm_getcsr();
-#endif
-};
+/// As the file of digests has it.
+const char* name_of(const FloatMode& mode) {
+  return mode.results_flushed ? "flushed" : direction_of(mode);
+}
 
 /// Who does the work: who asks alone, an arena of so many threads, or a pool.
 struct Workers {
@@ -111,10 +70,10 @@ JobSystem pool_of([[maybe_unused]] int threads) {
 #endif
 }
 
-std::uint64_t digest_of(const Mode& mode, const Work& work, const Workers& workers) {
+std::uint64_t digest_of(const FloatMode& mode, const Work& work, const Workers& workers) {
   Digest digest;
   const auto run = [&](const Execution& execution) {
-    const ModeScope scope(mode);
+    const FloatModeScope scope(mode);
     work.run(execution, digest);
   };
   if (workers.threads == 1) {
@@ -130,9 +89,9 @@ std::uint64_t digest_of(const Mode& mode, const Work& work, const Workers& worke
 }
 
 /// `once`: computed but once.
-std::string line_of(const Mode& mode, const Work& work, bool once) {
+std::string line_of(const FloatMode& mode, const Work& work, bool once) {
   std::ostringstream line;
-  line << mode.name << ' ' << work.name << ' ';
+  line << name_of(mode) << ' ' << work.name << ' ';
   if (once) {
     line << std::hex << digest_of(mode, work, {1});
     return line.str();
@@ -177,9 +136,9 @@ int main(int argc, char** argv) {
   const auto wanted = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
   std::size_t asked = 0;
   std::size_t other = 0;
-  for (const Mode& mode : kModes) {
+  for (const FloatMode& mode : kModes) {
     for (const Work& work : all_work()) {
-      const auto known = wanted.find(std::string(mode.name) + ' ' + work.name);
+      const auto known = wanted.find(std::string(name_of(mode)) + ' ' + work.name);
       if (checks && known == wanted.end()) continue;
       const std::string line = line_of(mode, work, once);
       ++asked;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/config.h"
+#include "tests/support/float_modes.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
@@ -55,6 +56,38 @@ TEST_P(Hosts, may_call_from_tasks_of_their_own) {
     for (const Frames& world : worlds) EXPECT_TRUE(world == serial) << host;
   }
 }
+
+/// What a rounded sum is here.
+float sum_here() {
+  const volatile float one = 1.0F;
+  const volatile float less = 1e-9F;
+  return one + less;
+}
+
+#ifdef FE_UPWARD
+// What else a host does while it waits for tasks is not winnow's; nor is what it does afterwards.
+TEST_P(Hosts, run_in_the_mode_that_they_set) {
+  struct Host {
+    JobSystem jobs = jobs_of("reversed", 2);
+    std::vector<float> sums;
+  } host;
+  const auto run = [](void* context, std::size_t count, JobSystem::Task task, void* tasks) {
+    auto& self = *static_cast<Host*>(context);
+    self.sums.push_back(sum_here());
+    self.jobs.parallel_for(self.jobs.context, count, task, tasks);
+    self.sums.push_back(sum_here());
+  };
+  const Execution execution = Execution::on(JobSystem{run, &host, 2});
+  const FloatModeScope scope({FE_UPWARD, true, true});
+  const float expected = sum_here();
+  ASSERT_GT(expected, 1.0F);
+  static_cast<void>(play(GetParam(), execution));
+  // Every structure but one of few objects, which has no work to share.
+  EXPECT_TRUE(!host.sums.empty() || GetParam() == "NSquared");
+  for (const float sum : host.sums) EXPECT_EQ(sum, expected);
+  EXPECT_EQ(sum_here(), expected);
+}
+#endif
 
 // Readers that all find the partition stale wait for the one that brings it up to date.
 TEST_P(Hosts, may_ask_from_many_tasks_at_once) {

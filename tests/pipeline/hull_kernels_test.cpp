@@ -6,9 +6,6 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/solver/solver.h"
 
-#if defined(__SSE__) && !defined(__wasm__)
-#include <xmmintrin.h>
-#endif
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,6 +18,7 @@
 #include "tests/pipeline/hull_brute_force.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/config.h"
+#include "tests/support/float_modes.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -399,19 +397,6 @@ TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) 
   }
 }
 
-#if defined(__SSE__) && !defined(__wasm__)
-/// A host that takes denormal numbers for zero and makes them zero, for one scope.
-class FlushScope {
- public:
-  FlushScope() { _mm_setcsr(before_ | 0x8040U); }
-  ~FlushScope() { _mm_setcsr(before_); }
-  FlushScope(const FlushScope&) = delete;
-  FlushScope& operator=(const FlushScope&) = delete;
-
- private:
-  unsigned before_ = _mm_getcsr();
-};
-
 // Of vertices at height zero, as those of a triangle in its own plane are, numbers are denormal.
 TEST_P(CoresAndHulls, answers_are_the_same_where_denormal_numbers_are_flushed) {
   const auto [a, b, style] = GetParam();
@@ -422,7 +407,7 @@ TEST_P(CoresAndHulls, answers_are_the_same_where_denormal_numbers_are_flushed) {
     const Answers expected(scene, level, true, a, b);
     for (const Isa isa : available_isas()) {
       const IsaScope scope(isa);
-      const FlushScope flush;
+      const FloatModeScope flushed({FE_TONEAREST, true, true});
       const Answers answers(scene, level, true, a, b);
       EXPECT_EQ(answers.is_certified, expected.is_certified) << to_string(isa);
       for (std::uint32_t i = 0; i < answers.count; ++i) {
@@ -435,7 +420,6 @@ TEST_P(CoresAndHulls, answers_are_the_same_where_denormal_numbers_are_flushed) {
     }
   }
 }
-#endif
 
 std::vector<KindsAndStyle> all_cores_and_hulls() {
   std::vector<KindsAndStyle> all;

@@ -174,17 +174,7 @@ Region some_region(std::span<const Aabb> boxes, std::size_t kind, Random& random
 }
 
 void add(std::deque<QuestionSet>& sets, const Scene& scene) {
-  QuestionSet& set = sets.emplace_back();
-  set.name = scene.name;
-  set.boxes = scene.boxes;
-  set.objects = numbered(scene.boxes);
-  Random random(sets.size());
-  set.casts = some_casts(set.boxes, scaled(32), random);
-  set.regions = some_regions(set.boxes, scaled(48), random, set.planes);
-  for (const Cast& cast : set.casts) set.cast_truths.push_back(candidates(cast, set.objects));
-  for (const Region& region : set.regions) {
-    set.region_truths.push_back(candidates(region, set.objects));
-  }
+  add_questions(sets, scene, scaled(32), scaled(48));
 }
 
 std::ostream& operator<<(std::ostream& out, const Aabb& box) {
@@ -225,6 +215,21 @@ std::vector<Cast> some_casts(std::span<const Aabb> boxes, std::size_t count, Ran
     }
   }
   return casts;
+}
+
+void add_questions(std::deque<QuestionSet>& sets, const Scene& scene, std::size_t casts,
+                   std::size_t regions) {
+  QuestionSet& set = sets.emplace_back();
+  set.name = scene.name;
+  set.boxes = scene.boxes;
+  set.objects = numbered(scene.boxes);
+  Random random(sets.size());
+  set.casts = some_casts(set.boxes, casts, random);
+  set.regions = some_regions(set.boxes, regions, random, set.planes);
+  for (const Cast& cast : set.casts) set.cast_truths.push_back(candidates(cast, set.objects));
+  for (const Region& region : set.regions) {
+    set.region_truths.push_back(candidates(region, set.objects));
+  }
 }
 
 const std::deque<QuestionSet>& question_sets() {

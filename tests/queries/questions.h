@@ -31,6 +31,10 @@ struct QuestionSet {
   std::vector<RegionCandidates> region_truths;
 };
 
+/// So many casts and regions about a scene, with their right answers.
+void add_questions(std::deque<QuestionSet>& sets, const Scene& scene, std::size_t casts,
+                   std::size_t regions);
+
 /// Random, degenerate, infinite and extreme scenes, and those of every size about a block's. Made
 /// once per process.
 [[nodiscard]] const std::deque<QuestionSet>& question_sets();
