@@ -82,7 +82,8 @@ TEST_P(Hosts, run_in_the_mode_that_they_set) {
   const float expected = sum_here();
   ASSERT_GT(expected, 1.0F);
   static_cast<void>(play(GetParam(), execution));
-  EXPECT_FALSE(host.sums.empty());
+  // Every structure but one of few objects, which has no work to share.
+  EXPECT_TRUE(!host.sums.empty() || GetParam() == "NSquared");
   for (const float sum : host.sums) EXPECT_EQ(sum, expected);
   EXPECT_EQ(sum_here(), expected);
 }
