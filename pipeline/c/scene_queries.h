@@ -95,6 +95,14 @@ WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(winnow_scene_querie
 WINNOW_C_API winnow_status winnow_scene_queries_all_cast(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count);
+/// The same of a shape that does not meet what it touches at the start, unless it gets deeper into
+/// it: if it slides along it or leaves it, the hit is with what it runs into later.
+WINNOW_C_API winnow_status winnow_scene_queries_closest_cast_from_touch(
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    double tolerance, winnow_scene_hit* hit);
+WINNOW_C_API winnow_status winnow_scene_queries_all_cast_from_touch(
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    double tolerance, const winnow_scene_hit** hits, size_t* count);
 
 /// A body that a shape overlaps.
 typedef struct winnow_scene_overlap {

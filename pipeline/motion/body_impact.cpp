@@ -2,8 +2,8 @@
 // other shape passes. A box around it that sweeps through the frame for a while contains it
 // (Passage), and meets first what is met first, so that a time found bounds what is looked at
 // after it. Where the way bends so much that the box meets many parts, the time is halved, the
-// earlier half first. An impact is held against the contacts that the bodies have at the start,
-// which are looked for when the first one is found.
+// earlier half first. The contacts that the bodies have at the start are looked for once an impact
+// was found.
 
 #include "pipeline/motion/body_impact.h"
 
@@ -46,10 +46,7 @@ class BodyImpactSearch {
         request_(request),
         resting_(request.tolerance, 0.0, request.touch) {}
 
-  [[nodiscard]] BodyImpact run() {
-    meet(a_, b_, request_.within);
-    return found_;
-  }
+  [[nodiscard]] BodyImpact run();
 
  private:
   void meet(const MovingShape& a, const MovingShape& b, const Interval& within);
@@ -58,7 +55,7 @@ class BodyImpactSearch {
   [[nodiscard]] bool meets_many(const MovingShape& walked, const BoxSweep& way) const;
   void test(const MovingShape& a, const MovingShape& b, const Interval& within);
   [[nodiscard]] bool is_left_out(const ShapeTables& tables, const MovingPart& a,
-                                 const MovingPart& b, const Impact& impact);
+                                 const MovingPart& b, const BodyImpact& found, double from);
   void note_contacts();
 
   const PartTraversal& parts_;
@@ -80,23 +77,30 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const In
     resting_.note(pair.tables(), moving_a, moving_b);
     return;
   }
-  const BodyImpact found{
-      find_impact(pair.tables(), moving_a, moving_b, request_.tolerance, within), a.shape.part,
-      b.shape.part};
+  // A plane shows it for less than it takes to find an impact.
+  if (resting_.part(pair.tables(), moving_a, moving_b)) return;
+  const BodyImpact found{find_impact(pair.tables(), moving_a, moving_b, request_.tolerance, within),
+                         a.shape.part, b.shape.part};
   const std::uint32_t samples = found_.impact.samples + found.impact.samples;
   if (comes_before(found, found_) &&
-      !is_left_out(pair.tables(), moving_a, moving_b, found.impact)) {
+      !is_left_out(pair.tables(), moving_a, moving_b, found, within.first)) {
     found_ = found;
   }
   found_.impact.samples = samples;
 }
 
-/// True of an impact with what the bodies touch at the start.
+/// If touches are left out or slid from: true of an impact, of a search that began at `from`, with
+/// what the bodies touch at the start.
 bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& a,
-                                   const MovingPart& b, const Impact& impact) {
-  if (request_.touch == StartTouch::meets && touches_at_start(impact)) return false;
-  if (request_.touch == StartTouch::left_out && share_a_point(tables, a, b)) return true;
-  if (!has_noted_) note_contacts();
+                                   const MovingPart& b, const BodyImpact& found, double from) {
+  if (request_.touch == StartTouch::meets) return false;
+  if (request_.touch == StartTouch::left_out) {
+    if (touches_at_start(found.impact)) return true;
+    if (from > 0.0 && share_a_point(tables, a, b)) return true;
+  }
+  // Those that part were left out before, once contacts were noted.
+  if (has_noted_) return false;
+  note_contacts();
   return resting_.part(tables, a, b);
 }
 
@@ -104,6 +108,21 @@ void BodyImpactSearch::note_contacts() {
   has_noted_ = notes_ = true;
   meet(a_, b_, {0.0, 0.0});
   notes_ = false;
+}
+
+/// Bodies that share a point at the start are answered without their contacts.
+BodyImpact BodyImpactSearch::run() {
+  meet(a_, b_, request_.within);
+  const bool may_slide =
+      request_.touch == StartTouch::meets && found_.impact.hit && !touches_at_start(found_.impact);
+  if (!may_slide) return found_;
+  note_contacts();
+  if (resting_.is_empty()) return found_;
+  const std::uint32_t samples = found_.impact.samples;
+  found_ = {};
+  found_.impact.samples = samples;
+  meet(a_, b_, request_.within);
+  return found_;
 }
 
 /// Of two composite shapes the larger one is traversed first, by the way of the other, and that by

@@ -16,9 +16,9 @@ struct Impact {
   std::uint32_t samples = 0;
 };
 
-/// True of shapes that share a point at the start, as far as rounding lets tell.
+/// True of shapes that share a point at the start.
 [[nodiscard]] inline bool touches_at_start(const Impact& impact) noexcept {
-  return impact.hit && impact.time == 0.0 && impact.gap <= impact.error_bound;
+  return impact.hit && impact.time == 0.0 && impact.gap <= 0.0;
 }
 
 }  // namespace winnow::impact

@@ -28,6 +28,8 @@ class RestingContacts {
 
   /// Notes the contact of two convex parts, if they have one.
   void note(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
+  /// True if none was noted.
+  [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
   /// True if two parts slide or part along their own contact or along one that was noted.
   [[nodiscard]] bool part(const ShapeTables& tables, const MovingPart& a,
                           const MovingPart& b) const noexcept;

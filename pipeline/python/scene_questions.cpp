@@ -281,7 +281,8 @@ template <typename CastAt>
 
 [[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
                                      py::handle directions, const std::string& find,
-                                     py::handle max_ts, double tolerance, const Filter& filter) {
+                                     py::handle max_ts, double tolerance, bool touching,
+                                     const Filter& filter) {
   const PoseInput pose(poses);
   const ShapeInput shape(shape_array);
   Numbers direction(directions, "directions", {3}, true);
@@ -293,19 +294,20 @@ template <typename CastAt>
     return ShapeCast{shape[i],
                      pose[i],
                      {direction.at(i, 0), direction.at(i, 1), direction.at(i, 2)},
-                     max_t.at(i)};
+                     max_t.at(i),
+                     touching};
   });
 }
 
 [[nodiscard]] py::object cast_motions(SharedScene& s, py::handle shape_array, py::handle motions,
-                                      const std::string& find, double tolerance,
+                                      const std::string& find, double tolerance, bool touching,
                                       const Filter& filter) {
   const RigidMotionInput motion(motions);
   const ShapeInput shape(shape_array);
   shape.expect(motion.count());
   return cast_moving(s, motion.count(), find, "cast_motions", filter, tolerance,
                      [&](std::size_t i) {
-                       return MotionCast{shape[i], motion[i]};
+                       return MotionCast{shape[i], motion[i], touching};
                      });
 }
 
@@ -459,17 +461,19 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
       .def(
           "cast_shapes", filtered(&cast_shapes), arg("shapes"), arg("poses"), arg("directions"),
           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
-          arg("filter") = PythonFilter{},
+          arg("touching") = true, arg("filter") = PythonFilter{},
           "Where shapes (n,), or one, no half-spaces, at poses (n, 7) that move by t * directions, "
           "(n, 3) or (3,), without turning, first touch a body: never later than they do, and at "
-          "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'.")
+          "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'. `touching` false: a "
+          "shape does not meet what it touches at the start and slides along or leaves.")
       .def("cast_motions", filtered(&cast_motions), arg("shapes"), arg("motions"),
-           arg("find") = "closest", py::kw_only(), arg("tolerance") = 1e-6,
+           arg("find") = "closest", py::kw_only(), arg("tolerance") = 1e-6, arg("touching") = true,
            arg("filter") = PythonFilter{},
            "Where shapes (n,), or one, no half-spaces, that move and turn by motions (n, 13), as "
            "`motions_between` gives them, first meet a body; t is the time in [0, 1], never late. "
            "The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
-           "'all'. size_mismatch, invalid_key; invalid_pose for a motion that is not valid; "
+           "'all'. `touching` as in `cast_shapes`. size_mismatch, invalid_key; invalid_pose for a "
+           "motion that is not valid; "
            "unsupported for half-spaces; invalid_argument for a bad tolerance. A way that runs "
            "across the axes is asked about in up to eight pieces.")
       .def("overlap", filtered(&overlap), arg("shapes"), arg("poses"), py::kw_only(),

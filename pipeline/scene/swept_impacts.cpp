@@ -57,29 +57,36 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
   };
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
   std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
+  // At most one of a pair stands.
+  const auto motion = [&](std::size_t i, std::uint32_t body) -> const RigidMotion& {
+    if (mover_of[body] != kNoMover) return motions[mover_of[body]];
+    return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
+  };
+  const auto answer_alone = [&](std::size_t i) {
+    const auto [a, b] = bodies_of(asked[i].candidate);
+    const impact::ImpactRequest request{
+        options.tolerance, approach_of(a, b, 0.0).window(), 1.0,
+        options.touching ? impact::StartTouch::meets : impact::StartTouch::left_out};
+    answer(i, impact::find_impact_of_balls(parts, {bodies.shape[a], motion(i, a)},
+                                           {bodies.shape[b], motion(i, b)}, request));
+  };
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const auto [a, b] = bodies_of(asked[i].candidate);
-    const Approach approach = approach_of(a, b, 0.0);
     hits_of[i] = 0;
-    if (approach.begin() == kNever) continue;
-    // At most one of the two stands.
-    const auto motion = [&](std::uint32_t body) -> const RigidMotion& {
-      if (mover_of[body] != kNoMover) return motions[mover_of[body]];
-      return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
-    };
-    const RigidMotion& of_a = motion(a);
-    const RigidMotion& of_b = motion(b);
+    if (approach_of(a, b, 0.0).begin() == kNever) continue;
     if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
-      batch.add(i, bodies.shape[a], of_a, bodies.shape[b], of_b, asked[i].until);
+      batch.add(i, bodies.shape[a], motion(i, a), bodies.shape[b], motion(i, b), asked[i].until);
     } else {
-      const impact::ImpactRequest request{
-          options.tolerance, approach.window(), 1.0,
-          options.touching ? impact::StartTouch::meets : impact::StartTouch::left_out};
-      answer(i, impact::find_impact_of_balls(parts, {bodies.shape[a], of_a},
-                                             {bodies.shape[b], of_b}, request));
+      answer_alone(i);
     }
   }
-  batch.run([&](std::size_t i, const impact::Impact& impact, bool) { answer(i, {impact}); });
+  batch.run([&](std::size_t i, const impact::Impact& impact, bool) {
+    // Shapes nearly touch at the start, and perhaps slide.
+    const bool may_slide =
+        !options.touching && impact.hit && impact.time == 0.0 && impact.gap > 0.0;
+    if (may_slide) return answer_alone(i);
+    answer(i, {impact});
+  });
 }
 
 /// The first impact of every pair.

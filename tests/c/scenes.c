@@ -147,6 +147,13 @@ static void ask_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shap
   note_hit(t, "closest of casts", &hit);
   OK(winnow_scene_queries_all_cast(ask, &cast, NULL, WINNOW_CAST_TOLERANCE, &hits, &count));
   note_hits(t, "all of casts", hits, count);
+  const winnow_shape_cast leaving = {ball, {{2, 0, 0.6}, {1, 0, 0, 0}}, {0.3, 0.2, 1}, 20};
+  OK(winnow_scene_queries_closest_cast_from_touch(ask, &leaving, NULL, WINNOW_CAST_TOLERANCE,
+                                                  &hit));
+  note_hit(t, "closest of casts from a touch", &hit);
+  OK(winnow_scene_queries_all_cast_from_touch(ask, &leaving, NULL, WINNOW_CAST_TOLERANCE, &hits,
+                                              &count));
+  note_hits(t, "all of casts from a touch", hits, count);
   OK(winnow_scene_queries_overlap(ask, ball, &pose, NULL, &bodies, &count));
   note(t, "overlaps", count);
   for (size_t i = 0; i < count; ++i) {

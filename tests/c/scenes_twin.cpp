@@ -131,6 +131,11 @@ void ask_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<co
   note_hit(t, "closest of casts", hit);
   (void)ask.all(cast, hits);
   note_hits(t, "all of casts", hits);
+  const ShapeCast leaving{ball, Pose::at(2, 0, 0.6), {0.3, 0.2, 1}, 20, false};
+  (void)ask.closest(leaving, hit);
+  note_hit(t, "closest of casts from a touch", hit);
+  (void)ask.all(leaving, hits);
+  note_hits(t, "all of casts from a touch", hits);
   const Pose pose = Pose::at(2.0, 0.0, 0.6);
   (void)ask.overlap(ball, pose, bodies);
   note(t, "overlaps", bodies.size());

@@ -120,8 +120,8 @@ void TouchWorld::add_levels() {
   whole("compound of tiles", compound(tiles));
   const ShapeId two = floor_and_wall(1);
   whole("mesh of few", two);
-  whole("mesh of many", floor_and_wall(20));
-  const ShapeId one_sided = floor_and_wall(7);
+  whole("mesh of many", floor_and_wall(8));
+  const ShapeId one_sided = floor_and_wall(3);
   EXPECT_EQ(composites.set_one_sided(one_sided), Status::ok);
   whole("one-sided mesh", one_sided);
   whole("compound of a mesh", compound({{two, Pose{}}}));

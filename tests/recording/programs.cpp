@@ -323,7 +323,13 @@ void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filt
   std::copy_n(rays[3].direction, 3, cast.direction);
   EXPECT_EQ(ask.closest(cast, hit, filter), Status::ok);
   EXPECT_EQ(ask.all(cast, hits, filter, 1e-3), Status::ok);
-  const MotionCast turning{shape, RigidMotion::between(world.random_pose(), world.random_pose())};
+  cast.touching = false;
+  EXPECT_EQ(ask.closest(cast, hit, filter), Status::ok);
+  EXPECT_EQ(ask.all(cast, hits, filter, 1e-3), Status::ok);
+  MotionCast turning{shape, RigidMotion::between(world.random_pose(), world.random_pose())};
+  EXPECT_EQ(ask.closest(turning, hit, filter), Status::ok);
+  EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
+  turning.touching = false;
   EXPECT_EQ(ask.closest(turning, hit, filter), Status::ok);
   EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
 }

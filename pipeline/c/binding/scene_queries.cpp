@@ -37,6 +37,33 @@ template <typename Ask>
   return answer(status == Status::ok ? ask(batch) : status);
 }
 
+[[nodiscard]] ShapeCast cast_of(const winnow_shape_cast& given, bool touching) noexcept {
+  const double(&direction)[3] = given.direction;
+  return {{given.shape},
+          *twin(&given.pose),
+          {direction[0], direction[1], direction[2]},
+          given.max_t,
+          touching};
+}
+
+[[nodiscard]] winnow_status closest_cast(winnow_scene_queries* queries,
+                                         const winnow_shape_cast* cast, bool touching,
+                                         const winnow_filter* filter, double tolerance,
+                                         winnow_scene_hit* hit) noexcept {
+  if (!are_given(queries, cast, hit)) return WINNOW_INVALID_ARGUMENT;
+  return answer(
+      queries->value.closest(cast_of(*cast, touching), *twin(hit), filter_of(filter), tolerance));
+}
+
+[[nodiscard]] winnow_status all_cast(winnow_scene_queries* queries, const winnow_shape_cast* cast,
+                                     bool touching, const winnow_filter* filter, double tolerance,
+                                     const winnow_scene_hit** hits, std::size_t* count) noexcept {
+  if (!are_given(queries, cast, hits, count)) return WINNOW_INVALID_ARGUMENT;
+  return answer_list<SceneHit>(hits, count, [&](auto& found) {
+    return queries->value.all(cast_of(*cast, touching), found, filter_of(filter), tolerance);
+  });
+}
+
 }  // namespace
 }  // namespace winnow::c
 
@@ -122,18 +149,28 @@ winnow_status winnow_scene_queries_closest_cast(winnow_scene_queries* queries,
                                                 const winnow_shape_cast* cast,
                                                 const winnow_filter* filter, double tolerance,
                                                 winnow_scene_hit* hit) {
-  if (!are_given(queries, cast, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.closest(*twin(cast), *twin(hit), filter_of(filter), tolerance));
+  return closest_cast(queries, cast, true, filter, tolerance, hit);
+}
+
+winnow_status winnow_scene_queries_closest_cast_from_touch(winnow_scene_queries* queries,
+                                                           const winnow_shape_cast* cast,
+                                                           const winnow_filter* filter,
+                                                           double tolerance,
+                                                           winnow_scene_hit* hit) {
+  return closest_cast(queries, cast, false, filter, tolerance, hit);
 }
 
 winnow_status winnow_scene_queries_all_cast(winnow_scene_queries* queries,
                                             const winnow_shape_cast* cast,
                                             const winnow_filter* filter, double tolerance,
                                             const winnow_scene_hit** hits, size_t* count) {
-  if (!are_given(queries, cast, hits, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<winnow::SceneHit>(hits, count, [&](auto& found) {
-    return queries->value.all(*twin(cast), found, filter_of(filter), tolerance);
-  });
+  return all_cast(queries, cast, true, filter, tolerance, hits, count);
+}
+
+winnow_status winnow_scene_queries_all_cast_from_touch(
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    double tolerance, const winnow_scene_hit** hits, size_t* count) {
+  return all_cast(queries, cast, false, filter, tolerance, hits, count);
 }
 
 winnow_status winnow_scene_queries_overlap(winnow_scene_queries* queries, winnow_shape_id shape,

@@ -104,9 +104,6 @@ WINNOW_ARE_TWINS(winnow_ended_contact, EndedContact)
 WINNOW_TWIN_MEMBERS(winnow_ended_contact, EndedContact, data_a);
 
 WINNOW_TWINS(winnow_shape_ray, ShapeRay)
-WINNOW_TWINS(winnow_shape_cast, ShapeCast)
-WINNOW_TWIN_MEMBERS(winnow_shape_cast, ShapeCast, direction);
-
 WINNOW_TWINS(winnow_scene_hit, SceneHit)
 WINNOW_TWIN_MEMBERS(winnow_scene_hit, SceneHit, part);
 WINNOW_TWIN_MEMBERS(winnow_scene_hit, SceneHit, t);

@@ -870,6 +870,7 @@ class Scene:
         *,
         max_t: ArrayLike = ...,
         tolerance: float = ...,
+        touching: bool = ...,
         filter: Filter = ...,
     ) -> SceneHits: ...
     @overload
@@ -882,6 +883,7 @@ class Scene:
         *,
         max_t: ArrayLike = ...,
         tolerance: float = ...,
+        touching: bool = ...,
         filter: Filter = ...,
     ) -> SceneHitLists: ...
     @overload
@@ -892,6 +894,7 @@ class Scene:
         find: Literal["closest"] = ...,
         *,
         tolerance: float = ...,
+        touching: bool = ...,
         filter: Filter = ...,
     ) -> SceneHits: ...
     @overload
@@ -902,6 +905,7 @@ class Scene:
         find: Literal["all"],
         *,
         tolerance: float = ...,
+        touching: bool = ...,
         filter: Filter = ...,
     ) -> SceneHitLists: ...
     def overlap(

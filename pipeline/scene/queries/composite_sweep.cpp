@@ -94,10 +94,13 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     PartTables tables(parts_.shapes());
     CastPair pair = approach.pair(tables, own);
     pair.max_t = most = std::min(most, limit);
-    CastTouch touch;
     if (approach.any_is_behind(own)) return most;
+    if (known.resting != nullptr &&
+        CastMotions(pair, max_t()).part(tables.tables(), *known.resting)) {
+      return most;
+    }
+    CastTouch touch;
     if (!cast_shape(tables.tables(), pair, tolerance(), touch)) return most;
-    if (CastMotions(pair, max_t()).part(tables.tables(), known.resting)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;
     meeting = meeting_of(touch);

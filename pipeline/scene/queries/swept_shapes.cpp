@@ -116,8 +116,8 @@ void CastMotions::note(const ShapeTables& tables, impact::RestingContacts& resti
 }
 
 bool CastMotions::part(const ShapeTables& tables,
-                       const impact::RestingContacts* resting) const noexcept {
-  return resting != nullptr && is_finite_ && resting->part(tables, moving_, standing_);
+                       const impact::RestingContacts& resting) const noexcept {
+  return is_finite_ && resting.part(tables, moving_, standing_);
 }
 
 void SweptShape::note_contact(const double[3], const ConvexPart&,
@@ -305,9 +305,12 @@ bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limi
   asked.free_until = free_until;
   if (before != nullptr && !before->overlaps_at_start)
     std::copy_n(before->normal, 3, asked.parting);
+  if (known.resting != nullptr &&
+      CastMotions(asked, max_t()).part(tables.tables(), *known.resting)) {
+    return false;
+  }
   CastTouch touch;
   if (!cast_shape(tables.tables(), asked, tolerance(), touch)) return false;
-  if (CastMotions(asked, max_t()).part(tables.tables(), known.resting)) return false;
   meeting = meeting_of(touch);
   set_height(from, meeting);
   return true;

@@ -37,7 +37,7 @@ class CastMotions {
   void note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
   /// True if there are contacts at the start along which the two slide, or part.
   [[nodiscard]] bool part(const ShapeTables& tables,
-                          const impact::RestingContacts* resting) const noexcept;
+                          const impact::RestingContacts& resting) const noexcept;
 
  private:
   impact::MovingPart moving_;
