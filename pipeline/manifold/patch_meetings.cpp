@@ -281,8 +281,6 @@ namespace {
 
 // Edges of a smaller sine are parallel: they meet along a line, others in a point.
 constexpr double kParallelSine = 1e-3;
-// A segment whose ends are closer to a side than this share of the sizes lies along it.
-constexpr double kBesideShare = 1.5e-4;
 
 struct Corner {
   double x;
@@ -394,7 +392,7 @@ void move_inside(const Outline& polygon, std::uint32_t side, PatchMeeting& m) {
 // The part of a segment inside of a polygon (Cyrus and Beck, 1978). One that lies along a side is
 // inside of it, whichever way it leans by a little: what is outside is moved to the side.
 void segment_meetings(const Outline& polygon, const Outline& segment, int r, PatchMeetings& out) {
-  const double near = kBesideShare * std::min(polygon.size, segment.size);
+  const double near = kAlongSide * std::min(polygon.size, segment.size);
   double t[2] = {0.0, 1.0};
   std::uint32_t end_side[2] = {~0U, ~0U};
   std::uint32_t beside = ~0U;
