@@ -20,8 +20,8 @@ class PairTracker {
   /// Drops every pair that has an object in the set, keeping the order. O(pairs).
   static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept;
 
-  /// The same, adding the pairs that it drops to `dropped`, which is empty. False, and unchanged but
-  /// for the order, if memory is refused.
+  /// The same, adding the pairs that it drops to `dropped`, which is empty. False, and unchanged
+  /// but for the order, if memory is refused.
   [[nodiscard]] static bool drop(PairBuffer& out, const std::uint64_t* moved,
                                  Column<Pair>& dropped) noexcept;
 

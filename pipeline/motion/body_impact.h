@@ -50,8 +50,8 @@ struct ImpactRequest {
 
 /// The first impact within an interval of shapes that are there and motions that are valid; of
 /// bodies that share a point at the start, and meet then, that of the parts that overlap the
-/// deepest. Parts of a composite shape that slide or part along a contact of the bodies at the start
-/// do not meet: see RestingContacts.
+/// deepest. Parts of a composite shape that slide or part along a contact of the bodies at the
+/// start do not meet: see RestingContacts.
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
                                           const MovingBody& b, const ImpactRequest& request);
 /// The same of an interval in which the balls around the two overlap.

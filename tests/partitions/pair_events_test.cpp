@@ -438,7 +438,8 @@ TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
   for (const auto& [motion, options] : {std::pair(Motion::few, PairOptions{}),
                                         std::pair(Motion::much, PairOptions{Order::canonical}),
                                         std::pair(Motion::few, PairOptions{Order::fast, false})}) {
-    for (const Refused refused : {Refused{true, false}, Refused{false, true}, Refused{true, true}}) {
+    for (const Refused refused :
+         {Refused{true, false}, Refused{false, true}, Refused{true, true}}) {
       // From the first request that is refused on, until none is made.
       bool was_refused = true;
       for (std::size_t granted = 0; was_refused && granted < 40; ++granted) {
@@ -468,9 +469,8 @@ TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
         const std::size_t before = memory.refusals() + results.refusals();
         if (refused.partition) memory.refuse_after(granted);
         if (refused.results) results.refuse_after(granted);
-        const Status status = world.threads().run([&] {
-          return world.partition().self_pairs(frames.buffer, frames.events, options);
-        });
+        const Status status = world.threads().run(
+            [&] { return world.partition().self_pairs(frames.buffer, frames.events, options); });
         memory.grant_all();
         results.grant_all();
         was_refused = memory.refusals() + results.refusals() != before;

@@ -446,19 +446,19 @@ template <typename Staged>
   SeenPairs seen;
   if (touching != 0) stage.see(seen);
   Mask16 missed = 0;
-  write_patch_contacts(
-      job, given, touching, stage.offset(), sign,
-      [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
-        const std::uint32_t count =
-            contacts_of(stage, seen, lane, job.margin_of(given.first + lane), points);
-        if (count > 0) {
-          const double off = static_cast<double>(points[0].depth) + expected.value[0][lane];
-          const double most = expected.value[1][lane];
-          if (off <= most && off >= -most) return count;
-        }
-        missed |= 1U << lane;
-        return 0;
-      });
+  write_patch_contacts(job, given, touching, stage.offset(), sign,
+                       [&](unsigned lane, ContactPoint* points) -> std::uint32_t {
+                         const std::uint32_t count = contacts_of(
+                             stage, seen, lane, job.margin_of(given.first + lane), points);
+                         if (count > 0) {
+                           const double off =
+                               static_cast<double>(points[0].depth) + expected.value[0][lane];
+                           const double most = expected.value[1][lane];
+                           if (off <= most && off >= -most) return count;
+                         }
+                         missed |= 1U << lane;
+                         return 0;
+                       });
   return missed;
 }
 
