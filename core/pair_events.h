@@ -46,8 +46,10 @@ struct PairEventsOptions {
 
 /// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
 /// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
-/// it starts anew: every pair begins and none ends. A caller who wants changes alone hands over no
-/// buffer: the events then keep the pairs themselves.
+/// it starts anew: every pair begins and none ends. A refused call reports nothing and forgets
+/// nothing: the buffer holds the earlier frame's pairs, in any order, and the next call reports
+/// what changed since then. A caller who wants only the changes passes no buffer: the events then
+/// keep the pairs themselves.
 class WINNOW_API PairEvents {
  public:
   /// Nothing has happened yet.

@@ -244,12 +244,14 @@ class WINNOW_API Partition final {
   /// or for a ray or a region, at first, is cut with more care than one that is made for pairs.
   Status refresh() const;
 
-  /// All pairs of objects whose volumes overlap, each once, first < second.
+  /// All pairs of objects whose volumes overlap, each once, first < second. `out_of_memory` leaves
+  /// `out` empty.
   Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const;
   /// All pairs (object of this, object of other) whose boxes overlap, each once.
   Status pairs_with(const Partition& other, PairBuffer& out, const PairOptions& options = {}) const;
 
   /// The same, and what changed since the frame that `out` holds. The cost follows what moved.
+  /// `out_of_memory` reports no change and leaves that frame in `out`.
   Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
   /// What changed alone. Where little moves it costs what moved and how many pairs that has; the
   /// order is of no effect.

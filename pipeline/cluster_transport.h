@@ -70,6 +70,10 @@ class WINNOW_API Transport {
   /// How many it hosts; at least 1.
   [[nodiscard]] virtual std::uint32_t hosted() const noexcept = 0;
 
+  /// Names the collective call of a cluster that what follows is part of, for a transport that
+  /// compares what processes do. Nothing otherwise.
+  virtual void begin(std::uint32_t call) noexcept { static_cast<void>(call); }
+
   /// Sends parcels of hosted ranks, at most one from each rank to each, and gives those that are
   /// for hosted ranks, sorted by `to` and then by `from`. They are valid until the next exchange,
   /// and as long as what was sent by this process stays where it was. Calls `meanwhile` once, if

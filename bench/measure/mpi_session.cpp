@@ -24,7 +24,7 @@ bool MpiSession::is_started() noexcept {
 
 MpiSession::MpiSession(double time_limit) {
   int given = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given);
   const Status status = make_mpi_transport(static_cast<int>(MPI_Comm_c2f(MPI_COMM_WORLD)),
                                            transport_, {.time_limit = time_limit});
   if (status != Status::ok) {

@@ -119,13 +119,13 @@ bool KeyTable::are_valid_ascending(std::span<const Key> keys) const noexcept {
 
 void KeyTable::release(ObjectId id) noexcept {
   --live_;
-  if ((stamps_[id] & kGenerationMask) != kGenerationMask) {
+  const std::uint32_t uses = uses_before(stamps_[id]);
+  if (uses < most_uses()) {
     ++stamps_[id];
   } else {
-    const bool used_up = (stamps_[id] & ~kGenerationMask) == stamp_;
-    const bool retired = used_up && !tags_.renew();
-    stamp_ = tags_.latest() << kGenerationBits;
-    stamps_[id] = stamp_;  // generation 0 is even: dead
+    const bool retired = uses == most_uses() && !tags_.renew();
+    if (uses == most_uses() && !retired) stamp_ = tags_.latest() << kGenerationBits;
+    stamps_[id] = stamp_;  // even: dead
     if (retired) return;
   }
   rows_[id] = first_free_;
@@ -147,7 +147,7 @@ void KeyTable::release_if_unused() noexcept {
 
 bool KeyTable::are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept {
   const std::size_t slots = saved.stamps.size();
-  if (saved.data.size() != slots || (saved.stamp & kGenerationMask) != 0) return false;
+  if (saved.data.size() != slots || (saved.stamp & 1U) != 0) return false;
   std::fill_n(seen.data(), slots, std::uint8_t{0});
   for (const ObjectId id : saved.free) {
     if (id >= slots || (saved.stamps[id] & 1U) != 0 || seen[id] != 0) return false;
@@ -156,9 +156,26 @@ bool KeyTable::are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcep
   return true;
 }
 
+std::uint32_t KeyTable::stamp_beyond(const Saved& saved) noexcept {
+  std::uint32_t uses = 0;
+  const auto pass = [&](std::uint32_t stamp) {
+    const std::uint32_t before = uses_before(stamp);
+    if (before <= most_uses()) uses = std::max(uses, before + (stamp & 1U));
+  };
+  for (const std::uint32_t stamp : stamps_) pass(stamp);
+  for (const std::uint32_t stamp : saved.stamps) pass(stamp);
+  pass(saved.stamp);
+  if (uses <= most_uses()) return stamp_ + uses;
+  // Without another tag, slots begin with the first generation again.
+  (void)tags_.renew();
+  return tags_.latest() << kGenerationBits;
+}
+
 void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
+  const std::uint32_t begin = other.stamp_beyond(saved);
   tags_.swap(other.tags_);
-  other.stamp_ = other.tags_.latest() << kGenerationBits;
+  other.stamp_ = stamp_;
+  stamp_ = begin;
   const std::size_t slots = saved.stamps.size();
   stamps_.set_size(slots);
   rows_.set_size(slots);
@@ -166,14 +183,13 @@ void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
   std::uint32_t known = 0;  // a tag that was claimed already
   std::uint32_t row = 0;
   for (std::size_t slot = 0; slot < slots; ++slot) {
-    std::uint32_t stamp = saved.stamps[slot];
+    const std::uint32_t stamp = saved.stamps[slot];
+    const bool is_live = (stamp & 1U) != 0;
     const std::uint32_t tag = stamp >> kGenerationBits;
-    if (tag != known && tags_.claim(tag)) known = tag;
-    if (tag != known) stamp = tags_.latest() << kGenerationBits | (stamp & kGenerationMask);
-    stamps_[slot] = stamp;
+    if (is_live && tag != known && tags_.claim(tag)) known = tag;
+    stamps_[slot] = !is_live ? stamp_ : tag == known ? stamp : stamp_ | 1U;
     data_[slot] = saved.data[slot];
-    rows_[slot] = kNoObject;
-    if ((stamp & 1U) != 0) rows_[slot] = row++;
+    rows_[slot] = is_live ? row++ : kNoObject;
   }
   live_ = row;
   free_count_ = saved.free.size();
@@ -181,8 +197,6 @@ void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
   for (std::size_t i = 0; i < saved.free.size(); ++i) {
     rows_[saved.free[i]] = i + 1 < saved.free.size() ? saved.free[i + 1] : kNoObject;
   }
-  (void)tags_.claim(saved.stamp >> kGenerationBits);
-  stamp_ = tags_.latest() << kGenerationBits;
 }
 
 Bytes KeyTable::key_bytes() const noexcept {

@@ -38,7 +38,7 @@ class KeyTable {
   void acquire(std::uint32_t row, std::span<const ClientData> data, std::span<Key> keys,
                const Execution& execution) noexcept;
 
-  /// Frees the slot of a valid key. A slot out of generations begins anew with another tag, or is
+  /// Frees the slot of a valid key. A slot out of generations goes on with another tag, or is
   /// retired if the process has none left.
   void release(ObjectId id) noexcept;
 
@@ -91,7 +91,8 @@ class KeyTable {
   [[nodiscard]] std::span<const ClientData> all_client_data() const noexcept {
     return {data_.data(), data_.size()};
   }
-  /// What the first stamp of a slot begins with.
+  /// The stamp before the first one of a slot: even, and beyond all stamps of its tag that slots
+  /// had before the latest restore.
   [[nodiscard]] std::uint32_t stamp() const noexcept { return stamp_; }
   /// The free slot that is taken next, and the one after a free slot; kNoObject: none.
   [[nodiscard]] ObjectId first_free() const noexcept { return first_free_; }
@@ -113,7 +114,7 @@ class KeyTable {
   }
   /// Becomes such a table, with room for it made, objects in rows by id. Takes the tags of `other`,
   /// which may be this one and gets its own: keys are the saved ones as long as no third table has
-  /// their tags.
+  /// their tags. Keys that follow differ from the saved ones and from all that either table gave.
   void restore(const Saved& saved, KeyTable& other) noexcept;
 
   [[nodiscard]] std::pmr::memory_resource* key_memory() const noexcept { return rows_.memory(); }
@@ -123,6 +124,17 @@ class KeyTable {
  private:
   [[nodiscard]] bool are_valid(std::span<const Key> keys) const noexcept;
   [[nodiscard]] bool are_valid_ascending(std::span<const Key> keys) const noexcept;
+
+  /// A stamp that slots may begin with after a restore, see `stamp`.
+  [[nodiscard]] std::uint32_t stamp_beyond(const Saved& saved) noexcept;
+  /// Generations from `stamp_` up to this stamp, more than there are if it is none of those.
+  [[nodiscard]] std::uint32_t uses_before(std::uint32_t stamp) const noexcept {
+    return stamp - stamp_;
+  }
+  /// Generations that follow `stamp_` under its tag.
+  [[nodiscard]] std::uint32_t most_uses() const noexcept {
+    return (stamp_ | kGenerationMask) - stamp_;
+  }
 
   static constexpr unsigned kGenerationBits = 32 - KeyTags::kBits;
   static constexpr std::uint32_t kGenerationMask = (1U << kGenerationBits) - 1;
@@ -134,7 +146,7 @@ class KeyTable {
   std::size_t free_count_ = 0;
   ObjectId first_free_ = kNoObject;
   KeyTags tags_;
-  std::uint32_t stamp_;  // the latest tag with generation 0
+  std::uint32_t stamp_;  // under a tag of its own, see `stamp`
 };
 
 }  // namespace winnow

@@ -181,6 +181,7 @@ Status PartitionState::calm_self_pairs(PairBuffer& out, EventWriter* events) con
   const std::span<const ObjectId> moved = rows.moved().ids();
   LinkedPairs linked(out);
   const std::size_t kept = out.size();
+  if (events != nullptr) events->hold_none(out);
   if (!moved.empty()) {
     if (!linked.link(rows.keys().slot_count()) || !list_moved()) return Status::out_of_memory;
     const std::span<const std::uint32_t> asking = rows.selection().entries();
@@ -195,7 +196,8 @@ Status PartitionState::calm_self_pairs(PairBuffer& out, EventWriter* events) con
       (events != nullptr && !events->tell(out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
   }
-  return linked.apply() ? Status::ok : Status::out_of_memory;
+  linked.apply();
+  return Status::ok;
 }
 
 // Of what the objects that moved have found keeps the pairs that overlap, in the order of ids, and
@@ -218,7 +220,7 @@ bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept
     if (is_watched(pair) && !watched.push_back({pair.first, pair.second, met})) return false;
     if (met) pairs[size++] = pair;
   }
-  PairTracker::shorten(out, size);
+  PairTracker::set_size(out, size);
   return true;
 }
 

@@ -61,8 +61,13 @@ bool EventWriter::reserve(PairEvents& events, std::size_t pairs, std::size_t obj
 bool EventWriter::hold_all(const PairBuffer& out) noexcept {
   kept_ = 0;
   if (!follows_) return true;
-  if (!events_.after_is_all_) return sort_into(events_.before_, out.pairs());
-  events_.before_.swap(events_.after_);
+  if (events_.after_is_all_) {
+    events_.before_.swap(events_.after_);
+    events_.after_is_all_ = false;
+  } else if (!sort_into(events_.before_, out.pairs())) {
+    return false;
+  }
+  held_ = Held::all;
   return true;
 }
 
@@ -74,6 +79,7 @@ bool EventWriter::hold_moved(PairBuffer& out, const std::uint64_t* moved) noexce
   }
   events_.dropped_.clear();
   if (!PairTracker::drop(out, moved, events_.dropped_)) return false;
+  held_ = Held::dropped;
   kept_ = out.size();
   return sort_into(events_.before_, {events_.dropped_.data(), events_.dropped_.size()});
 }
@@ -109,7 +115,7 @@ bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool
   e.persisting_ = static_cast<std::size_t>(to - PairTracker::data(out));
   for (const KeyPair& pair : e.begun_) *to++ = {pair.first.id, pair.second.id};
   e.after_is_all_ = kept_ == 0;
-  return give_client_data() && take_frame(moved, all);
+  return give_client_data() && reserve_frame(moved, all);
 }
 
 bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
@@ -129,7 +135,7 @@ bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
     if (!begin(packed(pair))) return false;
   }
   e.persisting_ = out.size() - begun.size() - ended.size();
-  return give_client_data() && take_frame(moved, false);
+  return give_client_data() && reserve_frame(moved, false);
 }
 
 // Both lists ascend. Writes the pairs that persist to `to` on.
@@ -189,24 +195,59 @@ bool EventWriter::give_client_data() noexcept {
   return true;
 }
 
-// Remembers whose the ids are in this frame.
-bool EventWriter::take_frame(std::span<const ObjectId> moved, bool all) noexcept {
+// Room for whose the ids are in this frame, of which those that moved, or all, may have changed.
+bool EventWriter::reserve_frame(std::span<const ObjectId> moved, bool all) noexcept {
+  moved_ = moved;
+  all_ = all || !follows_;
+  const std::size_t slots = keys_.slot_count();
+  return events_.stamps_.grow(slots) && (!events_.with_client_data_ || events_.data_.grow(slots));
+}
+
+void EventWriter::take_frame(PairBuffer::Provenance provenance) noexcept {
   Column<std::uint32_t>& stamps = events_.stamps_;
   Column<ClientData>& data = events_.data_;
   const bool with_data = events_.with_client_data_;
   const std::size_t slots = keys_.slot_count();
-  if (!stamps.resize(slots) || (with_data && !data.resize(slots))) return false;
-  if (all || !follows_) {
+  events_.provenance_ = provenance;
+  stamps.set_size(slots);
+  if (with_data) data.set_size(slots);
+  if (all_) {
     for (std::size_t id = 0; id < slots; ++id) {
       stamps[id] = keys_.key_of(static_cast<ObjectId>(id)).stamp;
     }
     if (with_data) std::ranges::copy(keys_.all_client_data(), data.begin());
-    return true;
+    return;
   }
-  for (const ObjectId id : moved) stamps[id] = keys_.key_of(id).stamp;
+  for (const ObjectId id : moved_) stamps[id] = keys_.key_of(id).stamp;
   if (with_data) {
-    for (const ObjectId id : moved) data[id] = keys_.client_data(id);
+    for (const ObjectId id : moved_) data[id] = keys_.client_data(id);
   }
+}
+
+// Without memory: the buffer has held all of these pairs at once.
+bool EventWriter::undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept {
+  PairEvents& e = events_;
+  e.begun_.clear();
+  e.ended_.clear();
+  e.begun_data_.clear();
+  e.ended_data_.clear();
+  e.persisting_ = 0;
+  e.after_is_all_ = false;
+  if (!follows_) return false;
+  Pair* const pairs = PairTracker::data(out);
+  if (held_ == Held::kept || held_ == Held::dropped) PairTracker::set_size(out, kept_);
+  if (held_ == Held::dropped) {
+    std::ranges::copy(e.dropped_, pairs + kept_);
+    PairTracker::set_size(out, kept_ + e.dropped_.size());
+  } else if (held_ == Held::all) {
+    std::ranges::transform(e.before_, pairs, [](std::uint64_t pair) {
+      return Pair{first_of(pair), second_of(pair)};
+    });
+    PairTracker::set_size(out, e.before_.size());
+  }
+  e.persisting_ = out.size();
+  e.provenance_ = provenance;
+  PairTracker::set_provenance(out, provenance);
   return true;
 }
 

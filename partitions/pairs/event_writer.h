@@ -14,7 +14,9 @@ namespace winnow {
 /// Finds for one query which pairs begin and end. It is told what the buffer holds before it
 /// changes (one of the `hold` functions) and compares that with what it holds afterwards. Pairs are
 /// told apart by keys: the stamps of the last frame say whether an id is still the same object's.
-/// A function that returns false was refused memory.
+/// These change last (`take_frame`), when nothing can fail any more: a query that was refused
+/// memory is undone (`undo`), and the next one compares with the same frame. A function that
+/// returns false was refused memory.
 class EventWriter {
  public:
   /// `out` as it is before the query of a partition.
@@ -31,8 +33,11 @@ class EventWriter {
   [[nodiscard]] bool hold_all(const PairBuffer& out) noexcept;
   /// Pairs of objects that moved may end; they are dropped from the buffer.
   [[nodiscard]] bool hold_moved(PairBuffer& out, const std::uint64_t* moved) noexcept;
-  /// No pair ends.
-  void hold_none(const PairBuffer& out) noexcept { kept_ = follows_ ? out.size() : 0; }
+  /// No pair ends, or those that do stay in their places until nothing can fail any more.
+  void hold_none(const PairBuffer& out) noexcept {
+    kept_ = follows_ ? out.size() : 0;
+    held_ = Held::kept;
+  }
 
   /// Fills the events and puts the pairs that persist first, those that began behind them.
   /// `moved` are the objects that changed since the last frame, unless `all` may have. O(pairs that
@@ -64,16 +69,23 @@ class EventWriter {
     return events.provenance_;
   }
   [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
-  void set_provenance(PairBuffer::Provenance provenance) noexcept {
-    events_.provenance_ = provenance;
-  }
-  void fail() noexcept { events_.clear(); }
+
+  /// Ends a query: the events tell of this frame, and know whose the ids are in it.
+  void take_frame(PairBuffer::Provenance provenance) noexcept;
+  /// Puts the pairs of the last frame back into the buffer, in any order, and gives that frame
+  /// another name: none begin or end. False if the events do not tell of that frame; the caller
+  /// empties the buffer then.
+  [[nodiscard]] bool undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept;
 
  private:
+  /// Which pairs of the last frame are not in the buffer but elsewhere: none, those from `kept_` on
+  /// in `dropped_`, or all in `before_`.
+  enum class Held : std::uint8_t { nothing, kept, dropped, all };
+
   [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
   [[nodiscard]] bool merge(Pair*& to) noexcept;
   [[nodiscard]] bool give_client_data() noexcept;
-  [[nodiscard]] bool take_frame(std::span<const ObjectId> moved, bool all) noexcept;
+  [[nodiscard]] bool reserve_frame(std::span<const ObjectId> moved, bool all) noexcept;
   [[nodiscard]] bool any_other_key(std::span<const ObjectId> moved, bool all) const noexcept;
   [[nodiscard]] bool is_other(ObjectId id) const noexcept {
     return events_.stamps_[id] != keys_.key_of(id).stamp;
@@ -88,6 +100,9 @@ class EventWriter {
   bool other_keys_ = false;  // an id went to another object since the last frame
   bool follows_ = false;     // the events tell of the frame that the buffer holds
   std::size_t kept_ = 0;     // pairs at the front of the buffer that persist for sure
+  Held held_ = Held::nothing;
+  std::span<const ObjectId> moved_;  // of which take_frame has something to remember, or
+  bool all_ = false;                 // of all
 };
 
 }  // namespace winnow

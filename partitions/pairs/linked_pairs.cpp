@@ -159,7 +159,8 @@ bool LinkedPairs::end(const Pair& pair) noexcept {
 
 bool LinkedPairs::sort() noexcept {
   std::ranges::sort(out_.places_, std::greater<>());
-  return PairTracker::sort(out_, out_.heads_.size(), kept_, out_.size());
+  const std::size_t most = std::max(kept_, out_.size() - out_.places_.size());
+  return PairTracker::sort(out_, out_.heads_.size(), kept_, out_.size()) && out_.links_.grow(most);
 }
 
 // The last pair takes the place of another, or is that other.
@@ -174,16 +175,14 @@ void LinkedPairs::replace(std::uint32_t index, std::uint32_t last) noexcept {
   if (index < linked) enter(index);
 }
 
-bool LinkedPairs::apply() noexcept {
+void LinkedPairs::apply() noexcept {
   const std::size_t begun_count = out_.size() - kept_;
   const std::size_t persisting = kept_ - out_.places_.size();
-  if (!out_.links_.grow(std::max(kept_, persisting + begun_count))) return false;
   auto last = static_cast<std::uint32_t>(kept_);
   for (const std::uint32_t index : out_.places_) replace(index, --last);
   std::copy_n(out_.pairs_.begin() + kept_, begun_count, out_.pairs_.begin() + last);
   out_.pairs_.set_size(persisting + begun_count);
   link_next(begun_count + out_.size() / kLinkFrames + 1);
-  return true;
 }
 
 }  // namespace winnow

@@ -58,7 +58,8 @@ class LinkedPairs {
   /// One more pair that began, or ended, of objects that did not move; all are linked.
   [[nodiscard]] bool begin(const Pair& pair) noexcept { return out_.pairs_.push_back(pair); }
   [[nodiscard]] bool end(const Pair& pair) noexcept;
-  /// Brings what began and ended in order. False if memory is refused.
+  /// Brings what began and ended in order, and makes room for their links. False if memory is
+  /// refused.
   [[nodiscard]] bool sort() noexcept;
 
   /// Pairs that began, sorted.
@@ -67,9 +68,9 @@ class LinkedPairs {
   [[nodiscard]] std::span<const std::uint32_t> ended() const noexcept {
     return {out_.places_.data(), out_.places_.size()};
   }
-  /// Takes out what ended and links what began. False, and the buffer is no longer whole, if memory
-  /// is refused.
-  [[nodiscard]] bool apply() noexcept;
+  /// Takes out what ended and links what began. Until then the pairs of the last frame stand where
+  /// they stood.
+  void apply() noexcept;
 
  private:
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFU;

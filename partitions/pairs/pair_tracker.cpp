@@ -49,7 +49,10 @@ bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < count; begin += kPiece) {
     const std::size_t piece = std::min(kPiece, count - begin);
-    if (!dropped.grow(dropped.size() + piece)) return false;
+    if (!dropped.grow(dropped.size() + piece)) {
+      std::copy(dropped.begin(), dropped.end(), out.pairs_.begin() + kept);
+      return false;
+    }
     auto* const to = reinterpret_cast<std::uint32_t*>(dropped.data() + dropped.size());
     const std::size_t stayed =
         pair_drop_kernels().part(ids + 2 * begin, piece, moved, ids + 2 * kept, to);

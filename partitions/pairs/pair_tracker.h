@@ -20,8 +20,8 @@ class PairTracker {
   /// Drops every pair that has an object in the set, keeping the order. O(pairs).
   static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept;
 
-  /// The same, adding the pairs that it drops to `dropped`. False, and `out` is no longer whole, if
-  /// memory is refused.
+  /// The same, adding the pairs that it drops to `dropped`, which is empty. False, and unchanged
+  /// but for the order, if memory is refused.
   [[nodiscard]] static bool drop(PairBuffer& out, const std::uint64_t* moved,
                                  Column<Pair>& dropped) noexcept;
 
@@ -33,8 +33,8 @@ class PairTracker {
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t begin,
                                  std::size_t end) noexcept;
 
-  /// Drops the pairs from `size` on.
-  static void shorten(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
+  /// The first `size` of the pairs that stand in its array.
+  static void set_size(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
 
   /// The pairs, which keep their provenance.
   [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.pairs_.data(); }

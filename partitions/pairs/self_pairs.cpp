@@ -123,9 +123,7 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
   const StageScope stage(WorkStage::pairs);
   if (events == nullptr) return logged(answer_self_pairs(out, options, nullptr), kSelfPairs);
   EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
-  const Status status = answer_self_pairs(out, options, &writer);
-  if (status != Status::ok) writer.fail();
-  return logged(status, kSelfPairs);
+  return logged(answer_self_pairs(out, options, &writer), kSelfPairs);
 }
 
 Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
@@ -147,7 +145,7 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
     status = calm ? calm_self_pairs(out, events) : track_self_pairs(out, options, tracked, events);
   }
   if (status != Status::ok) {
-    out.clear();
+    undo_self_pairs(out, calm, events);
     return status;
   }
   pairs_.last_pairs.store(out.size(), std::memory_order_relaxed);
@@ -165,10 +163,22 @@ void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* even
   // Untracked, the serial still tells the events whose frame the buffer holds.
   const PairBuffer::Provenance provenance{pairs_.identity, ++pairs_.last_serial};
   PairTracker::set_provenance(out, provenance);
-  if (events != nullptr) events->set_provenance(provenance);
+  if (events != nullptr) events->take_frame(provenance);
   if (!tracked) return;
   rows.forget_moves();
   pairs_.tracked_serial = provenance.serial;
+}
+
+// A refused query leaves the buffer empty or, if events follow it, with the pairs of the last
+// frame. The next query looks for all pairs in either case: its answer does not depend on which
+// request was refused.
+void PartitionState::undo_self_pairs(PairBuffer& out, bool calm,
+                                     EventWriter* events) const noexcept {
+  // Some of the watched pairs may be noted as of a frame that was not answered.
+  if (calm) pairs_.tracked_serial = 0;
+  const PairBuffer::Provenance untracked{pairs_.identity, ++pairs_.last_serial};
+  if (events == nullptr || !events->undo(out, untracked)) return out.clear();
+  LinkedPairs(out).loosen();
 }
 
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
@@ -218,6 +228,7 @@ Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& p
     return events == nullptr || events->tell(out, {}, {}, {}) ? Status::ok : Status::out_of_memory;
   }
   const std::size_t kept = out.size();
+  if (events != nullptr) events->hold_none(out);
   if (const Status status = ask_moved(out, predicate); status != Status::ok) return status;
   if (events != nullptr) events->find_renewed(moved);
   const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
@@ -226,7 +237,8 @@ Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& p
       (events != nullptr && !events->tell(out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
   }
-  return linked.apply() ? Status::ok : Status::out_of_memory;
+  linked.apply();
+  return Status::ok;
 }
 
 Status PartitionState::redo_self_pairs(PairBuffer& out, const PairOptions& options, bool update,

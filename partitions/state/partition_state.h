@@ -135,6 +135,7 @@ class PartitionState {
   Status track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
                           EventWriter* events) const;
   void take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
+  void undo_self_pairs(PairBuffer& out, bool calm, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept;
   bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;

@@ -161,7 +161,7 @@ std::uint32_t Cluster::hosted() const noexcept {
 
 Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
-  const Status status = collective(state_, [&] {
+  const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
     // Others wait for this process, which adds nothing.
     const std::vector<ClusterBatch> nothing(hosted());
@@ -184,7 +184,7 @@ Status Cluster::remove(std::uint32_t rank, std::span<const BodyName> names) {
 }
 
 Status Cluster::self_pairs(Order order) {
-  return collective(state_, [&] { return state_->self_pairs(order); });
+  return collective(state_, CollectiveCall::find, [&] { return state_->self_pairs(order); });
 }
 
 NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
@@ -193,7 +193,7 @@ NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
 }
 
 Status Cluster::digest(ClusterDigest& digest) {
-  return collective(state_, [&] { return state_->digest(digest); });
+  return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
 }
 
 std::size_t Cluster::size(std::uint32_t rank) const noexcept {

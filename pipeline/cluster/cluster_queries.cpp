@@ -54,6 +54,7 @@ struct AskedScene {
 }
 
 struct RayAll {
+  static constexpr CollectiveCall kCall = CollectiveCall::all;
   using Question = ShapeRay;
   using Answer = ClusterHit;
 
@@ -114,6 +115,7 @@ struct HitColumnsOfRays {
 /// A scene breaks ties by ids, which are not names. So rays are asked once more, up to a little
 /// behind their hits; where these meet several bodies there, all that the whole ray hits is told.
 struct RayClosest : RayAll {
+  static constexpr CollectiveCall kCall = CollectiveCall::closest;
   template <typename Give>
   static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
@@ -151,6 +153,7 @@ struct RayClosest : RayAll {
 
 /// Answers are hits of which nothing is told, one for each ray.
 struct RayAny : RayAll {
+  static constexpr CollectiveCall kCall = CollectiveCall::any;
   template <typename Give>
   static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
@@ -166,6 +169,7 @@ struct RayAny : RayAll {
 };
 
 struct ProbeOverlap {
+  static constexpr CollectiveCall kCall = CollectiveCall::overlap;
   using Question = ShapeProbe;
   using Answer = ClusterOverlap;
 
@@ -192,6 +196,7 @@ struct ProbeOverlap {
 };
 
 struct PointNearest {
+  static constexpr CollectiveCall kCall = CollectiveCall::nearest;
   using Question = NearestProbe;
   using Answer = ClusterDistance;
 
@@ -394,7 +399,7 @@ struct ClusterQueryState {
              std::span<Status> answers, AnswersOfRanks<typename Kind::Answer>& lists) {
     const std::size_t hosted = cluster == nullptr ? 0 : cluster->scenes.size();
     const bool fit = asked.size() == hosted && answers.size() == hosted;
-    const Status status = collective(cluster, [&] {
+    const Status status = collective(cluster, Kind::kCall, [&] {
       if (fit) return Asking<Kind>(*cluster, asked).run(lists, answers);
       // Others wait for this process, which asks nothing.
       const std::vector<ClusterQuestions<typename Kind::Question>> nothing(hosted);

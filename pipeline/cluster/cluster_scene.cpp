@@ -288,7 +288,7 @@ std::uint32_t ClusterScene::hosted() const noexcept {
 
 Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers) {
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
-  const Status status = collective(state_, [&] {
+  const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
     // Others wait for this process, which adds nothing.
     const std::vector<ClusterSceneBatch> nothing(hosted());
@@ -300,14 +300,15 @@ Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<S
 
 Status ClusterScene::replicate(const ClusterSceneBatch& batch) {
   Status refused = Status::ok;
-  const Status status = collective(state_, [&] { return state_->replicate(batch, refused); });
+  const Status status = collective(state_, CollectiveCall::replicate,
+                                   [&] { return state_->replicate(batch, refused); });
   return status == Status::ok ? refused : status;
 }
 
 Status ClusterScene::move_replicated(std::span<const BodyName> names, std::span<const Pose> poses) {
   Status refused = Status::ok;
-  const Status status =
-      collective(state_, [&] { return state_->move_replicated(names, poses, refused); });
+  const Status status = collective(state_, CollectiveCall::move_replicated,
+                                   [&] { return state_->move_replicated(names, poses, refused); });
   return status == Status::ok ? refused : status;
 }
 
@@ -326,7 +327,7 @@ Status ClusterScene::remove(std::uint32_t rank, std::span<const BodyName> names)
 
 Status ClusterScene::collide(ContactLevel level) {
   if (level > ContactLevel::manifold) return Status::invalid_argument;
-  return collective(state_, [&] { return state_->collide(level); });
+  return collective(state_, CollectiveCall::find, [&] { return state_->collide(level); });
 }
 
 const Contacts& ClusterScene::contacts(std::uint32_t rank) const noexcept {
@@ -336,7 +337,7 @@ const Contacts& ClusterScene::contacts(std::uint32_t rank) const noexcept {
 }
 
 Status ClusterScene::digest(ClusterDigest& digest) {
-  return collective(state_, [&] { return state_->digest(digest); });
+  return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
 }
 
 Status ClusterScene::save(std::uint32_t rank, std::vector<std::byte>& bytes) const {
@@ -350,7 +351,7 @@ Status ClusterScene::save(std::uint32_t rank, std::vector<std::byte>& bytes) con
 Status ClusterScene::restore(std::span<const std::span<const std::byte>> bytes,
                              std::span<Status> answers) {
   const bool fit = bytes.size() == hosted() && answers.size() == hosted();
-  const Status status = collective(state_, [&] {
+  const Status status = collective(state_, CollectiveCall::restore, [&] {
     std::vector<RecordBatch> batches(hosted());
     std::vector<Status> read(hosted(), Status::ok);
     for (std::size_t i = 0; fit && i < bytes.size(); ++i) {

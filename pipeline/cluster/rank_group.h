@@ -69,11 +69,27 @@ struct RankGroup {
   std::uint64_t messages_ = 0;
 };
 
+/// Which collective call: the same number on all processes.
+enum class CollectiveCall : std::uint32_t {
+  add,
+  replicate,
+  move_replicated,
+  find,
+  digest,
+  restore,
+  closest,
+  all,
+  any,
+  overlap,
+  nearest
+};
+
 /// A collective call: what goes wrong in it ends the cluster.
 template <typename State, typename Call>
-Status collective(State* state, Call&& call) noexcept {
+Status collective(State* state, CollectiveCall which, Call&& call) noexcept {
   if (state == nullptr) return Status::out_of_memory;
   if (state->status != Status::ok) return state->status;
+  state->transport.begin(static_cast<std::uint32_t>(which));
   return state->status = guarded(call, Status::out_of_memory);
 }
 

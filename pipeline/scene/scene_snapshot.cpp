@@ -261,15 +261,17 @@ class SceneReader {
   const SavedNames* names_;
 };
 
-/// Gives bodies the keys that they have in this scene where these are kept, and else others.
+/// Gives bodies the keys that they have in this scene if these are kept, and else new ones.
 void rename(ReadKeys& keys, const KeyTable& present, std::span<const ObjectId> kept) noexcept {
-  const std::span<const std::uint32_t> now = present.stamps();
-  const std::size_t both = std::min(keys.stamps.size(), now.size());
-  for (std::size_t slot = 0; slot < both; ++slot) {
-    if ((keys.stamps[slot] & 1U) != 0) keys.stamps[slot] = (now[slot] + 2) | 1U;
+  // No table has the tag of this stamp.
+  constexpr std::uint32_t kRenamed = 1;
+  for (std::uint32_t& stamp : keys.stamps) {
+    if ((stamp & 1U) != 0) stamp = kRenamed;
   }
+  const std::span<const std::uint32_t> now = present.stamps();
   for (const ObjectId id : kept) {
-    if (id < both && (keys.stamps[id] & now[id] & 1U) != 0) keys.stamps[id] = now[id];
+    if (id >= std::min(keys.stamps.size(), now.size())) continue;
+    if ((keys.stamps[id] & now[id] & 1U) != 0) keys.stamps[id] = now[id];
   }
 }
 

@@ -292,6 +292,122 @@ TEST(KeyTable, takes_no_key_of_a_hundred_thousand_others) {
   }
 }
 
+// What a snapshot keeps of a table.
+struct SavedTable {
+  explicit SavedTable(const KeyTable& table)
+      : stamps(table.stamps().begin(), table.stamps().end()),
+        data(table.all_client_data().begin(), table.all_client_data().end()),
+        stamp(table.stamp()) {
+    for (ObjectId id = table.first_free(); id != kNoObject; id = table.next_free(id)) {
+      free.push_back(id);
+    }
+  }
+  void load(KeyTable& table, KeyTable& other) const {
+    ASSERT_TRUE(table.reserve_slots(stamps.size()));
+    table.restore({stamps, data, free, stamp}, other);
+  }
+
+  std::vector<std::uint32_t> stamps;
+  std::vector<ClientData> data;
+  std::vector<ObjectId> free;
+  std::uint32_t stamp;
+};
+
+// Calls of all kinds on a table that is saved and restored, in place or into another one: each key
+// that it gives is new, and each live one that was saved is valid again.
+class RestoredTable {
+ public:
+  explicit RestoredTable(std::uint32_t seed) : random_(seed) { save(); }
+
+  void step() {
+    const std::uint32_t choice = static_cast<std::uint32_t>(random_()) % 100;
+    if (choice < 45) {
+      insert();
+    } else if (choice < 90) {
+      remove();
+    } else if (choice < 94) {
+      save();
+    } else {
+      load(choice % 2 == 0);
+    }
+  }
+  // Uses one slot until its generations are used up.
+  void wear() {
+    for (std::uint32_t i = 0; i < kGenerations / 2 + 2; ++i) {
+      insert();
+      table_->release(keys_.back().id);
+      keys_.pop_back();
+    }
+  }
+
+ private:
+  struct Kept {
+    SavedTable table;
+    std::vector<Key> keys;
+  };
+
+  void insert() {
+    keys_.push_back(fill(*table_, 1)[0]);
+    ASSERT_TRUE(given_.emplace(keys_.back().id, keys_.back().stamp).second) << "given twice";
+  }
+  void remove() {
+    if (keys_.empty()) return;
+    std::swap(keys_[random_() % keys_.size()], keys_.back());
+    table_->release(keys_.back().id);
+    ASSERT_FALSE(table_->is_valid(keys_.back()));
+    keys_.pop_back();
+  }
+  void save() { kept_.push_back({SavedTable(*table_), keys_}); }
+  void load(bool in_place) {
+    const Kept& kept = kept_[random_() % kept_.size()];
+    if (in_place) {
+      kept.table.load(*table_, *table_);
+    } else {
+      auto fresh = std::make_unique<KeyTable>(&memory_);
+      kept.table.load(*fresh, *table_);
+      table_ = std::move(fresh);
+    }
+    keys_ = kept.keys;
+    ASSERT_EQ(table_->size(), keys_.size());
+    for (const Key& key : keys_) ASSERT_TRUE(table_->is_valid(key));
+  }
+
+  std::mt19937 random_;
+  CountingMemory memory_;
+  std::unique_ptr<KeyTable> table_ = std::make_unique<KeyTable>(&memory_);
+  std::vector<Key> keys_;
+  std::set<std::pair<ObjectId, std::uint32_t>> given_;
+  std::vector<Kept> kept_;
+};
+
+TEST(KeyTable, gives_no_key_twice_after_any_restore) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    RestoredTable table(seed);
+    for (int step = 0; step < 2000; ++step) {
+      table.step();
+      if (step % 500 == 250) table.wear();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(KeyTable, restored_elsewhere_gives_no_key_that_was_saved) {
+  CountingMemory memory;
+  KeyTable saved(&memory);
+  std::set<std::pair<ObjectId, std::uint32_t>> given;
+  const auto use = [&](KeyTable& table) {
+    for (const Key& key : fill(table, 3)) {
+      EXPECT_TRUE(given.emplace(key.id, key.stamp).second);
+      table.release(key.id);
+    }
+  };
+  for (int i = 0; i < 5; ++i) use(saved);
+  const SavedTable bytes(saved);
+  KeyTable other(&memory);
+  bytes.load(other, other);
+  for (int i = 0; i < 5; ++i) use(other);
+}
+
 TEST(KeyTable, is_unchanged_when_memory_is_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t granted = 0; granted < 3; ++granted) {

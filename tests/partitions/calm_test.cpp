@@ -360,6 +360,72 @@ TEST_P(CalmScenes, are_right_whatever_memory_is_refused) {
   }
 }
 
+// What began and ended since the last frame that was answered, wherever memory ends; and a copy of
+// that frame's buffer goes on, too.
+TEST_P(CalmScenes, report_what_changed_since_before_a_refusal) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
+  const auto sorted = [](const PairBuffer& buffer) {
+    std::vector<Pair> pairs(buffer.begin(), buffer.end());
+    std::ranges::sort(pairs);
+    return pairs;
+  };
+  const auto pair_of = [](const KeyPair& pair) { return Pair{pair.first.id, pair.second.id}; };
+  int failures = 0;
+  bool was_refused = true;
+  for (std::size_t granted = 0; was_refused && granted < 40; ++granted) {
+    start(uniform_boxes(300));
+    PairBuffer buffer(&results_);
+    PairEvents events(&results_);
+    const auto ask = [&] {
+      return world_->threads().run(
+          [&] { return world_->partition().self_pairs(buffer, events, {}); });
+    };
+    for (int frame = 0; frame < 8; ++frame) {
+      shake(1e-5F);
+      ASSERT_EQ(ask(), Status::ok);
+    }
+    const std::vector<Pair> before = sorted(buffer);
+    PairBuffer copy;
+    ASSERT_TRUE(copy.assign(buffer));
+    const auto change = [&] {
+      shake(1e-5F);
+      for (std::size_t i = 0; i < 6; ++i) {
+        rest_[i] = shaken(rest_[i + 9], 0.5F, random_);
+        world_->update(keys_[i], rest_[i]);
+      }
+      for (const Aabb& box : uniform_boxes(8, 5)) {
+        rest_.push_back(box);
+        keys_.push_back(world_->insert(box));
+      }
+    };
+    change();
+    const std::size_t refusals = memory_.refusals() + results_.refusals();
+    memory_.refuse_after(granted);
+    results_.refuse_after(granted);
+    const Status status = ask();
+    memory_.grant_all();
+    results_.grant_all();
+    was_refused = memory_.refusals() + results_.refusals() != refusals;
+    if (status == Status::ok) continue;
+    ++failures;
+    ASSERT_EQ(status, Status::out_of_memory);
+    ASSERT_EQ(sorted(buffer), before);
+    ASSERT_TRUE(world_->agrees(copy)) << granted;
+    change();
+    ASSERT_EQ(ask(), Status::ok);
+    ASSERT_TRUE(world_->has_pairs(buffer));
+    const std::vector<Pair> now = sorted(buffer);
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    std::ranges::set_difference(now, before, std::back_inserter(begun));
+    std::ranges::set_difference(before, now, std::back_inserter(ended));
+    EXPECT_TRUE(std::ranges::equal(events.begun(), begun, {}, pair_of)) << granted;
+    EXPECT_TRUE(std::ranges::equal(events.ended(), ended, {}, pair_of)) << granted;
+    EXPECT_EQ(events.persisting() + begun.size(), now.size());
+  }
+  EXPECT_GT(failures, 0);
+}
+
 TEST_P(CalmScenes, allocate_nothing_in_steady_frames) {
   start(uniform_boxes(kCount));
   PairBuffer buffer(&results_);

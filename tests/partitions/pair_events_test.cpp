@@ -57,6 +57,22 @@ class Frames {
     return verdict;
   }
 
+  // After a refusal: nothing begins or ends, and the buffer holds the last frame's pairs, of which
+  // those of objects that are gone have stale ids.
+  testing::AssertionResult stands() const {
+    const bool silent = events.begun().empty() && events.ended().empty() &&
+                        events.begun_data().empty() && events.ended_data().empty();
+    if (!silent) return testing::AssertionFailure() << "a refused call told of changes";
+    std::set<Ids> held;
+    for (const auto& [first, second] : buffer.pairs()) held.insert({first, second});
+    std::set<Ids> last;
+    for (const auto& [ids, stamps] : before_) last.insert(ids);
+    if (held != last || buffer.size() != before_.size()) {
+      return testing::AssertionFailure() << buffer.size() << " pairs, not " << before_.size();
+    }
+    return testing::AssertionSuccess();
+  }
+
   // The next frame follows none.
   void forget() { before_.clear(); }
 
@@ -279,7 +295,7 @@ TEST_P(Events, need_no_buffer) {
   }
 }
 
-TEST_P(Events, start_anew_after_a_linked_frame_that_memory_was_refused_for) {
+TEST_P(Events, go_on_after_a_linked_frame_that_memory_was_refused_for) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   int failures = 0;
   for (std::size_t granted = 0; granted < 14; ++granted) {
@@ -307,8 +323,7 @@ TEST_P(Events, start_anew_after_a_linked_frame_that_memory_was_refused_for) {
     if (status == Status::ok) continue;
     ++failures;
     ASSERT_EQ(status, Status::out_of_memory);
-    EXPECT_TRUE(frames.buffer.empty());
-    frames.forget();
+    ASSERT_TRUE(frames.stands());
     for (std::size_t frame = 10; frame < 14; ++frame) {
       ASSERT_TRUE(frames.next());
       few(frame);
@@ -414,34 +429,64 @@ TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
   EXPECT_EQ(frames.events.begun_data().size(), second.size());
 }
 
-TEST_P(Events, start_anew_after_a_query_that_memory_was_refused_for) {
+// What memory is refused to: a world's partition, its buffer and events, or both.
+struct Refused {
+  bool partition;
+  bool results;
+};
+
+TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
-  CountingMemory memory;
-  World world(config(), &memory);
-  CountingMemory results;
-  std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
-  const std::vector<Key> keys = world.insert(boxes);
-  Random random(1);
   int failures = 0;
-  for (std::size_t granted = 0; granted < 12; ++granted) {
-    Frames frames(world, &results);
-    ASSERT_TRUE(frames.next());
-    move(granted % 2 == 0 ? Motion::few : Motion::much, boxes, random);
-    world.update(keys, boxes);
-    world.insert(boxes[granted]);
-    results.refuse_after(granted / 2);
-    const Status status = world.threads().run(
-        [&] { return world.partition().self_pairs(frames.buffer, frames.events, {}); });
-    results.grant_all();
-    if (status == Status::ok) continue;
-    ++failures;
-    ASSERT_EQ(status, Status::out_of_memory);
-    EXPECT_TRUE(frames.buffer.empty());
-    EXPECT_TRUE(frames.events.begun().empty() && frames.events.ended().empty());
-    EXPECT_TRUE(frames.events.begun_data().empty() && frames.events.ended_data().empty());
-    frames.forget();
-    ASSERT_TRUE(frames.next());
-    ASSERT_TRUE(frames.next());
+  for (const auto& [motion, options] : {std::pair(Motion::few, PairOptions{}),
+                                        std::pair(Motion::much, PairOptions{Order::canonical}),
+                                        std::pair(Motion::few, PairOptions{Order::fast, false})}) {
+    for (const Refused refused :
+         {Refused{true, false}, Refused{false, true}, Refused{true, true}}) {
+      // From the first request that is refused on, until none is made.
+      bool was_refused = true;
+      for (std::size_t granted = 0; was_refused && granted < 40; ++granted) {
+        CountingMemory memory;
+        CountingMemory results;
+        World world(config(), &memory);
+        std::vector<Aabb> boxes = uniform_boxes(scene_size(150));
+        std::vector<Key> keys = world.insert(boxes, random_data(boxes.size(), 8));
+        Random random(1);
+        Frames frames(world, &results);
+        const auto change = [&] {
+          move(motion, boxes, random);
+          world.update(keys, boxes);
+          world.remove(keys.front());
+          keys.erase(keys.begin());
+          boxes.erase(boxes.begin());
+          keys.push_back(world.insert(boxes[3]));
+          boxes.push_back(boxes[3]);
+        };
+        for (int frame = 0; frame < 2; ++frame) {
+          ASSERT_TRUE(frames.next(options));
+          change();
+        }
+        // More than there is room for.
+        for (const Key& key : world.insert(uniform_boxes(40, 9))) keys.push_back(key);
+        for (const Aabb& box : uniform_boxes(40, 9)) boxes.push_back(box);
+        const std::size_t before = memory.refusals() + results.refusals();
+        if (refused.partition) memory.refuse_after(granted);
+        if (refused.results) results.refuse_after(granted);
+        const Status status = world.threads().run(
+            [&] { return world.partition().self_pairs(frames.buffer, frames.events, options); });
+        memory.grant_all();
+        results.grant_all();
+        was_refused = memory.refusals() + results.refusals() != before;
+        if (status == Status::ok) continue;
+        ++failures;
+        ASSERT_EQ(status, Status::out_of_memory);
+        ASSERT_TRUE(frames.stands());
+        change();
+        ASSERT_TRUE(frames.next(options)) << granted;
+        change();
+        ASSERT_TRUE(frames.next()) << granted;
+      }
+    }
   }
   EXPECT_GT(failures, 0);
 }

@@ -1,5 +1,6 @@
 #include <winnow/pipeline/cluster_mpi.h>
 
+#include "core/memory/guarded.h"
 #include "pipeline/cluster/mpi/mpi.h"
 #include "pipeline/cluster/mpi/zoltan_cuts.h"
 
@@ -8,9 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
+#include <future>
+#include <memory>
 #include <new>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -18,34 +20,28 @@ namespace winnow {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Sizes = std::array<std::uint64_t, 4>;  // bytes of a parcel's columns
+/// What ranks do in a step; the same on all.
+enum class Step : std::uint64_t { exchange, reduce, arrive, cut };
+/// What a rank tells another one at the beginning of a step.
+struct Header {
+  std::uint64_t step = 0;                // and of which call
+  std::array<std::uint64_t, 4> sizes{};  // bytes of a parcel's columns
+};
+constexpr int kHeaderWords = sizeof(Header) / sizeof(std::uint64_t);
 
-/// Ends all processes unless it is gone in time: for libraries that wait as long as it takes.
-class Watchdog {
- public:
-  Watchdog(MPI_Comm communicator, std::chrono::duration<double> limit)
-      : thread_([this, communicator, limit] {
-          std::unique_lock lock(mutex_);
-          if (!gone_.wait_for(lock, limit, [this] { return is_gone_; })) {
-            MPI_Abort(communicator, 1);
-          }
-        }) {}
-  ~Watchdog() {
-    {
-      const std::lock_guard lock(mutex_);
-      is_gone_ = true;
-    }
-    gone_.notify_one();
-    thread_.join();
+/// What a thread of its own works on, which outlives the call that gave it.
+struct CutTask {
+  std::vector<Aabb> boxes;
+  std::vector<std::uint32_t> works;
+  std::vector<RegionCut> cuts;
+
+  [[nodiscard]] Status run(MPI_Comm communicator) noexcept {
+    return guarded(
+        [&] {
+          return cut_by_zoltan(communicator, {boxes, works}, cuts);
+        },
+        Status::out_of_memory);
   }
-  Watchdog(const Watchdog&) = delete;
-  Watchdog& operator=(const Watchdog&) = delete;
-
- private:
-  std::mutex mutex_;
-  std::condition_variable gone_;
-  bool is_gone_ = false;
-  std::thread thread_;
 };
 
 /// The columns of a parcel where they lie, as MPI describes them: in pieces whose bytes an int can
@@ -75,8 +71,8 @@ class ColumnsType {
   std::vector<int> lengths_;
 };
 
-[[nodiscard]] std::uint64_t sum_of(const Sizes& sizes) noexcept {
-  return sizes[0] + sizes[1] + sizes[2] + sizes[3];
+[[nodiscard]] std::uint64_t sum_of(const Header& header) noexcept {
+  return std::accumulate(header.sizes.begin(), header.sizes.end(), std::uint64_t{0});
 }
 
 /// Words of 8 bytes that a column takes where it is received.
@@ -96,9 +92,16 @@ class MpiTransport final : public Transport {
     MPI_Comm_size(communicator_, &ranks);
     rank_ = static_cast<std::uint32_t>(rank);
     ranks_ = static_cast<std::uint32_t>(ranks);
+    int threads = MPI_THREAD_SINGLE;
+    MPI_Query_thread(&threads);
+    has_threads_ = threads >= MPI_THREAD_SERIALIZED;
   }
   ~MpiTransport() override {
-    if (!failed_) MPI_Comm_free(&communicator_);
+    if (failed_) {
+      leave_buffers();
+    } else {
+      MPI_Comm_free(&communicator_);
+    }
   }
 
   [[nodiscard]] bool failed() const noexcept { return failed_; }
@@ -106,6 +109,7 @@ class MpiTransport final : public Transport {
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return rank_; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return 1; }
 
+  void begin(std::uint32_t call) noexcept override { call_ = call; }
   Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
                   const Meanwhile& meanwhile) override;
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override;
@@ -116,7 +120,15 @@ class MpiTransport final : public Transport {
   [[nodiscard]] Status wait_for(std::size_t count);
   /// Waits for all of them.
   [[nodiscard]] Status finish();
-  void start_sizes(std::span<const Parcel> sent);
+  /// Begins a step: tells the other ranks what they will receive.
+  void start(Step step, std::span<const Parcel> sent = {});
+  /// Waits for what they tell, the first request; fails unless all take the same step.
+  [[nodiscard]] Status meet();
+  /// A whole step in which nothing is sent.
+  [[nodiscard]] Status meet(Step step);
+  [[nodiscard]] Status cut_in_time(const CutWork& work, std::span<RegionCut> cuts);
+  /// MPI may still write to what a step that failed was to receive.
+  void leave_buffers() noexcept;
   void start_receiving();
   void start_sending(const Parcel& parcel);
   void keep(int result) noexcept { failed_ = failed_ || result != MPI_SUCCESS; }
@@ -129,10 +141,12 @@ class MpiTransport final : public Transport {
   std::uint32_t rank_ = 0;
   std::uint32_t ranks_ = 1;
   bool failed_ = false;
+  bool has_threads_ = false;  // other threads than the main one may call MPI
+  std::uint32_t call_ = 0;
   std::vector<MPI_Request> requests_;
-  std::vector<Sizes> sizes_out_;  // by rank
-  std::vector<Sizes> sizes_in_;   // by rank
-  std::vector<std::uint64_t> words_;
+  std::vector<Header> out_;           // by rank
+  std::vector<Header> in_;            // by rank
+  std::vector<std::uint64_t> words_;  // what is received or summed
   std::vector<Parcel> parcels_;
 };
 
@@ -159,26 +173,53 @@ Status MpiTransport::finish() {
   return status;
 }
 
-void MpiTransport::start_sizes(std::span<const Parcel> sent) {
-  sizes_out_.assign(ranks_, Sizes{});
-  sizes_in_.assign(ranks_, Sizes{});
+void MpiTransport::start(Step step, std::span<const Parcel> sent) {
+  const Header header{std::uint64_t{call_} << 8U | static_cast<std::uint64_t>(step), {}};
+  out_.assign(ranks_, header);
+  in_.assign(ranks_, header);
   for (const Parcel& parcel : sent) {
-    for (std::size_t c = 0; c < 4; ++c) sizes_out_[parcel.to][c] = parcel.columns[c].size();
+    for (std::size_t c = 0; c < 4; ++c) out_[parcel.to].sizes[c] = parcel.columns[c].size();
   }
-  keep(MPI_Ialltoall(sizes_out_.data(), 4, MPI_UINT64_T, sizes_in_.data(), 4, MPI_UINT64_T,
-                     communicator_, &new_request()));
+  keep(MPI_Ialltoall(out_.data(), kHeaderWords, MPI_UINT64_T, in_.data(), kHeaderWords,
+                     MPI_UINT64_T, communicator_, &new_request()));
+}
+
+Status MpiTransport::meet() {
+  const Status status = wait_for(1);
+  if (status != Status::ok) return status;
+  const std::uint64_t step = out_[rank_].step;
+  failed_ = !std::ranges::all_of(in_, [&](const Header& header) { return header.step == step; });
+  return failed_ ? Status::communication_failed : Status::ok;
+}
+
+Status MpiTransport::meet(Step step) {
+  start(step);
+  const Status status = meet();
+  requests_.clear();
+  return status;
+}
+
+void MpiTransport::leave_buffers() noexcept {
+  (void)guarded(
+      [&] {
+        (void)new std::vector<Header>(std::move(out_));
+        (void)new std::vector<Header>(std::move(in_));
+        (void)new std::vector<std::uint64_t>(std::move(words_));
+        return true;
+      },
+      false);
 }
 
 void MpiTransport::start_receiving() {
   std::uint64_t words = 0;
-  for (const Sizes& sizes : sizes_in_) {
-    for (const std::uint64_t bytes : sizes) words += words_of(bytes);
+  for (const Header& header : in_) {
+    for (const std::uint64_t bytes : header.sizes) words += words_of(bytes);
   }
   words_.resize(words);
   const std::byte* place = reinterpret_cast<const std::byte*>(words_.data());
   for (std::uint32_t from = 0; from < ranks_; ++from) {
-    const Sizes& sizes = sizes_in_[from];
-    if (from == rank_ || sum_of(sizes) == 0) continue;
+    const auto& sizes = in_[from].sizes;
+    if (from == rank_ || sum_of(in_[from]) == 0) continue;
     Parcel& parcel = parcels_.emplace_back(Parcel{from, rank_, {}});
     ColumnsType columns;
     for (std::size_t c = 0; c < 4; ++c) {
@@ -206,7 +247,7 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
                               const Meanwhile& meanwhile) {
   if (failed_) return Status::communication_failed;
   parcels_.clear();
-  start_sizes(sent);
+  start(Step::exchange, sent);
   for (const Parcel& parcel : sent) {
     if (parcel.to == rank_) {
       parcels_.push_back(parcel);
@@ -215,8 +256,8 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
     }
   }
   meanwhile();
-  // Sizes are the first request. What was sent may wait for who is still to ask for it.
-  const Status status = wait_for(1);
+  // What was sent may wait for a rank that is still to ask for it.
+  const Status status = meet();
   if (status != Status::ok) return status;
   start_receiving();
   std::ranges::sort(parcels_, {}, &Parcel::from);
@@ -226,22 +267,52 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
 
 Status MpiTransport::reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) {
   if (failed_) return Status::communication_failed;
-  const auto start = [this](std::span<std::uint64_t> values, MPI_Op operation) {
-    if (values.empty()) return;
-    keep(MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T,
+  Status status = meet(Step::reduce);
+  if (status != Status::ok) return status;
+  words_.assign(sums.begin(), sums.end());
+  words_.insert(words_.end(), greatest.begin(), greatest.end());
+  const auto start = [this](std::size_t begin, std::size_t count, MPI_Op operation) {
+    if (count == 0) return;
+    keep(MPI_Iallreduce(MPI_IN_PLACE, words_.data() + begin, static_cast<int>(count), MPI_UINT64_T,
                         operation, communicator_, &new_request()));
   };
-  start(sums, MPI_SUM);
-  start(greatest, MPI_MAX);
-  return finish();
+  start(0, sums.size(), MPI_SUM);
+  start(sums.size(), greatest.size(), MPI_MAX);
+  status = finish();
+  if (status != Status::ok) return status;
+  std::copy_n(words_.begin(), sums.size(), sums.begin());
+  std::copy_n(words_.end() - static_cast<std::ptrdiff_t>(greatest.size()), greatest.size(),
+              greatest.begin());
+  return Status::ok;
 }
 
+// Zoltan waits for others as long as it takes. After the second step each rank has seen that all
+// have arrived: a rank that comes too late, or does something else, is seen before.
 Status MpiTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
   if (failed_) return Status::communication_failed;
-  const Watchdog watchdog(communicator_, limit_);
-  const Status status = cut_by_zoltan(communicator_, work.front(), cuts);
+  for (const Step step : {Step::arrive, Step::cut}) {
+    const Status status = meet(step);
+    if (status != Status::ok) return status;
+  }
+  const Status status = has_threads_ ? cut_in_time(work.front(), cuts)
+                                     : cut_by_zoltan(communicator_, work.front(), cuts);
   failed_ = status != Status::ok;
   return status;
+}
+
+// On a thread that is left behind if it takes too long.
+Status MpiTransport::cut_in_time(const CutWork& work, std::span<RegionCut> cuts) {
+  const auto task = std::make_shared<CutTask>();
+  task->boxes.assign(work.boxes.begin(), work.boxes.end());
+  task->works.assign(work.works.begin(), work.works.end());
+  task->cuts.resize(cuts.size());
+  std::packaged_task<Status()> run(
+      [task, communicator = communicator_] { return task->run(communicator); });
+  std::future<Status> answer = run.get_future();
+  std::thread(std::move(run)).detach();
+  if (answer.wait_for(limit_) != std::future_status::ready) return Status::communication_failed;
+  std::ranges::copy(task->cuts, cuts.begin());
+  return answer.get();
 }
 
 }  // namespace
