@@ -207,6 +207,8 @@ class WINNOW_API SceneQueries {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  friend struct SensorsState;
+
   std::pmr::memory_resource* memory_;
   /// Null where memory was refused: questions are `out_of_memory` then.
   QueryState* state_ = nullptr;

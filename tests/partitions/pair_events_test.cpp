@@ -73,6 +73,9 @@ class Frames {
     return testing::AssertionSuccess();
   }
 
+  // The next frame follows none.
+  void forget() { before_.clear(); }
+
   PairBuffer buffer;
   PairEvents events;
 

@@ -302,5 +302,48 @@ TEST(Sensors, know_their_memory_to_the_byte_and_bear_its_refusal) {
   }
 }
 
+// No call but the one whose request was refused is refused, whatever the sensors had to sense then.
+TEST(Sensors, sense_again_after_any_refused_request) {
+  WINNOW_TEST_NEEDS_EXCEPTIONS();
+  for (const bool with_body : {false, true}) {
+    for (const bool with_sensor : {false, true}) {
+      bool was_refused = true;
+      for (std::size_t granted = 0; was_refused && granted < 100; ++granted) {
+        CountingMemory memory;
+        ShapePool shapes;
+        ShapeId ball;
+        ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+        Scene scene(shapes, {.memory = &memory, .execution = Execution::serial()});
+        Sensors sensors(scene, &memory);
+        Key key;
+        if (with_body) {
+          ASSERT_EQ(scene.add({.shape = ball}, key), Status::ok);
+        }
+        if (with_sensor) {
+          ASSERT_EQ(sensors.add({.shape = ball}, key), Status::ok);
+        }
+        memory.refuse_one_after(granted);
+        const auto call = [&](auto&& make) {
+          const std::size_t before = memory.refusals();
+          const Status status = make();
+          if (status == Status::ok) return true;
+          EXPECT_EQ(status, Status::out_of_memory);
+          EXPECT_EQ(memory.refusals(), before + 1) << granted << " requests granted";
+          return false;
+        };
+        (void)call([&] { return sensors.sense(); });
+        const auto add = [&] { return sensors.add({.shape = ball}, key); };
+        ASSERT_TRUE(with_sensor || call(add) || call(add));
+        const auto sense = [&] { return sensors.sense(); };
+        ASSERT_TRUE(call(sense) || call(sense));
+        EXPECT_EQ(sensors.sensed().size(), with_body ? 1U : 0U);
+        was_refused = memory.refusals() != 0;
+        memory.grant_all();
+      }
+      EXPECT_FALSE(was_refused);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace winnow::test

@@ -102,7 +102,10 @@ bool SensorsState::have_watches(std::size_t count) noexcept {
   while (watches.size() < count) {
     if (!watches.grow(watches.size() + 1)) return false;
     auto* const watch = new_in<Watch>(watches.memory(), scene, watches.memory());
-    if (watch == nullptr) return false;
+    if (watch == nullptr || watch->questions.state_ == nullptr) {
+      delete_in(watches.memory(), watch);
+      return false;
+    }
     (void)watches.push_back(watch);
   }
   return true;
