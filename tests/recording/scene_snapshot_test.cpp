@@ -324,9 +324,9 @@ TEST(SceneSnapshots, of_a_tier_that_is_gone_are_robust) {
   constexpr std::size_t kTier = 32 + sizeof(std::uint32_t) + sizeof(double);
   const Stage stage({.tier = NarrowTier::robust});
   const SavedBytes saved = saved_by([&](auto& out) { return stage.scene.save(out); });
-  for (const std::uint8_t number : {0, 1, 2, 3}) {
+  for (const int number : {0, 1, 2, 3}) {
     SavedBytes other = saved;
-    other[kTier] = std::byte{number};
+    other[kTier] = static_cast<std::byte>(number);
     seal_snapshot(other);
     Stage loaded({});
     EXPECT_EQ(loaded.scene.load(other), number < 3 ? Status::ok : Status::invalid_argument);
