@@ -96,10 +96,6 @@ double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
 std::uint32_t standing_corners(const Patch& patch, const double up[3], double highest,
                                std::uint32_t* corner) noexcept;
 
-/// A segment whose ends are closer to a side of a polygon than this share of the smaller one's size
-/// lies along it, inside.
-inline constexpr double kAlongSide = 1.5e-4;
-
 /// At most so many corners has what two patches share.
 inline constexpr std::uint32_t kSharedCorners = 32;
 /// The same before the points are thinned: all corners of what the patches share that are no

@@ -378,35 +378,16 @@ void polygon_meetings(const Outline& reference, const Outline& incident, int r,
   }
 }
 
-// Moves a point that is outside of a side to it.
-void move_inside(const Outline& polygon, std::uint32_t side, PatchMeeting& m) {
-  const double out = -inside(polygon, side, m.x, m.y);
-  if (!(out > 0.0)) return;
-  const std::uint32_t next = polygon.next(side);
-  const double along[2] = {polygon.x[next] - polygon.x[side], polygon.y[next] - polygon.y[side]};
-  const double share = out / (along[0] * along[0] + along[1] * along[1]);
-  m.x -= share * along[1];
-  m.y += share * along[0];
-}
-
-// The part of a segment inside of a polygon (Cyrus and Beck, 1978). One that lies along a side is
-// inside of it, whichever way it leans by a little: what is outside is moved to the side.
+// The part of a segment inside of a polygon (Cyrus and Beck, 1978).
 void segment_meetings(const Outline& polygon, const Outline& segment, int r, PatchMeetings& out) {
-  const double near = kAlongSide * std::min(polygon.size, segment.size);
   double t[2] = {0.0, 1.0};
   std::uint32_t end_side[2] = {~0U, ~0U};
-  std::uint32_t beside = ~0U;
   for (std::uint32_t side = 0; side < polygon.count; ++side) {
-    const double length = side_length(polygon, side);
-    const double slack = out.same * length;
+    const double slack = out.same * side_length(polygon, side);
     const double at[2] = {inside(polygon, side, segment.x[0], segment.y[0]),
                           inside(polygon, side, segment.x[1], segment.y[1])};
-    if (at[0] >= -slack && at[1] >= -slack) continue;
-    if (std::max(std::abs(at[0]), std::abs(at[1])) <= near * length) {
-      beside = side;
-      continue;
-    }
     if (at[0] < -slack && at[1] < -slack) return;
+    if (at[0] >= -slack && at[1] >= -slack) continue;
     const int end = at[0] < -slack ? 0 : 1;
     const double s = std::clamp(at[0] / (at[0] - at[1]), 0.0, 1.0);
     if (end == 0 ? s > t[0] : s < t[1]) {
@@ -421,7 +402,6 @@ void segment_meetings(const Outline& polygon, const Outline& segment, int r, Pat
                       segment.y[0] + s * (segment.y[1] - segment.y[0]),
                       {0.0, 0.0},
                       {0, 0}};
-    if (beside != ~0U) move_inside(polygon, beside, m);
     m.height[r] = polygon.height(m.x, m.y);
     m.height[1 - r] = segment.h[0] + s * (segment.h[1] - segment.h[0]);
     const bool vertex = end_side[end] == ~0U;

@@ -135,17 +135,13 @@ double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
 
 // The first is chosen. Returns how many.
 std::uint32_t RegionPoints::spread(Chosen& chosen, double span) const noexcept {
-  const double least = std::max(tie_, kLeastWider * span);
-  const double slack = std::max(tie_, kTiedSpan * span);
   std::uint32_t count = 1;
   for (; count < kManifoldPoints; ++count) {
-    const auto value = [&](const Point& p) {
-      const double away = distance_from_hull(p, chosen, count);
-      return away > least ? away : -std::numeric_limits<double>::infinity();
-    };
     double most = 0.0;
-    const std::uint32_t next = first_of_largest(value, slack, most);
-    if (!(most > least)) break;
+    const std::uint32_t next =
+        first_of_largest([&](const Point& p) { return distance_from_hull(p, chosen, count); },
+                         std::max(tie_, kTiedSpan * span), most);
+    if (most <= tie_) break;
     chosen[count] = next;
   }
   return count;
