@@ -17,7 +17,12 @@ namespace winnow::test {
 class Digest {
  public:
   void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }
+  /// Zeros of either sign are the same. By bits: a sum with 0 keeps the sign if the host rounds
+  /// down, and loses denormal numbers if it flushes them.
+  void add(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    add(bits << 1U == 0 ? std::uint64_t{0} : bits);
+  }
   /// Which way pairs were answered: what lanes leave to the solver takes longer.
   void add(const NarrowStatistics& s) {
     for (const std::uint64_t number :

@@ -3,6 +3,7 @@
 // it repeats exactly, and is digested as answers are.
 
 #include "tests/digests/digest.h"
+#include "tests/support/float_modes.h"
 
 #include <algorithm>
 #include <limits>
@@ -150,11 +151,7 @@ class Life {
     std::vector<Aabb> boxes = boxes_;
     const std::size_t first = numbers_.below(stride);
     for (std::size_t i = 0; i < count; ++i) {
-      for (int k = 0; k < 3 && i % stride != first; ++k) {
-        const auto by = static_cast<float>(numbers_.coordinate(1) * 0x1p-12);
-        boxes[i].min[k] += by;
-        boxes[i].max[k] += by;
-      }
+      if (i % stride != first) shift(boxes[i], 0x1p-12);
     }
     if (told == Told::backwards) {
       std::reverse(keys.begin(), keys.end());
@@ -302,9 +299,14 @@ class Life {
   }
 
   /// `way` in sixteenths.
-  void step(Aabb& box, int way) {
+  void step(Aabb& box, int way) { shift(box, way * 0x1p-4); }
+
+  /// Up to `most` along each axis. Boxes are the same in all modes: answers about them are
+  /// compared.
+  void shift(Aabb& box, double most) {
+    const FloatModeScope nearest({FE_TONEAREST});
     for (int k = 0; k < 3; ++k) {
-      const auto by = static_cast<float>(numbers_.coordinate(1) * way * 0x1p-4);
+      const auto by = static_cast<float>(numbers_.coordinate(1) * most);
       box.min[k] += by;
       box.max[k] += by;
     }
