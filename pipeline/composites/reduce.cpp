@@ -21,6 +21,11 @@ constexpr std::uint32_t kNoRegion = ~0U;
 // its plane, a float position in it may lie, as a share of the size.
 constexpr double kSameFace = 1e-9;
 constexpr double kBesideSlack = 4e-6;
+// How far from the middle of its gap a point may be that has the depth of another one, likewise.
+constexpr double kGapSlack = kBesideSlack + kTiedDepth;
+
+// By which points are told apart that are equally far out: off the axes of what is regular.
+constexpr double kOffCorners[3] = {0.3624, 0.932, 0.65};
 
 /// The triangle of a mesh in a contact along its face's normal: what tells contacts with the face
 /// from those with an edge that neighbours continue, which `smooth` gave the same normal. Of other
@@ -49,21 +54,21 @@ class FaceOfMesh {
                    Eigen::Map<const Vec>(from);
     const double gap = -static_cast<double>(contact.depth);
     const double height = normal_.dot(corner_[0] - at);
-    return (gap <= 0.0 || std::abs(height - 0.5 * gap) <= slack(at, 0)) && is_under(at);
+    return (gap <= 0.0 || std::abs(height - 0.5 * gap) <= kGapSlack * reach(at, 0)) && is_under(at);
   }
 
   /// Whether a point, seen along the normal, is in the triangle.
   [[nodiscard]] bool is_under(const Vec& at) const noexcept {
     for (int i = 0; i < 3; ++i) {
       const double inward = turn_ * normal_.dot(side_[i].cross(at - corner_[i]));
-      if (inward < -slack(at, i) * side_[i].norm()) return false;
+      if (inward < -kBesideSlack * reach(at, i) * side_[i].norm()) return false;
     }
     return true;
   }
 
  private:
-  [[nodiscard]] double slack(const Vec& at, int i) const noexcept {
-    return kBesideSlack * (side_[i].norm() + at.norm() + (at - corner_[i]).norm());
+  [[nodiscard]] double reach(const Vec& at, int i) const noexcept {
+    return side_[i].norm() + at.norm() + (at - corner_[i]).norm();
   }
 
   Vec corner_[3];
@@ -127,6 +132,7 @@ class Reduction {
   void keep_all(std::uint32_t answer, ContactRegion& region) const noexcept;
   void choose(const Members& members, std::uint32_t number, double tie,
               ContactRegion& region) const noexcept;
+  [[nodiscard]] Vec direction_of(const Members& members, std::uint32_t number) const noexcept;
   void add_contacts(std::uint32_t answer, double margin, const ContactRegion& region,
                     SupportCorners& corners, RegionPoints& points) const noexcept;
   [[nodiscard]] bool holds_corner(std::uint32_t answer, const FaceOfMesh& face,
@@ -285,13 +291,31 @@ void Reduction::keep_all(std::uint32_t answer, ContactRegion& region) const noex
 
 void Reduction::choose(const Members& members, std::uint32_t number, double tie,
                        ContactRegion& region) const noexcept {
-  RegionPoints points(region.normal, tie);
+  RegionPoints points(region.normal, direction_of(members, number).data(), tie);
   SupportCorners corners;
   for (std::size_t i = 0; i < members.answer.size(); ++i) {
     if (members.region[i] != number) continue;
     add_contacts(members.answer[i], members.margin, region, corners, points);
   }
   region.count = points.choose(region.point);
+}
+
+// Turns with the one primitive that touches those of the other body; if there is none, it stays.
+Vec Reduction::direction_of(const Members& members, std::uint32_t number) const noexcept {
+  const Vec off = Eigen::Map<const Vec>(kOffCorners);
+  const BodyPair* first = nullptr;
+  bool is_one[2] = {true, true};
+  for (std::size_t i = 0; i < members.answer.size(); ++i) {
+    if (members.region[i] != number) continue;
+    const BodyPair& of = primitives(members.answer[i]);
+    first = first == nullptr ? &of : first;
+    is_one[0] = is_one[0] && of.a == first->a;
+    is_one[1] = is_one[1] && of.b == first->b;
+  }
+  if (!is_one[0] && !is_one[1]) return off;
+  const std::uint32_t one = is_one[0] ? first->a : first->b;
+  const Mat turned = rotation_of(tame(pairs_.poses[one].orientation));
+  return turned * off;
 }
 
 FaceOfMesh Reduction::face_of(std::uint32_t answer) const noexcept {

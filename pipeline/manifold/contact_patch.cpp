@@ -9,49 +9,143 @@ namespace winnow {
 
 namespace {
 
-// Twice the area of a triangle, positive if it is counter-clockwise.
-double area(const PatchMeeting& a, const PatchMeeting& b, const PatchMeeting& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
+// Areas that differ by less than this share of the places' extent squared, and than this share of
+// the larger, are equal; depths are that differ by less than kTiedDepth of the extent.
+constexpr double kTiedArea = 1e-3;
+constexpr double kTiedShare = 0.05;
 
-double squared_distance(const PatchMeeting& a, const PatchMeeting& b) {
-  return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-}
+/// A place seen along a normal, and how deep it is there.
+struct SeenPlace {
+  double x;
+  double y;
+  double depth;
+};
 
-// The first of the points of the largest value.
-template <typename Value>
-std::uint32_t largest(const PatchMeetings& points, Value&& value) {
-  std::uint32_t best = 0;
-  double most = value(points.point[0]);
-  for (std::uint32_t i = 1; i < points.count; ++i) {
-    const double v = value(points.point[i]);
-    if (v > most) {
-      most = v;
-      best = i;
+/// Places in order around their convex hull, and the few of them that say the most.
+///
+/// Of places that are equally good, as those of regular polygons are, the one counts that is
+/// farther along a direction fixed in a body: which are kept does not hang on what a body that
+/// trembles changes.
+class Places {
+ public:
+  static constexpr std::uint32_t kRoom = 2 * kOutlineVertices;
+  using Chosen = std::uint32_t[kManifoldPoints];
+
+  explicit Places(const double (&direction)[2]) noexcept : direction_{direction[0], direction[1]} {}
+
+  void add(double x, double y, double depth) noexcept {
+    place_[count_] = {x, y, depth};
+    along_[count_++] = direction_[0] * x + direction_[1] * y;
+  }
+
+  // The places that span most: the outermost along the direction, the one farthest from it, the one
+  // that makes the largest triangle with both, and the one that adds most to its area. If none of
+  // them is as deep as the deepest, that takes the place of the one that is missed least. Returns
+  // how many; the deepest is first.
+  std::uint32_t choose(Chosen& chosen) noexcept {
+    std::uint32_t count = spread(chosen);
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < count_; ++i) most = std::max(most, place_[i].depth);
+    const double least = most - kTiedDepth * std::sqrt(extent_);
+    // The deepest itself if it is kept, so that each point has its own depth.
+    std::uint32_t* first = std::max_element(
+        chosen, chosen + count,
+        [&](std::uint32_t i, std::uint32_t k) { return place_[i].depth < place_[k].depth; });
+    if (place_[*first].depth < least) {
+      const std::uint32_t deepest =
+          farthest([&](std::uint32_t i) { return place_[i].depth >= least; });
+      first = chosen + (count < kManifoldPoints ? count++ : least_missed(chosen, deepest));
+      *first = deepest;
     }
+    std::swap(chosen[0], *first);
+    return count;
   }
-  return best;
-}
 
-// The point 0, the one farthest from it, the one that makes the largest triangle with both, and the
-// one that adds most to its area. Returns how many: none is taken twice.
-std::uint32_t spread(const PatchMeetings& m, std::uint32_t kept[kManifoldPoints]) {
-  const PatchMeeting& p = m.point[0];
-  kept[0] = 0;
-  kept[1] = largest(m, [&](const PatchMeeting& x) { return squared_distance(p, x); });
-  const PatchMeeting& q = m.point[kept[1]];
-  kept[2] = largest(m, [&](const PatchMeeting& x) { return std::abs(area(p, q, x)); });
-  const PatchMeeting& r = m.point[kept[2]];
-  const double turn = area(p, q, r) < 0.0 ? -1.0 : 1.0;
-  kept[3] = largest(m, [&](const PatchMeeting& x) {
-    return -std::min({turn * area(p, q, x), turn * area(q, r, x), turn * area(r, p, x)});
-  });
-  std::uint32_t count = 1;
-  for (std::uint32_t i = 1; i < kManifoldPoints; ++i) {
-    if (std::find(kept, kept + count, kept[i]) == kept + count) kept[count++] = kept[i];
+ private:
+  // Of the places for which `counts`, the one farthest along the direction.
+  template <typename Counts>
+  [[nodiscard]] std::uint32_t farthest(Counts&& counts) const noexcept {
+    std::uint32_t best = count_;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (counts(i) && (best == count_ || along_[i] > along_[best])) best = i;
+    }
+    return best;
   }
-  return count;
-}
+
+  // Of the places of the largest value. Values are areas, 0 for some place.
+  template <typename Value>
+  [[nodiscard]] std::uint32_t largest(Value&& value) const noexcept {
+    double values[kRoom];
+    double most = 0.0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      values[i] = value(place_[i]);
+      most = std::max(most, values[i]);
+    }
+    const double least = most - std::min(kTiedArea * extent_, kTiedShare * most);
+    return farthest([&](std::uint32_t i) { return values[i] >= least; });
+  }
+
+  // Returns how many: none is taken twice.
+  std::uint32_t spread(Chosen& kept) noexcept {
+    kept[0] = farthest([](std::uint32_t) { return true; });
+    const SeenPlace& p = place_[kept[0]];
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      extent_ = std::max(extent_, squared_distance(p, place_[i]));
+    }
+    kept[1] = largest([&](const SeenPlace& x) { return squared_distance(p, x); });
+    const SeenPlace& q = place_[kept[1]];
+    kept[2] = largest([&](const SeenPlace& x) { return std::abs(area(p, q, x)); });
+    const SeenPlace& r = place_[kept[2]];
+    const double turn = area(p, q, r) < 0.0 ? -1.0 : 1.0;
+    kept[3] = largest([&](const SeenPlace& x) {
+      return -std::min({turn * area(p, q, x), turn * area(q, r, x), turn * area(r, p, x)});
+    });
+    std::uint32_t count = 1;
+    for (std::uint32_t i = 1; i < kManifoldPoints; ++i) {
+      if (std::find(kept, kept + count, kept[i]) == kept + count) kept[count++] = kept[i];
+    }
+    return count;
+  }
+
+  // Which of four leaves the largest area to the others and `place`.
+  [[nodiscard]] std::uint32_t least_missed(const Chosen& chosen,
+                                           std::uint32_t place) const noexcept {
+    std::uint32_t best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t left_out = 0; left_out < kManifoldPoints; ++left_out) {
+      Chosen around;
+      std::copy_n(chosen, kManifoldPoints, around);
+      around[left_out] = place;
+      std::sort(around, around + kManifoldPoints);
+      const double left = area_around(around);
+      if (!(left > most + kTiedArea * extent_)) continue;
+      most = left;
+      best = left_out;
+    }
+    return best;
+  }
+
+  // Twice that of four places in order.
+  [[nodiscard]] double area_around(const Chosen& i) const noexcept {
+    return area(place_[i[0]], place_[i[1]], place_[i[2]]) +
+           area(place_[i[0]], place_[i[2]], place_[i[3]]);
+  }
+  // Twice that of a triangle, positive if it is counter-clockwise.
+  [[nodiscard]] static double area(const SeenPlace& a, const SeenPlace& b,
+                                   const SeenPlace& c) noexcept {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  }
+  [[nodiscard]] static double squared_distance(const SeenPlace& a, const SeenPlace& b) noexcept {
+    return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+  }
+
+  double direction_[2];
+  SeenPlace place_[kRoom];
+  double along_[kRoom];
+  std::uint32_t count_ = 0;
+  /// The largest squared distance from the first.
+  double extent_ = 0.0;
+};
 
 ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double rounding[2]) {
   const double top = m.height[0] + rounding[0];
@@ -67,11 +161,15 @@ ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double 
   return point;
 }
 
-/// The corners of what two patches share that are within the margin, the deepest first.
+/// The corners of what two patches share that are within the margin, in order around it, and the
+/// deepest.
 struct SharedPatch {
   PatchFrame frame;
   PatchMeetings corners;
   double rounding[2];
+  std::uint32_t deepest = 0;
+  /// Fixed in one of the bodies; of more corners than a manifold has.
+  double direction[2] = {0.0, 0.0};
 
   SharedPatch(const Patch& a, const Patch& b, const double normal[3], double margin) noexcept
       : frame(normal), corners(0.0), rounding{a.rounding, b.rounding} {
@@ -84,43 +182,72 @@ struct SharedPatch {
 
   /// Writes the deepest one and those that span the largest area with it.
   std::uint32_t write_widest(ContactPoint* out) const noexcept {
-    std::uint32_t chosen[kManifoldPoints] = {0, 1, 2, 3};
-    const std::uint32_t found = corners.count;
-    const std::uint32_t count = found > kManifoldPoints ? spread(corners, chosen) : found;
+    if (corners.count <= kManifoldPoints) return write_all(out);
+    Places places(direction);
+    for (std::uint32_t i = 0; i < corners.count; ++i) {
+      const PatchMeeting& m = corners.point[i];
+      places.add(m.x, m.y, rise(m));
+    }
+    std::uint32_t chosen[kManifoldPoints];
+    const std::uint32_t count = places.choose(chosen);
     for (std::uint32_t i = 0; i < count; ++i) out[i] = contact(chosen[i]);
+    out[0].depth = contact(deepest).depth;
     return count;
   }
 
+  /// Writes them, the deepest first.
+  std::uint32_t write_all(ContactPoint* out) const noexcept {
+    out[0] = contact(deepest);
+    std::uint32_t count = 1;
+    for (std::uint32_t i = 0; i < corners.count; ++i) {
+      if (i != deepest) out[count++] = contact(i);
+    }
+    return count;
+  }
+
+ private:
   [[nodiscard]] ContactPoint contact(std::uint32_t i) const noexcept {
     return write(corners.point[i], frame, rounding);
   }
 
- private:
   void meet(const Outline& a, const Outline& b, double margin) noexcept {
     corners.same = kSamePlace * std::max(a.size, b.size);
     find_meetings(a, b, corners);
-    put_deepest_first();
+    find_deepest();
     drop_beyond(margin);
+    if (corners.count > kManifoldPoints) (is_finer(b, a) ? b : a).find_direction(direction);
+  }
+
+  // Whether the one rather than the other is what stands on a face: it has more vertices, or as
+  // many and is smaller.
+  [[nodiscard]] static bool is_finer(const Outline& p, const Outline& q) noexcept {
+    constexpr double kSmaller = 1.0 - 1e-6;
+    if (p.count != q.count) return p.count > q.count;
+    return p.size < kSmaller * q.size;
   }
 
   [[nodiscard]] static double rise(const PatchMeeting& m) noexcept {
     return m.height[0] - m.height[1];
   }
 
-  void put_deepest_first() noexcept {
-    const double highest = rise(corners.point[largest(corners, rise)]);
-    // Of equally deep points always the same is first.
-    std::uint32_t deepest = 0;
+  // Of equally deep ones always the same.
+  void find_deepest() noexcept {
+    double highest = rise(corners.point[0]);
+    for (std::uint32_t i = 1; i < corners.count; ++i) {
+      highest = std::max(highest, rise(corners.point[i]));
+    }
     while (rise(corners.point[deepest]) < highest - corners.same) ++deepest;
-    std::swap(corners.point[0], corners.point[deepest]);
   }
 
   void drop_beyond(double margin) noexcept {
     const double least = -margin - rounding[0] - rounding[1] - corners.same;
-    std::uint32_t kept = 1;
-    for (std::uint32_t i = 1; i < corners.count; ++i) {
-      if (rise(corners.point[i]) >= least) corners.point[kept++] = corners.point[i];
+    std::uint32_t kept = 0;
+    std::uint32_t first = 0;
+    for (std::uint32_t i = 0; i < corners.count; ++i) {
+      if (i == deepest) first = kept;
+      if (i == deepest || rise(corners.point[i]) >= least) corners.point[kept++] = corners.point[i];
     }
+    deepest = first;
     corners.count = kept;
   }
 };
@@ -142,9 +269,41 @@ std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint*
 std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
                              ContactPoint* out) noexcept {
   if (a.count == 0 || b.count == 0) return 0;
-  const SharedPatch shared(a, b, normal, margin);
-  for (std::uint32_t i = 0; i < shared.corners.count; ++i) out[i] = shared.contact(i);
-  return shared.corners.count;
+  return SharedPatch(a, b, normal, margin).write_all(out);
+}
+
+double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept {
+  double square = 0.0;
+  for (std::uint32_t i = 1; i < count; ++i) {
+    double away[3];
+    for (int k = 0; k < 3; ++k) {
+      away[k] =
+          static_cast<double>(points[i].position[k]) - static_cast<double>(points[0].position[k]);
+    }
+    square = std::max(square, dot(away, away));
+  }
+  return kTiedDepth * std::sqrt(square);
+}
+
+std::uint32_t standing_corners(const Patch& patch, const double up[3], double highest,
+                               std::uint32_t* corner) noexcept {
+  const PatchFrame frame(up);
+  const Outline outline(patch, frame, -1.0);
+  double direction[2];
+  outline.find_direction(direction);
+  Places places(direction);
+  std::uint32_t within[kOutlineVertices];
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < outline.count; ++i) {
+    if (!(outline.h[i] <= highest)) continue;
+    places.add(outline.x[i], outline.y[i], -outline.h[i]);
+    within[count++] = outline.vertex_id[i];
+  }
+  if (count == 0) return 0;
+  std::uint32_t chosen[kManifoldPoints];
+  count = places.choose(chosen);
+  for (std::uint32_t i = 0; i < count; ++i) corner[i] = within[chosen[i]];
+  return count;
 }
 
 namespace {

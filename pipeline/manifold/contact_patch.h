@@ -15,9 +15,9 @@ inline constexpr double kFaceCosine = 0.97;
 inline constexpr double kEdgeSine = 0.25;
 
 /// Caps of cylinders and cones count up to 45 degrees off, else a line of the side does. A rim is a
-/// polygon that begins with the point farthest along the direction, at +x where the direction is
-/// along the axis. Corners of the upper cap are numbered from 0, of the lower from kRimCorners, the
-/// ends of a line of the side from kSideLine.
+/// polygon that begins at +x, so that its corners stay where they are in a body that trembles.
+/// Corners of the upper cap are numbered from 0, of the lower from kRimCorners, the ends of a line
+/// of the side from kSideLine.
 inline constexpr double kCapCosine = 0.7071;
 inline constexpr std::uint32_t kRimCorners = 16;
 inline constexpr std::uint32_t kSideLine = 2 * kRimCorners;
@@ -31,6 +31,15 @@ enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
 inline constexpr std::uint32_t kFeatureKindShift = 30;
 /// Directions whose sine with the axis is less are along it.
 inline constexpr double kAlongAxis = 1e-9;
+
+/// Of faces with more corners than that every second (third, ...) is a corner of their patch.
+inline constexpr std::uint32_t kPatchRoom = 64;
+
+/// A direction across a normal that stays in the body while that trembles: of its axes the first
+/// that is no closer to the normal than this cosine, turned about the normal by the golden part of
+/// a half turn (cosine and sine), far from the axes of all regular polygons.
+inline constexpr double kAxisCosine = 0.6;
+inline constexpr double kOffAxes[2] = {0.36237489008048024, 0.9320324238132276};
 
 /// Of sets that are known by their farthest points: those in directions that are off by less than
 /// this tangent lie across a normal, if they are in one plane but for this share of their distance.
@@ -61,16 +70,35 @@ struct Patch {
 };
 
 /// The points in which two patches meet, seen along the normal: the one that faces it better is the
-/// reference, the other is clipped by its sides. The deepest point comes first, always, then of
-/// those that are no farther apart than `margin` at most three more, which span the largest area
-/// with it. Depths are measured along `normal` (unit, from a to b). Features are a vertex's number,
-/// an edge's plus 2^30 or a face's plus 2^31. Patches that do not meet give the one point where
-/// they come closest. Writes to `out` (room for kManifoldPoints), returns the number of points, 0
-/// only for a patch without vertices. Deterministic; needs no memory for patches of up to 16
-/// vertices, and thins larger ones to 16 of their vertices, the outermost and the deepest. All
-/// numbers are finite and no product of four lengths overflows.
+/// reference, the other is clipped by its sides. The deepest point comes first, always, or one that
+/// is hardly less deep (kTiedDepth) with its depth, then of those that are no farther apart than
+/// `margin` at most three more, which span the largest area with it. Of equals those are kept that
+/// lie farther along a direction fixed in one of the bodies. Depths are measured along `normal`
+/// (unit, from a to b). Features are a vertex's number, an edge's plus 2^30 or a face's plus 2^31.
+/// Patches that do not meet give the one point where they come closest. Writes to `out` (room for
+/// kManifoldPoints), returns the number of points, 0 only for a patch without vertices.
+/// Deterministic; needs no memory for patches of up to 16 vertices, and thins larger ones to 16 of
+/// their vertices, the outermost and the deepest. All numbers are finite and no product of four
+/// lengths overflows.
 std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
                             ContactPoint* out) noexcept;
+
+/// As a share of how far a patch reaches: depths that differ by less are equal. Of points that are
+/// equally deep some are kept that stay the same while bodies tremble, by some ten-thousandths of a
+/// radian; the first has the depth of the deepest.
+inline constexpr double kTiedDepth = 6e-5;
+/// The same as a depth: of points of contact by how far they are from the first.
+double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
+
+/// The numbers of a patch's corners that contact_patch keeps of it on an endless face, of those no
+/// higher than `highest` along `up`, the normal of the face: at most kManifoldPoints, the lowest
+/// first.
+std::uint32_t standing_corners(const Patch& patch, const double up[3], double highest,
+                               std::uint32_t* corner) noexcept;
+
+/// A segment whose ends are closer to a side of a polygon than this share of the smaller one's size
+/// lies along it, inside.
+inline constexpr double kAlongSide = 1.5e-4;
 
 /// At most so many corners has what two patches share.
 inline constexpr std::uint32_t kSharedCorners = 32;

@@ -15,6 +15,32 @@ namespace {
 // Slopes that differ by less are the same.
 constexpr double kSameRise = 1e-9;
 
+// A direction fixed in a body: off the edge of the least name, from the end of the lesser name, to
+// the inside. `at` writes where a vertex is.
+template <typename At>
+void find_fixed_direction(const std::uint32_t* vertex_name, const std::uint32_t* edge_name,
+                          std::uint32_t count, At&& at, double (&direction)[2]) {
+  std::uint32_t i = 0;
+  for (std::uint32_t k = 1; k < count; ++k) {
+    if (edge_name[k] < edge_name[i]) i = k;
+  }
+  std::uint32_t j = i + 1 == count ? 0 : i + 1;
+  if (vertex_name[j] < vertex_name[i]) std::swap(i, j);
+  double from[2];
+  double to[2];
+  at(i, from);
+  at(j, to);
+  const double along[2] = {to[0] - from[0], to[1] - from[1]};
+  double inside = 0.0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    at(k, to);
+    inside += along[0] * (to[1] - from[1]) - along[1] * (to[0] - from[0]);
+  }
+  const double turn = inside < 0.0 ? -kOffAxes[1] : kOffAxes[1];
+  direction[0] = kOffAxes[0] * along[0] - turn * along[1];
+  direction[1] = kOffAxes[0] * along[1] + turn * along[0];
+}
+
 }  // namespace
 
 // Duff et al., "Building an orthonormal basis, revisited", JCGT 2017.
@@ -108,31 +134,57 @@ void Outline::take(const Patch& patch, const PatchFrame& frame, std::uint32_t ve
   ++count;
 }
 
-// The farthest vertices in fifteen directions around, and the deepest.
+// The farthest vertices in fifteen directions around that are fixed in the body, and the deepest,
+// if it is deeper than these.
 void Outline::take_outermost(const Patch& patch, const PatchFrame& frame, double up) noexcept {
   static_assert(kOutlineVertices == std::size(kFifteenthsOfTurn) + 1);
+  const auto at = [&](std::uint32_t i, double(&place)[2]) {
+    for (int k = 0; k < 2; ++k) place[k] = dot(frame.axis[k], patch.vertex[i]);
+  };
+  const auto farthest = [&](const double(&direction)[3]) {
+    std::uint32_t best = 0;
+    for (std::uint32_t i = 1; i < patch.count; ++i) {
+      if (dot(direction, patch.vertex[i]) > dot(direction, patch.vertex[best])) best = i;
+    }
+    return best;
+  };
+  double first[2];
+  find_fixed_direction(patch.vertex_feature, patch.edge_feature, patch.count, at, first);
   std::uint32_t chosen[kOutlineVertices];
-  for (std::uint32_t k = 0; k < kOutlineVertices; ++k) {
+  std::uint32_t* end = chosen;
+  for (const auto& [c, s] : kFifteenthsOfTurn) {
+    const double along[2] = {c * first[0] - s * first[1], c * first[1] + s * first[0]};
     double direction[3];
     for (int i = 0; i < 3; ++i) {
-      direction[i] = k == std::size(kFifteenthsOfTurn)
-                         ? up * frame.axis[2][i]
-                         : kFifteenthsOfTurn[k][0] * frame.axis[0][i] +
-                               kFifteenthsOfTurn[k][1] * frame.axis[1][i];
+      direction[i] = along[0] * frame.axis[0][i] + along[1] * frame.axis[1][i];
     }
-    double best = -std::numeric_limits<double>::infinity();
-    chosen[k] = 0;
-    for (std::uint32_t i = 0; i < patch.count; ++i) {
-      const double reach = dot(direction, patch.vertex[i]);
-      if (reach > best) {
-        best = reach;
-        chosen[k] = i;
-      }
-    }
+    *end++ = farthest(direction);
   }
-  std::sort(chosen, chosen + kOutlineVertices);
-  const std::uint32_t* end = std::unique(chosen, chosen + kOutlineVertices);
+  const double* const axis = frame.axis[2];
+  const std::uint32_t deepest = farthest({up * axis[0], up * axis[1], up * axis[2]});
+  double reach = 0.0;
+  double height = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t* i = chosen; i != end; ++i) {
+    const double* const p = patch.vertex[*i];
+    const double* const q = patch.vertex[chosen[0]];
+    const double away[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+    reach = std::max(reach, dot(away, away));
+    height = std::max(height, up * dot(axis, p));
+  }
+  if (up * dot(axis, patch.vertex[deepest]) > height + kTiedDepth * std::sqrt(reach)) {
+    *end++ = deepest;
+  }
+  std::sort(chosen, end);
+  end = std::unique(chosen, end);
   for (const std::uint32_t* i = chosen; i != end; ++i) take(patch, frame, *i);
+}
+
+void Outline::find_direction(double (&direction)[2]) const noexcept {
+  const auto at = [&](std::uint32_t i, double(&place)[2]) {
+    place[0] = x[i];
+    place[1] = y[i];
+  };
+  find_fixed_direction(vertex_id, edge_id, count, at, direction);
 }
 
 // The polygon's normal by the sum of its triangles' (Newell).
@@ -326,16 +378,35 @@ void polygon_meetings(const Outline& reference, const Outline& incident, int r,
   }
 }
 
-// The part of a segment inside of a polygon (Cyrus and Beck, 1978).
+// Moves a point that is outside of a side to it.
+void move_inside(const Outline& polygon, std::uint32_t side, PatchMeeting& m) {
+  const double out = -inside(polygon, side, m.x, m.y);
+  if (!(out > 0.0)) return;
+  const std::uint32_t next = polygon.next(side);
+  const double along[2] = {polygon.x[next] - polygon.x[side], polygon.y[next] - polygon.y[side]};
+  const double share = out / (along[0] * along[0] + along[1] * along[1]);
+  m.x -= share * along[1];
+  m.y += share * along[0];
+}
+
+// The part of a segment inside of a polygon (Cyrus and Beck, 1978). One that lies along a side is
+// inside of it, whichever way it leans by a little: what is outside is moved to the side.
 void segment_meetings(const Outline& polygon, const Outline& segment, int r, PatchMeetings& out) {
+  const double near = kAlongSide * std::min(polygon.size, segment.size);
   double t[2] = {0.0, 1.0};
   std::uint32_t end_side[2] = {~0U, ~0U};
+  std::uint32_t beside = ~0U;
   for (std::uint32_t side = 0; side < polygon.count; ++side) {
-    const double slack = out.same * side_length(polygon, side);
+    const double length = side_length(polygon, side);
+    const double slack = out.same * length;
     const double at[2] = {inside(polygon, side, segment.x[0], segment.y[0]),
                           inside(polygon, side, segment.x[1], segment.y[1])};
-    if (at[0] < -slack && at[1] < -slack) return;
     if (at[0] >= -slack && at[1] >= -slack) continue;
+    if (std::max(std::abs(at[0]), std::abs(at[1])) <= near * length) {
+      beside = side;
+      continue;
+    }
+    if (at[0] < -slack && at[1] < -slack) return;
     const int end = at[0] < -slack ? 0 : 1;
     const double s = std::clamp(at[0] / (at[0] - at[1]), 0.0, 1.0);
     if (end == 0 ? s > t[0] : s < t[1]) {
@@ -350,6 +421,7 @@ void segment_meetings(const Outline& polygon, const Outline& segment, int r, Pat
                       segment.y[0] + s * (segment.y[1] - segment.y[0]),
                       {0.0, 0.0},
                       {0, 0}};
+    if (beside != ~0U) move_inside(polygon, beside, m);
     m.height[r] = polygon.height(m.x, m.y);
     m.height[1 - r] = segment.h[0] + s * (segment.h[1] - segment.h[0]);
     const bool vertex = end_side[end] == ~0U;

@@ -97,6 +97,9 @@ struct Outline {
   [[nodiscard]] std::uint32_t next(std::uint32_t i) const noexcept {
     return i + 1 == count ? 0 : i + 1;
   }
+  /// One that turns with the body, of any length, whichever vertex the outline begins with and
+  /// whichever way round it goes.
+  void find_direction(double (&direction)[2]) const noexcept;
 
  private:
   void take(const Patch& patch, const PatchFrame& frame, std::uint32_t vertex) noexcept;

@@ -10,6 +10,13 @@
 namespace winnow {
 namespace {
 
+/// As a share of what the points of a region span: of points that are farther by less than the
+/// first, either may stay; what is wider by less than the second is not.
+constexpr double kTiedSpan = 1e-3;
+constexpr double kLeastWider = 1e-4;
+/// Points are at one place if they are no farther apart than that many times what ties them.
+constexpr double kPlaces = 4.0;
+
 /// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), one to one.
 [[nodiscard]] std::uint64_t scrambled(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
@@ -40,6 +47,12 @@ std::uint64_t feature_among_parts(std::uint64_t feature, const std::uint32_t (&p
   return scrambled(feature ^ scrambled(parts));
 }
 
+RegionPoints::RegionPoints(const double normal[3], const double direction[3], double tie) noexcept
+    : frame_(normal), tie_(tie) {
+  const double up = dot(direction, normal);
+  for (int k = 0; k < 3; ++k) direction_[k] = direction[k] - up * normal[k];
+}
+
 void RegionPoints::add(const ContactPoint& contact, const double* offset,
                        const std::uint32_t (&part)[2]) noexcept {
   keep(point_of(contact, offset, part));
@@ -59,6 +72,7 @@ RegionPoints::Point RegionPoints::point_of(const ContactPoint& contact, const do
   for (int k = 0; k < 3; ++k) p[k] = static_cast<double>(contact.position[k]) + offset[k];
   point.x = dot(p, frame_.axis[0]);
   point.y = dot(p, frame_.axis[1]);
+  point.along = dot(p, direction_);
   for (int k = 0; k < 3; ++k) point.contact.position[k] = static_cast<float>(p[k]);
   point.contact.depth = contact.depth;
   point.contact.feature = contact.feature;
@@ -80,18 +94,38 @@ std::uint32_t RegionPoints::deepest() const noexcept {
   return deepest;
 }
 
-// Of points whose values differ by no more than the tie, the first that was added.
+// Of points whose values are less than the largest by no more than the slack, the one that is
+// outermost along the direction says at which place: a place that is as good as others stays the
+// same. Of the points at that place the one of the largest value is returned, so that a corner is
+// not lost to a point beside it; of several in one place the first that was added.
 template <typename Value>
-std::uint32_t RegionPoints::first_of_largest(Value&& value, double& most) const noexcept {
+std::uint32_t RegionPoints::first_of_largest(Value&& value, double slack,
+                                             double& most) const noexcept {
   double values[kRoom];
   most = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count_; ++i) {
     values[i] = value(point_[i]);
     most = std::max(most, values[i]);
   }
-  std::uint32_t first = 0;
-  while (first + 1 < count_ && !(values[first] >= most - tie_)) ++first;
-  return first;
+  const auto outermost = [&](auto&& counts) {
+    std::uint32_t best = count_;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (!counts(i)) continue;
+      if (best == count_ || point_[i].along > point_[best].along + tie_) best = i;
+    }
+    return best == count_ ? 0 : best;
+  };
+  const std::uint32_t place = outermost([&](std::uint32_t i) { return values[i] >= most - slack; });
+  if (slack <= tie_) return place;
+  const double reach = kPlaces * slack;
+  const auto is_there = [&](std::uint32_t i) {
+    return std::hypot(point_[i].x - point_[place].x, point_[i].y - point_[place].y) <= reach;
+  };
+  double most_there = values[place];
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    if (is_there(i)) most_there = std::max(most_there, values[i]);
+  }
+  return outermost([&](std::uint32_t i) { return is_there(i) && values[i] >= most_there - tie_; });
 }
 
 double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
@@ -116,30 +150,31 @@ double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
   return is_left || is_right ? 0.0 : std::sqrt(nearest);
 }
 
-// Returns how many.
-std::uint32_t RegionPoints::spread(Chosen& chosen) const noexcept {
-  chosen[0] = outermost();
+// The first is chosen. Returns how many.
+std::uint32_t RegionPoints::spread(Chosen& chosen, double span) const noexcept {
+  const double least = std::max(tie_, kLeastWider * span);
+  const double slack = std::max(tie_, kTiedSpan * span);
   std::uint32_t count = 1;
   for (; count < kManifoldPoints; ++count) {
+    const auto value = [&](const Point& p) {
+      const double away = distance_from_hull(p, chosen, count);
+      return away > least ? away : -std::numeric_limits<double>::infinity();
+    };
     double most = 0.0;
-    const std::uint32_t next = first_of_largest(
-        [&](const Point& p) { return distance_from_hull(p, chosen, count); }, most);
-    if (most <= tie_) break;
+    const std::uint32_t next = first_of_largest(value, slack, most);
+    if (!(most > least)) break;
     chosen[count] = next;
   }
   return count;
 }
 
-// The largest x, and of these the largest y: a corner of what they span.
-std::uint32_t RegionPoints::outermost() const noexcept {
-  double most = point_[0].x;
-  for (std::uint32_t i = 1; i < count_; ++i) most = std::max(most, point_[i].x);
-  double unused = 0.0;
-  return first_of_largest(
-      [&](const Point& p) {
-        return p.x >= most - tie_ ? p.y : -std::numeric_limits<double>::infinity();
-      },
-      unused);
+double RegionPoints::span_from(std::uint32_t point) const noexcept {
+  double square = 0.0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const double away[2] = {point_[i].x - point_[point].x, point_[i].y - point_[point].y};
+    square = std::max(square, away[0] * away[0] + away[1] * away[1]);
+  }
+  return std::sqrt(square);
 }
 
 // Parts that share a side may tell of one place more than once, and one that is beside it, of
@@ -161,10 +196,10 @@ const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const no
 void RegionPoints::thin() noexcept {
   bool stays[kRoom] = {};
   double unused = 0.0;
-  static_assert(kDirections == std::size(kSixteenthsOfTurn));
-  for (std::uint32_t k = 0; k < kDirections; ++k) {
-    const double c = kSixteenthsOfTurn[k][0];
-    const double s = kSixteenthsOfTurn[k][1];
+  const double first[2] = {dot(direction_, frame_.axis[0]), dot(direction_, frame_.axis[1])};
+  for (const auto& turn : kSixteenthsOfTurn) {
+    const double c = turn[0] * first[0] - turn[1] * first[1];
+    const double s = turn[0] * first[1] + turn[1] * first[0];
     double most = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < count_; ++i) {
       most = std::max(most, c * point_[i].x + s * point_[i].y);
@@ -174,7 +209,7 @@ void RegionPoints::thin() noexcept {
           return c * p.x + s * p.y >= most - tie_ ? c * p.y - s * p.x
                                                   : -std::numeric_limits<double>::infinity();
         },
-        unused)] = true;
+        tie_, unused)] = true;
   }
   stays[deepest()] = true;
   std::uint32_t kept = 0;
@@ -185,18 +220,27 @@ void RegionPoints::thin() noexcept {
 }
 
 std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
-  if (has_beside_ && (count_ == 0 || beside_.contact.depth > point_[deepest()].contact.depth)) {
+  if (count_ == 0 && has_beside_) keep(beside_);
+  if (count_ == 0) return 0;
+  if (count_ == kRoom) thin();
+  const auto depth_of = [](const Point& p) { return static_cast<double>(p.contact.depth); };
+  double depth = 0.0;
+  Chosen chosen;
+  chosen[0] = first_of_largest([](const Point& p) { return p.along; }, tie_, depth);
+  const double span = span_from(chosen[0]);
+  const double tie = std::max(tie_, kTiedDepth * span);
+  std::uint32_t deepest = first_of_largest(depth_of, tie, depth);
+  std::uint32_t count = spread(chosen, span);
+  if (has_beside_ && depth_of(beside_) > depth) {
+    depth = depth_of(beside_);
+    deepest = count_;
     keep(beside_);
   }
-  if (count_ == 0) return 0;
-  double depth = 0.0;
-  const auto depth_of = [](const Point& p) { return static_cast<double>(p.contact.depth); };
-  const std::uint32_t deepest = first_of_largest(depth_of, depth);
-  Chosen chosen;
-  std::uint32_t count = spread(chosen);
-  const auto is_deepest = [&](std::uint32_t i) { return depth_of(point_[i]) >= depth - tie_; };
-  std::uint32_t* first = std::find_if(chosen, chosen + count, is_deepest);
-  if (first == chosen + count) {
+  // The deepest itself if it is kept, so that each point has its own depth.
+  std::uint32_t* first = std::max_element(
+      chosen, chosen + count,
+      [&](std::uint32_t i, std::uint32_t k) { return depth_of(point_[i]) < depth_of(point_[k]); });
+  if (depth_of(point_[*first]) < depth - tie) {
     count = std::min(count + 1, kManifoldPoints);
     first = chosen + count - 1;
     *first = deepest;

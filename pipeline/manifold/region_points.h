@@ -21,16 +21,18 @@ inline constexpr double kRegionTie = 1e-6;
 
 /// The points of one region, seen along its normal, and the few of them that say the most.
 ///
-/// Kept are points that span the widest area: one that is outermost along a fixed direction, then
-/// three times the one that is farthest from the convex hull of those kept, as long as it is
-/// outside. No point that is dropped is then farther from that hull than the last one kept was from
-/// the hull of those before. Where none of them is as deep as the deepest of all, that one takes
-/// the place of the last. So a face that rests keeps its corners, the same from frame to frame,
-/// however many points lie along its sides.
+/// Kept are points that span the widest area: one that is outermost along a direction, then three
+/// times the one that is farthest from the convex hull of those kept, as long as it is outside. Of
+/// those that are equally far, but for a thousandth of what the points span, it is the outermost
+/// along the direction. No point that is dropped is then farther from that hull, but for as much,
+/// than the last one kept was from the hull of those before. If none of them is as deep as the
+/// deepest of all (but for kTiedDepth), that one takes the place of the last. So a face that rests
+/// keeps its corners, the same from frame to frame, however many points lie along its sides and
+/// however regular it is.
 class RegionPoints {
  public:
-  /// Places and depths that differ by no more than `tie` are the same.
-  RegionPoints(const double normal[3], double tie) noexcept : frame_(normal), tie_(tie) {}
+  /// Places that differ by no more than `tie` are the same. `direction`: any, fixed in a body.
+  RegionPoints(const double normal[3], const double direction[3], double tie) noexcept;
 
   /// A point of the manifold of two parts, and where the body of a stands that the parts are of.
   /// O(1) amortized; of more than some sixty points those stay that are outermost in sixteen
@@ -49,22 +51,24 @@ class RegionPoints {
 
  private:
   static constexpr std::uint32_t kRoom = 64;
-  static constexpr std::uint32_t kDirections = 16;
 
   struct Point {
     double x;
     double y;
+    /// The direction.
+    double along;
     ContactPoint contact;
     std::uint32_t part[2];
   };
   using Chosen = std::uint32_t[kManifoldPoints];
 
   template <typename Value>
-  [[nodiscard]] std::uint32_t first_of_largest(Value&& value, double& most) const noexcept;
+  [[nodiscard]] std::uint32_t first_of_largest(Value&& value, double slack,
+                                               double& most) const noexcept;
   [[nodiscard]] double distance_from_hull(const Point& p, const Chosen& hull,
                                           std::uint32_t count) const noexcept;
-  [[nodiscard]] std::uint32_t spread(Chosen& chosen) const noexcept;
-  [[nodiscard]] std::uint32_t outermost() const noexcept;
+  [[nodiscard]] std::uint32_t spread(Chosen& chosen, double span) const noexcept;
+  [[nodiscard]] double span_from(std::uint32_t point) const noexcept;
   void thin() noexcept;
   [[nodiscard]] Point point_of(const ContactPoint& contact, const double* offset,
                                const std::uint32_t (&part)[2]) const noexcept;
@@ -73,6 +77,7 @@ class RegionPoints {
   [[nodiscard]] const Point& deepest_at(const Point& place) const noexcept;
 
   PatchFrame frame_;
+  double direction_[3];
   double tie_;
   std::uint32_t count_ = 0;
   Point point_[kRoom];

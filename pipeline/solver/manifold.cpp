@@ -142,13 +142,12 @@ void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
   feature_ = hull.face_count + hull.edge_count + corner;
 }
 
-void SupportingPatch::add_cap(const Core& core, const Vec& out, double z) noexcept {
+void SupportingPatch::add_cap(const Core& core, double z) noexcept {
   const std::uint32_t first = z > 0.0 ? 0 : kRimCorners;
   static_assert(kRimCorners == std::size(kSixteenthsOfTurn));
   for (std::uint32_t i = 0; i < kRimCorners; ++i) {
     const auto [c, s] = kSixteenthsOfTurn[i];
-    const Vec at(core.half.x() * (c * out.x() - s * out.y()),
-                 core.half.x() * (c * out.y() + s * out.x()), z);
+    const Vec at(core.half.x() * c, core.half.x() * s, z);
     add(core.center + core.rotation * at, first + i, first + i);
   }
   feature_ = first;
@@ -159,13 +158,13 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const double r = core.half.x();
   const double h = core.half.z();
   const double radial = hypotenuse(d.x(), d.y());
-  // A direction along the axis has no side; the cap then begins at +x, always.
+  // A direction along the axis has no side.
   const Vec out = radial > kAlongAxis ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
   const bool cone = core.kind == CoreKind::cone;
   const bool on_tip = cone && h * d.z() >= r * radial - h * d.z();
   // A cone has but the lower cap.
   const double over_cap = cone ? -d.z() : std::abs(d.z());
-  if (over_cap > kCapCosine) return add_cap(core, out, d.z() > 0.0 ? h : -h);
+  if (over_cap > kCapCosine) return add_cap(core, d.z() > 0.0 ? h : -h);
   const Vec top = cone ? Vec(0.0, 0.0, h) : Vec(out * r + Vec(0.0, 0.0, h));
   add(core.center + core.rotation * top, kSideLine, kSideLine);
   feature_ = kSideLine;
@@ -212,9 +211,11 @@ std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
 // points of what is round come together, and count as the one of them that is farthest out.
 void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
   constexpr std::uint32_t kSamples = 8;
-  int least = 0;
-  (core.rotation.transpose() * outward).cwiseAbs().minCoeff(&least);
-  const Vec u = without(core.rotation.col(least), outward);
+  const Vec d = core.rotation.transpose() * outward;
+  int axis = 0;
+  while (axis < 2 && !(std::abs(d[axis]) <= kAxisCosine)) ++axis;
+  const Vec side = without(core.rotation.col(axis), outward);
+  const Vec u = side * kOffAxes[0] + outward.cross(side) * kOffAxes[1];
   const Vec v = outward.cross(u);
   const Range width[2] = {project(core, u), project(core, v)};
   const double apart =
@@ -354,21 +355,23 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
-  // Where the features miss the point of least distance, as caps with 16 corners do by a little,
-  // meet nowhere within the margin or in one point alone, it takes the place of their deepest;
-  // where they miss it by much, it is put in front of them. None is deeper.
+  // If the features miss the point of least distance, as caps with 16 corners do by a little, meet
+  // nowhere within the margin or in one point alone, it takes the place of their deepest; if they
+  // miss it by much, it is put in front of them. None is deeper, and the first is as deep.
   const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
   if (near && count > 1 && miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
     contacts[0] = own;
-  } else if (!near || count == 1 || miss > 4e-7 * problem.size) {
+  } else if (!near || count == 1 ||
+             miss > std::max(4e-7 * problem.size, tied_depth(contacts, count))) {
     const std::uint64_t feature = near ? contacts[0].feature : own.feature;
     contacts[0] = own;
     contacts[0].feature = feature;
     count = std::max(count, 1U);
   }
+  contacts[0].depth = own.depth;
   answer.contact_count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     contacts[i].depth = std::min(contacts[i].depth, own.depth);

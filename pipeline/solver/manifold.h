@@ -14,7 +14,7 @@ namespace winnow::solver {
 class SupportingPatch {
  public:
   /// No patch has more vertices.
-  static constexpr std::uint32_t kRoom = 64;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   /// The feature that lies farthest along `outward`: a box's face, a triangle, a segment, a hull's
   /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side, the
@@ -23,7 +23,7 @@ class SupportingPatch {
   /// Features some degrees off count as well, since bodies rock over them; all of them hold the
   /// supporting point. Corners of boxes are numbered by the bits x > 0, y > 0, z > 0, edges by
   /// 4 x their axis and the bits of the others, faces by 2 x their axis and the sign. Caps begin
-  /// with the supporting point and go round.
+  /// at +x and go round.
   SupportingPatch(const Core& core, const Vec& outward) noexcept;
 
   /// A square on the face of a half-space around the foot of `middle`, to `reach` on all sides.
@@ -39,7 +39,7 @@ class SupportingPatch {
   void add_face(const Core& core, std::uint32_t face) noexcept;
   void add_edge(const Core& core, std::uint32_t edge, std::uint32_t feature) noexcept;
   void add_hull(const Core& core, const Vec& outward) noexcept;
-  void add_cap(const Core& core, const Vec& out, double z) noexcept;
+  void add_cap(const Core& core, double z) noexcept;
   void add_round(const Core& core, const Vec& outward) noexcept;
   void add_taper(const Core& core, const Vec& outward) noexcept;
   void add_samples(const Core& core, const Vec& outward) noexcept;

@@ -77,7 +77,7 @@ class CurvedPatch {
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 32;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   struct Local {
     double x;
@@ -166,17 +166,13 @@ class CurvedPatch {
     feature_ = shape.face_count + edge;
   }
 
-  void add_cap(const double* out, double z) {
+  void add_cap(double z) {
     feature_ = z > 0.0 ? 0 : kRimCorners;
     const double r = form_.number[0];
     for (std::uint32_t i = 0; i < kRimCorners; ++i) {
       const double c = kRimCosine[i];
       const double s = kRimCosine[(i + 3 * kRimCorners / 4) % kRimCorners];
-      // Not subtracted: of a difference beside a sum g++ 12 makes a fused operation, even if it
-      // must not.
-      const double minus_s = kRimCosine[(i + kRimCorners / 4) % kRimCorners];
-      add({r * (c * out[0] + minus_s * out[1]), r * (c * out[1] + s * out[0]), z}, feature_ + i,
-          feature_ + i);
+      add({r * c, r * s, z}, feature_ + i, feature_ + i);
     }
   }
 
@@ -190,7 +186,7 @@ class CurvedPatch {
     const bool on_tip = cone && h * d[2] >= r * across - h * d[2];
     // A cone has but the lower cap.
     const double over_cap = cone ? -d[2] : __builtin_fabs(d[2]);
-    if (over_cap > kCapCosine && r > 0.0) return add_cap(out, d[2] > 0.0 ? h : -h);
+    if (over_cap > kCapCosine && r > 0.0) return add_cap(d[2] > 0.0 ? h : -h);
     const double top = cone ? 0.0 : r;
     add({out[0] * top, out[1] * top, h}, kSideLine, kSideLine);
     feature_ = kSideLine;
@@ -301,10 +297,10 @@ static inline bool touches_in_a_point(const Form& form) {
 /// The points of contact of a pair no farther apart than the margin. `normal` is in the first's
 /// frame; `world`, from body a to body b, and `point`, on the surface of a relative to it, in the
 /// axes of the world; `core` is the point of the first's core, `apart` the distance of the cores,
-/// both scaled. The deepest point is as deep as the distance says: where the features miss that by
-/// a little, as polygons for rims do, meet nowhere within the margin or in one point alone, it
-/// takes the place of their deepest; where they miss it by much, it is put in front of them. None
-/// is deeper.
+/// both scaled. The deepest point is as deep as the distance says: if the features miss that by a
+/// little, as polygons for rims do, meet nowhere within the margin or in one point alone, it takes
+/// the place of their deepest; if they miss it by much, it is put in front of them. None is deeper,
+/// and the first is as deep.
 static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,
@@ -336,11 +332,12 @@ static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double
     count = count < kManifoldPoints ? count + 1 : count;
     for (std::uint32_t i = count - 1; i > 0; --i) out[i] = out[i - 1];
     out[0] = own;
-  } else if (!near || count == 1 || miss > 4e-7 * size) {
+  } else if (!near || count == 1 || (miss > 4e-7 * size && miss > tied_depth(out, count))) {
     if (near) own.feature = out[0].feature;
     out[0] = own;
     count = count == 0 ? 1 : count;
   }
+  out[0].depth = own.depth;
   for (std::uint32_t i = 1; i < count; ++i) {
     out[i].depth = out[i].depth < own.depth ? out[i].depth : own.depth;
   }

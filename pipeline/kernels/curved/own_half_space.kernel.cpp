@@ -10,68 +10,94 @@ namespace WINNOW_ISA_NAME::round {
 namespace {
 
 /// Points of a set over a plane, the lowest first: as bodies rock, corners of what is flat stay far
-/// from each other, and the points of what is round come together, and count as one.
+/// from each other, and the points of what is round come together, and count as one. Names say in
+/// which direction they were found.
 class RockingPoints {
  public:
   static constexpr std::uint32_t kMost = 4;
 
   /// `up`: unit. Only points no higher than `limit` along it are taken, but for the lowest.
-  RockingPoints(const SupportShape& shape, const double* up, const double* lowest, double limit)
-      : shape_(shape) {
-    add(lowest);
-    curved::directions_across(up, across_);
-    const double apart = apart_of_samples(shape, across_, 1.0);
-    constexpr int kCorners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-    for (const int(&corner)[2] : kCorners) {
+  RockingPoints(const SupportShape& shape, const double* up, const double* lowest, double limit) {
+    double across[2][3];
+    curved::directions_across(up, across);
+    apart_ = apart_of_samples(shape, across, 1.0);
+    constexpr int kCorners[kMost][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (std::uint32_t i = 0; i < kMost; ++i) {
       double down[3];
       double x[3];
       for (int k = 0; k < 3; ++k) {
-        down[k] = kTilt * (corner[0] * across_[0][k] + corner[1] * across_[1][k]) - up[k];
+        down[k] = kTilt * (kCorners[i][0] * across[0][k] + kCorners[i][1] * across[1][k]) - up[k];
       }
-      own_support(shape_, down, 1.0, x);
-      if (dot3(up, x) <= limit && is_alone(x, apart)) add(x);
+      own_support(shape, down, 1.0, x);
+      if (dot3(up, x) <= limit && nearest(x) == count_) add(x, i);
     }
-    if (count_ > kMost) leave_out_lowest(up);
+    put_first(up, lowest);
   }
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const double* point(std::uint32_t i) const { return point_[i]; }
+  [[nodiscard]] std::uint32_t name(std::uint32_t i) const { return name_[i]; }
 
  private:
   /// Tangents of angles: how far directions are off, each way.
   static constexpr double kTilt = 0.03;
 
-  void add(const double* x) {
-    for (int k = 0; k < 3; ++k) point_[count_][k] = x[k];
-    ++count_;
+  void add(const double* x, std::uint32_t name) {
+    name_[count_] = name;
+    set(count_++, x);
+  }
+  void set(std::uint32_t i, const double* x) {
+    for (int k = 0; k < 3; ++k) point_[i][k] = x[k];
   }
 
-  [[nodiscard]] bool is_alone(const double* x, double apart) const {
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const double d[3] = {x[0] - point_[i][0], x[1] - point_[i][1], x[2] - point_[i][2]};
-      if (dot3(d, d) <= apart * apart) return false;
-    }
-    return true;
+  /// One that counts as the same.
+  [[nodiscard]] std::uint32_t nearest(const double* x) const {
+    std::uint32_t i = 0;
+    while (i < count_ && square_between(x, point_[i]) > apart_ * apart_) ++i;
+    return i;
+  }
+  [[nodiscard]] static double square_between(const double* x, const double* y) {
+    const double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+    return dot3(d, d);
   }
 
-  /// It is amid the others, on a face: the lowest of these takes its height.
-  void leave_out_lowest(const double* up) {
-    std::uint32_t best = 1;
-    for (std::uint32_t i = 2; i < count_; ++i) {
+  /// The lowest of all, which may be anywhere on what is flat. If one of the points is hardly
+  /// higher, it stays where it is and takes its height; else the lowest takes the place of one.
+  void put_first(const double* up, const double* lowest) {
+    std::uint32_t best = 0;
+    double reach = 0.0;
+    for (std::uint32_t i = 1; i < count_; ++i) {
       if (dot3(up, point_[i]) < dot3(up, point_[best])) best = i;
+      const double square = square_between(point_[i], point_[0]);
+      reach = square > reach ? square : reach;
     }
-    const double rise = dot3(up, point_[best]) - dot3(up, point_[0]);
-    --count_;
+    if (count_ == 0) return add(lowest, 0);
+    const double rise = dot3(up, point_[best]) - dot3(up, lowest);
+    if (rise <= kTiedDepth * __builtin_sqrt(reach)) {
+      for (int k = 0; k < 3; ++k) point_[best][k] -= rise * up[k];
+    } else {
+      const std::uint32_t near = nearest(lowest);
+      best = near < count_ ? near : best;
+      if (near == count_ && count_ < kMost) {
+        best = count_;
+        add(lowest, kMost);
+      }
+      set(best, lowest);
+    }
     for (int k = 0; k < 3; ++k) {
-      point_[0][k] = point_[best][k] - rise * up[k];
-      point_[best][k] = point_[count_][k];
+      const double first = point_[0][k];
+      point_[0][k] = point_[best][k];
+      point_[best][k] = first;
     }
+    const std::uint32_t name = name_[0];
+    name_[0] = name_[best];
+    name_[best] = name;
   }
 
-  const SupportShape& shape_;
-  double across_[2][3];
+  double apart_ = 0.0;
   std::uint32_t count_ = 0;
-  double point_[kMost + 1][3];
+  double point_[kMost][3];
+  std::uint32_t name_[kMost];
 };
 
 struct HalfSpaceOwn {
@@ -99,6 +125,7 @@ struct HalfSpaceOwn {
     plane.height.store(height);
     alignas(64) T point[Count][3][kWidth] = {};
     alignas(64) T missing[Count][kWidth] = {};
+    alignas(64) T name[Count][kWidth] = {};
     alignas(64) T rounding[kWidth] = {};
     alignas(64) T radius[kWidth] = {};
     for (std::uint32_t lane = 0; lane < block.count; ++lane) {
@@ -123,6 +150,7 @@ struct HalfSpaceOwn {
       const RockingPoints print(shape, d, lowest, limit);
       for (std::uint32_t i = 0; i < print.count(); ++i) {
         put(print.point(i), lane, point[i]);
+        name[i][lane] = static_cast<T>(print.name(i));
         missing[i][lane] = T(0);
       }
     }
@@ -133,7 +161,7 @@ struct HalfSpaceOwn {
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
       r.foot[i] = plane.to_b + axes.to_world(local);
       r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(up, local));
-      r.feature[i] = Lanes<T>(static_cast<T>(i));
+      r.feature[i] = Lanes<T>::load(name[i]);
     }
     r.rounding = Lanes<T>::load(rounding);
     r.normal = plane.normal;

@@ -92,15 +92,17 @@ static inline double dot2(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/// Unit, across d and each other: the first as near as can be to the axis farthest from d.
+/// Unit, across d, which is unit, and each other, the same while d trembles: see kAxisCosine.
 static inline void directions_across(const double* d, double (*across)[3]) {
-  int least = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (__builtin_fabs(d[k]) < __builtin_fabs(d[least])) least = k;
-  }
-  for (int k = 0; k < 3; ++k) across[0][k] = (k == least ? 1.0 : 0.0) - d[least] * d[k];
-  const double length = __builtin_sqrt(dot3(across[0], across[0]));
-  for (int k = 0; k < 3; ++k) across[0][k] /= length;
+  int axis = 0;
+  while (axis < 2 && !(__builtin_fabs(d[axis]) <= kAxisCosine)) ++axis;
+  double u[3];
+  for (int k = 0; k < 3; ++k) u[k] = (k == axis ? 1.0 : 0.0) - d[axis] * d[k];
+  const double length = __builtin_sqrt(dot3(u, u));
+  for (double& x : u) x /= length;
+  double v[3];
+  cross3(d, u, v);
+  for (int k = 0; k < 3; ++k) across[0][k] = kOffAxes[0] * u[k] + kOffAxes[1] * v[k];
   cross3(d, across[0], across[1]);
 }
 

@@ -119,7 +119,7 @@ class HullPatch {
   }
 
  private:
-  static constexpr std::uint32_t kRoom = 32;
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
   void write_direction(float* direction) const {
     for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(outward_[k]);

@@ -12,17 +12,19 @@ namespace {
 
 using hull::kNoFeature;
 
-/// Vertices of a hull over a plane, thinned to the four that span most: the lowest, the one
-/// farthest from it, the one that makes the largest triangle with both, and the one that adds most
-/// to it.
+/// Vertices of a hull over a plane, no higher than `reach` over the lowest: that, and those of the
+/// face or edge at it that faces the plane; of more than four those that contact_patch keeps, the
+/// first of which is hardly higher than the lowest.
 class StandingPoints {
  public:
-  static constexpr std::uint32_t kMost = 4;
+  static constexpr std::uint32_t kMost = kManifoldPoints;
 
   StandingPoints(const HullShape& shape, const double* up, std::uint32_t lowest, double reach)
       : shape_(shape), up_(up) {
     add(lowest);
-    limit_ = dot3(up, point_[0]) + reach;
+    double bottom[3];
+    hull::vertex_at(shape, lowest, bottom);
+    limit_ = dot3(up, bottom) + reach;
     const double down[3] = {-up[0], -up[1], -up[2]};
     float x[3];
     hull::vertex_at(shape, lowest, x);
@@ -34,7 +36,7 @@ class StandingPoints {
       const float direction[3] = {static_cast<float>(down[0]), static_cast<float>(down[1]),
                                   static_cast<float>(down[2])};
       const std::uint32_t other = hull::neighbour_across(shape, direction, lowest, x);
-      if (other != kNoFeature) add(other);
+      if (other != kNoFeature) add_within(other);
     }
   }
 
@@ -42,64 +44,39 @@ class StandingPoints {
   [[nodiscard]] std::uint32_t vertex(std::uint32_t i) const { return vertex_[i]; }
 
  private:
-  void add(std::uint32_t vertex) {
-    hull::vertex_at(shape_, vertex, point_[count_]);
-    vertex_[count_] = vertex;
-    if (count_ == 0 || dot3(up_, point_[count_]) <= limit_) ++count_;
-  }
+  static constexpr std::uint32_t kRoom = kPatchRoom;
 
-  /// The vertex of a face within reach for which `value` is largest, if that is above zero.
-  template <typename Value>
-  void add_largest(const HullFace& face, Value&& value) {
-    double most = 0.0;
-    std::uint32_t best = kNoFeature;
-    for (std::uint32_t i = 0; i < face.count; ++i) {
-      double x[3];
-      hull::vertex_at(shape_, shape_.loop[face.first + i], x);
-      const double v = dot3(up_, x) <= limit_ ? value(x) : 0.0;
-      if (!(v > most)) continue;
-      most = v;
-      best = shape_.loop[face.first + i];
-    }
-    if (best != kNoFeature) add(best);
+  void add(std::uint32_t vertex) { vertex_[count_++] = vertex; }
+  void add_within(std::uint32_t vertex) {
+    double x[3];
+    hull::vertex_at(shape_, vertex, x);
+    if (dot3(up_, x) <= limit_) add(vertex);
   }
 
   void take_face(const HullFace& face) {
-    if (face.count <= kMost) {
-      for (std::uint32_t i = 0; i < face.count; ++i) {
-        const std::uint32_t vertex = shape_.loop[face.first + i];
-        if (vertex != vertex_[0]) add(vertex);
-      }
-      return;
+    if (face.count > kMost) return take_widest(face);
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+      const std::uint32_t vertex = shape_.loop[face.first + i];
+      if (vertex != vertex_[0]) add_within(vertex);
     }
-    add_largest(face, [&](const double* x) {
-      const double d[3] = {x[0] - point_[0][0], x[1] - point_[0][1], x[2] - point_[0][2]};
-      return dot3(d, d);
-    });
-    if (count_ < 2) return;
-    add_largest(face, [&](const double* x) { return __builtin_fabs(area(0, 1, x)); });
-    if (count_ < 3) return;
-    const double turn = area(0, 1, point_[2]) < 0.0 ? -1.0 : 1.0;
-    add_largest(face, [&](const double* x) {
-      const double a = -turn * area(0, 1, x);
-      const double b = -turn * area(1, 2, x);
-      const double c = -turn * area(2, 0, x);
-      const double most = a > b ? a : b;
-      return most > c ? most : c;
-    });
   }
 
-  /// Twice that of a triangle, seen along `up`.
-  [[nodiscard]] double area(std::uint32_t i, std::uint32_t k, const double* x) const {
-    double e[3];
-    double f[3];
-    double n[3];
-    for (int c = 0; c < 3; ++c) {
-      e[c] = point_[k][c] - point_[i][c];
-      f[c] = x[c] - point_[i][c];
+  void take_widest(const HullFace& face) {
+    double point[kRoom][3];
+    std::uint32_t edge[kRoom];
+    std::uint32_t vertex[kRoom];
+    // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+    const std::uint32_t stride = (face.count + kRoom - 1) / kRoom;
+    std::uint32_t size = 0;
+    for (std::uint32_t i = 0; i < face.count; i += stride) {
+      vertex[size] = shape_.loop[face.first + i];
+      edge[size] = shape_.loop_edge[face.first + i];
+      hull::vertex_at(shape_, vertex[size], point[size]);
+      ++size;
     }
-    cross3(e, f, n);
-    return dot3(up_, n);
+    const Patch patch{point, vertex, edge, size, 0, 0.0};
+    const std::uint32_t found = standing_corners(patch, up_, limit_, vertex_);
+    if (found > 0) count_ = found;
   }
 
   const HullShape& shape_;
@@ -107,7 +84,6 @@ class StandingPoints {
   double limit_ = 0.0;
   std::uint32_t count_ = 0;
   std::uint32_t vertex_[kMost + 1] = {};
-  double point_[kMost + 1][3];
 };
 
 /// The plane and its normal in the hulls' axes, lane by lane as well, and what is asked of each
@@ -191,14 +167,16 @@ struct HullOverPlane {
     const auto& normal = under.normal;
     alignas(64) T height[kWidth];
     plane.height.store(height);
-    alignas(64) T vertex[Count][3][kWidth];
-    alignas(64) T name[Count][kWidth];
+    // The last is the lowest, as high as the first counts.
+    alignas(64) T vertex[Count + 1][3][kWidth];
+    alignas(64) T name[Count + 1][kWidth];
     alignas(64) T missing[Count][kWidth] = {};
     for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
       const HullShape& shape = under.take(job, block, lane);
       const Vec3<typename RealOf<T>::Type> down{-normal[0][lane], -normal[1][lane],
                                                 -normal[2][lane]};
       const std::uint32_t lowest = hull::highest_vertex(shape, down);
+      hull_vertex(shape, lowest, Count, lane, vertex, name);
       if constexpr (Count == 1) {
         hull_vertex(shape, lowest, 0, lane, vertex, name);
       } else {
@@ -214,7 +192,7 @@ struct HullOverPlane {
         if (room >= 0.0) {
           const StandingPoints print(shape, d, lowest, room);
           found = print.count();
-          for (std::uint32_t i = 1; i < found; ++i) {
+          for (std::uint32_t i = 0; i < found; ++i) {
             hull_vertex(shape, print.vertex(i), i, lane, vertex, name);
           }
         }
@@ -228,9 +206,12 @@ struct HullOverPlane {
     for (int i = 0; i < Count; ++i) {
       const Vec3<T> local{Lanes<T>::load(vertex[i][0]), Lanes<T>::load(vertex[i][1]),
                           Lanes<T>::load(vertex[i][2])};
+      const auto& high = vertex[i == 0 ? Count : i];
+      const Vec3<T> level{Lanes<T>::load(high[0]), Lanes<T>::load(high[1]),
+                          Lanes<T>::load(high[2])};
       const Lanes<T> gone = Lanes<T>::load(missing[i]);
       r.foot[i] = under.axes.to_world(local);
-      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(under.up, local));
+      r.height[i] = select(gone > Lanes<T>(T(0)), gone, plane.height + dot(under.up, level));
       r.feature[i] = Lanes<T>::load(name[i]);
     }
     under.set_common(r);

@@ -1,5 +1,6 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -227,6 +228,8 @@ template <typename T>
   const Lanes<T> base = -(sign_or_one(facing) * face.across(p.size) + face.across(p.middle)) * over;
   const Lanes<T> rise = -face.across(p.axis) * over;
   const Lanes<T> slack = r.proof.scale * Lanes<T>(T(kOnePlace));
+  const Lanes<T> widest = max(face.along(0, p.size), face.along(1, p.size));
+  const Lanes<T> near = min(widest, p.half) * Lanes<T>(T(2.0 * kAlongSide));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
   for (int i = 0; i < 2; ++i) {
@@ -237,8 +240,11 @@ template <typename T>
     const Lanes<T> one_over = one / slope;
     const Lanes<T> from = (-size - place) * one_over;
     const Lanes<T> to = (size - place) * one_over;
-    // Not where all of the segment is inside but for rounding.
-    const LaneMask<T> cuts = abs(place) + p.half * abs(slope) > size + slack;
+    // Not if all of the segment is inside but for rounding, or lies along a side.
+    const Lanes<T> lean = p.half * abs(slope);
+    const LaneMask<T> is_beside =
+        (abs(place) + lean <= size + near) & (abs(place) - lean >= size - near);
+    const LaneMask<T> cuts = (abs(place) + lean > size + slack) & !is_beside;
     low = select(cuts, max(low, min(from, to)), low);
     high = select(cuts, min(high, max(from, to)), high);
     high = select(cuts & (slope == zero), -p.half - p.half, high);

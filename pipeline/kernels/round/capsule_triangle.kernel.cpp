@@ -1,5 +1,6 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -165,6 +166,8 @@ template <typename T>
   const Lanes<T> facing = dot(b.normal, r.normal);
   const Lanes<T> side = sign_or_one(facing);
   const Lanes<T> slack = r.proof.scale * Lanes<T>(T(kOnePlace));
+  const Lanes<T> longest = sqrt(max(b.square[0], max(b.square[1], b.square[2])));
+  const Lanes<T> near = min(longest, p.half * Lanes<T>(T(2))) * Lanes<T>(T(kAlongSide));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
   // What of the triangle ends it: an edge, or the face where the segment ends first.
@@ -176,8 +179,12 @@ template <typename T>
     const Lanes<T> offset = dot(inward, b.vertex[i]);
     const Lanes<T> at = offset / slope;
     const Lanes<T> edge(T(4 + i));
-    // Not where all of the segment is inside but for rounding.
-    const LaneMask<T> cuts = offset + p.half * abs(slope) > slack * sqrt(b.square[i]);
+    // Not if all of the segment is inside but for rounding, or lies along the edge.
+    const Lanes<T> lean = p.half * abs(slope);
+    const Lanes<T> length = sqrt(b.square[i]);
+    const LaneMask<T> is_beside =
+        (offset + lean <= near * length) & (offset - lean >= -(near * length));
+    const LaneMask<T> cuts = (offset + lean > slack * length) & !is_beside;
     const LaneMask<T> begins = cuts & (slope > zero) & (at > low);
     const LaneMask<T> ends = cuts & (slope < zero) & (at < high);
     low = select(begins, at, low);

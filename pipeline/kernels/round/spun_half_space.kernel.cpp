@@ -19,12 +19,12 @@ struct SpunOverPlane {
   Rotation<T> axes;
   SpunLanes<T> shape;
   Lanes<T> scale;
-  /// Of the plane's normal: along the axis, and across it.
+  /// The plane's normal in the axes of the shape, and how much of it is across the shape's axis.
+  Vec3<T> normal;
   Lanes<T> along;
   Lanes<T> across;
-  /// Radii, in the axes of the world: the one that goes down most, and one level with the plane.
+  /// The radius that goes down most, in the axes of the world.
   Vec3<T> down;
-  Vec3<T> level;
   Vec3<T> half;
 };
 
@@ -39,6 +39,7 @@ template <typename T, typename Shape>
   r.shape = load_spun<SideA, T>(job, block, table);
   r.axes = rotation(turn);
   const Vec3<T> n = r.axes.to_local(r.plane.normal);
+  r.normal = n;
   r.along = n.z;
   r.across = sqrt(n.x * n.x + n.y * n.y);
   const LaneMask<T> has_side = r.across > Lanes<T>(T(kAlongAxis));
@@ -46,29 +47,49 @@ template <typename T, typename Shape>
   const Lanes<T> x = select(has_side, -n.x * over, r.shape.radius);
   const Lanes<T> y = select(has_side, -n.y * over, zero);
   r.down = r.axes.to_world(Vec3<T>{x, y, zero});
-  r.level = r.axes.to_world(Vec3<T>{-y, x, zero});
   r.half = r.axes.z * r.shape.half_length;
   r.scale = r.plane.scale + r.shape.radius + r.shape.half_length + r.shape.rounding + doubt(turn);
   return r;
 }
 
-/// Four points of a cap, the lowest first, the one across last.
+/// Four corners of a cap's rim, the lowest first, the one across last. The lowest point takes the
+/// place of the first if that is higher: the others stay where they are in the shape.
 template <typename T>
 [[gnu::always_inline]] inline void set_cap(Feet<T, 4>& feet, const SpunOverPlane<T>& s,
                                            const Vec3<T>& middle, const Lanes<T>& rise,
                                            const Lanes<T>& name) {
-  const Lanes<T> drop = s.shape.radius * s.across;
+  const Lanes<T> zero(T(0));
+  const Lanes<T> slope[2] = {s.normal.x * s.shape.radius, s.normal.y * s.shape.radius};
+  const Vec3<T> on_x = s.axes.x * (s.shape.radius * -sign_or_one(s.normal.x));
+  const Vec3<T> on_y = s.axes.y * (s.shape.radius * -sign_or_one(s.normal.y));
+  const Lanes<T> name_x = select(s.normal.x >= zero, Lanes<T>(T(2 * kQuarter)), zero);
+  const Lanes<T> name_y =
+      select(s.normal.y >= zero, Lanes<T>(T(3 * kQuarter)), Lanes<T>(T(kQuarter)));
+  const LaneMask<T> x_first = abs(slope[0]) >= abs(slope[1]);
+  const Vec3<T> low = select(x_first, on_x, on_y);
+  const Vec3<T> next = select(x_first, on_y, on_x);
+  const Lanes<T> low_name = select(x_first, name_x, name_y);
+  const Lanes<T> next_name = select(x_first, name_y, name_x);
+  // Across the rim from an even quarter is the other even one, from an odd the other odd.
+  const Lanes<T> across[2] = {Lanes<T>(T(2 * kQuarter)), Lanes<T>(T(4 * kQuarter))};
+  const Lanes<T> low_across = select(x_first, across[0], across[1]) - low_name;
+  const Lanes<T> next_across = select(x_first, across[1], across[0]) - next_name;
+  const Lanes<T> drop[2] = {max(abs(slope[0]), abs(slope[1])), min(abs(slope[0]), abs(slope[1]))};
+  const Lanes<T> most = s.shape.radius * s.across;
+  const LaneMask<T> is_tied = most - drop[0] <= s.shape.radius * Lanes<T>(T(2.0 * kTiedDepth));
   const Lanes<T> height = s.plane.height + rise;
-  feet.foot[0] = middle + s.down;
-  feet.foot[1] = middle + s.level;
-  feet.foot[2] = middle - s.level;
-  feet.foot[3] = middle - s.down;
-  feet.height[0] = height - drop;
-  feet.height[1] = height;
-  feet.height[2] = height;
-  feet.height[3] = height + drop;
-  constexpr int kTurns[4] = {0, 1, 3, 2};
-  for (int i = 0; i < 4; ++i) feet.feature[i] = name + Lanes<T>(T(kQuarter * kTurns[i]));
+  feet.foot[0] = middle + select(is_tied, low, s.down);
+  feet.foot[1] = middle + next;
+  feet.foot[2] = middle - next;
+  feet.foot[3] = middle - low;
+  feet.height[0] = height - most;
+  feet.height[1] = height - drop[1];
+  feet.height[2] = height + drop[1];
+  feet.height[3] = height + drop[0];
+  feet.feature[0] = name + low_name;
+  feet.feature[1] = name + next_name;
+  feet.feature[2] = name + next_across;
+  feet.feature[3] = name + low_across;
   feet.rounding = s.shape.rounding;
   feet.normal = s.plane.normal;
   feet.scale = s.scale;
