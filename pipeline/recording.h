@@ -245,6 +245,7 @@ class WINNOW_API RecordedScene {
   void record_composite(const RecordedShape& shape) noexcept;
   void follow_composites() noexcept;
   void record_passed() noexcept;
+  void show_passed() noexcept;
   void forget_passed() noexcept;
 
   void record_offsets(Key key, const ContactOffsets& offsets) noexcept;
@@ -300,11 +301,17 @@ class WINNOW_API RecordedQueries {
   Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
   Status distance(Key a, Key b, SceneDistance& answer,
-                  double limit = std::numeric_limits<double>::infinity());
+                  double limit = std::numeric_limits<double>::infinity(),
+                  PairRules rules = PairRules::scene);
   Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
-                        double limit = std::numeric_limits<double>::infinity());
+                        double limit = std::numeric_limits<double>::infinity(),
+                        PairRules rules = PairRules::scene);
   Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
-                  std::size_t most = std::numeric_limits<std::size_t>::max());
+                  std::size_t most = std::numeric_limits<std::size_t>::max(),
+                  PairRules rules = PairRules::scene);
+  Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
+                     double margin = 0.0, PairRules rules = PairRules::scene);
+  Status any_contact(KeyPair& pair, double margin = 0.0, PairRules rules = PairRules::scene);
   Status nearest(const double point[3], std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
   /// @}
@@ -316,6 +323,8 @@ class WINNOW_API RecordedQueries {
   Status record_with(ShapeId shape, RecordedCall question, const Filter& filter, Ask&& ask,
                      Write&& write);
   [[nodiscard]] std::uint32_t number_of(ShapeId shape) noexcept;
+  [[nodiscard]] RecordedCall by(PairRules rules, RecordedCall any_two,
+                                RecordedCall by_rules) noexcept;
 
   RecordedScene& scene_;
   SceneQueries queries_;

@@ -88,6 +88,15 @@ struct SceneDistance {
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
+/// Which pairs of bodies a question about two bodies or about sets of them takes.
+enum class PairRules : std::uint8_t {
+  /// Those of which `Scene::collide` would make a pair if their boxes met: one of the two is
+  /// dynamic, their filters and their layers let them meet, they are not ignored, and the predicate
+  /// accepts them. So two fixed bodies are no pair, nor are two that sleep.
+  scene,
+  none,  ///< any two bodies
+};
+
 /// The closest pair of two sets of bodies.
 struct SetDistance {
   Key a;                  ///< of the first set; null if there is none
@@ -180,24 +189,40 @@ class WINNOW_API SceneQueries {
   Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
 
-  /// The closest (or deepest) points of two bodies, whatever their filters; a null answer if they
-  /// are farther apart than `limit`, which may be below zero, and is found out the sooner the less
-  /// it is.
+  // Two bodies, or sets of them. A key that is not of a live body is `invalid_key`; a limit that is
+  // NaN, a margin below 0 or not finite and rules that are none are `invalid_argument`. A body is
+  // not held against itself. Rules are asked about pairs whose boxes are near enough only.
+
+  /// The closest (or deepest) points of two bodies; a null answer if the rules do not take them, or
+  /// if they are farther apart than `limit`, which may be below zero, and is found out the sooner
+  /// the less it is.
   Status distance(Key a, Key b, SceneDistance& answer,
-                  double limit = std::numeric_limits<double>::infinity());
+                  double limit = std::numeric_limits<double>::infinity(),
+                  PairRules rules = PairRules::scene);
   /// The two bodies of two sets that are the closest (or overlap the deepest), such as the links of
-  /// a robot and what it works among, whatever their filters; of equal ones those with the least
-  /// ids. A body that is in both sets is not held against itself. A null answer if all are farther
-  /// apart than `limit`. O(a x b) gaps between boxes, and the exact distances of hardly more than
-  /// one pair.
+  /// a robot and what it works among, or these links twice; of equal ones those with the least ids.
+  /// A null answer if the rules take no pair, or if all are farther apart than `limit`. O(a x b)
+  /// gaps between boxes, and the exact distances of hardly more than one pair.
   Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
-                        double limit = std::numeric_limits<double>::infinity());
+                        double limit = std::numeric_limits<double>::infinity(),
+                        PairRules rules = PairRules::scene);
   /// Pairs (body of a, body of b) of two sets that share a point, in the order of the sets; at most
-  /// `most` of them: 1 stops at the first one. Whatever their filters; a body that is in both sets
-  /// is not held against itself. O(a x b) gaps between boxes, and an exact test for each that is
-  /// closed. Valid until the next question.
+  /// `most` of them: 1 stops at the first one. O(a x b) gaps between boxes, and an exact test for
+  /// each that is closed. Valid until the next question.
   Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
-                  std::size_t most = std::numeric_limits<std::size_t>::max());
+                  std::size_t most = std::numeric_limits<std::size_t>::max(),
+                  PairRules rules = PairRules::scene);
+  /// Whether any body of one set touches one of another, or is no farther from it than `margin`; a
+  /// null pair if none does. Stops at the first pair in the order of the sets, (body of a, body of
+  /// b), which it answers. A set that is given twice, by one span, is held against itself, each
+  /// pair once. O(a x b) gaps between boxes, and for each that is within the margin an exact test,
+  /// with a margin also a distance.
+  Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
+                     double margin = 0.0, PairRules rules = PairRules::scene);
+  /// Asks about the whole scene. Answers the body with the least id that has a contact (by the
+  /// rules of the scene: of the dynamic ones), and of those that it touches the one with the least
+  /// id. O(n log n), and a test for each pair of boxes within the margin up to there.
+  Status any_contact(KeyPair& pair, double margin = 0.0, PairRules rules = PairRules::scene);
   /// The bodies nearest to a point, at most `count`, no farther than `radius`, sorted by distance;
   /// inside a solid the distance is negative.
   Status nearest(const double point[3], std::size_t count, double radius,

@@ -13,11 +13,12 @@
 namespace winnow {
 
 /// origin + t * direction, 0 <= t <= max_t, in double and in the axes of the world. The direction
-/// is finite and not zero, of any length (t is in its units); max_t may be infinite.
+/// is finite and not zero, of any length (t is in its units). Without max_t a ray has no end, as in
+/// a batch.
 struct ShapeRay {
-  double origin[3] = {0.0, 0.0, 0.0};     ///< finite
-  double direction[3] = {1.0, 0.0, 0.0};  ///< finite, not zero
-  double max_t = 1.0;                     ///< >= 0, may be infinite
+  double origin[3] = {0.0, 0.0, 0.0};                      ///< finite
+  double direction[3] = {1.0, 0.0, 0.0};                   ///< finite, not zero
+  double max_t = std::numeric_limits<double>::infinity();  ///< >= 0
 };
 
 /// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to

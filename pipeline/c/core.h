@@ -84,9 +84,10 @@ typedef struct winnow_execution {
   winnow_job_system jobs;  ///< of WINNOW_EXECUTION_ON
 } winnow_execution;
 enum {
-  WINNOW_EXECUTION_PARALLEL = 0,  ///< on all processors, by oneTBB
+  WINNOW_EXECUTION_DEFAULT = 0,  ///< as C++ has it: parallel, but of pairs and impacts serial
   WINNOW_EXECUTION_SERIAL = 1,
-  WINNOW_EXECUTION_ON = 2  ///< on the host's own job system
+  WINNOW_EXECUTION_ON = 2,       ///< on the host's own job system
+  WINNOW_EXECUTION_PARALLEL = 3  ///< on all processors, by oneTBB
 };
 
 /// So many threads of oneTBB, the one that calls counted in; they are started by the first call

@@ -78,9 +78,10 @@ typedef struct winnow_bodies {
   winnow_pose_view poses;
 } winnow_bodies;
 
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_narrow_options {
-  size_t size;  ///< sizeof(winnow_narrow_options), of the caller
-  winnow_contact_level level;
+  size_t size;                 ///< sizeof(winnow_narrow_options), of the caller
+  winnow_contact_level level;  ///< 0: manifold
   winnow_narrow_tier tier;
   double margin;
   winnow_execution execution;
@@ -88,7 +89,7 @@ typedef struct winnow_narrow_options {
 #define WINNOW_NARROW_OPTIONS                                                        \
   {                                                                                  \
     sizeof(winnow_narrow_options), WINNOW_LEVEL_MANIFOLD, WINNOW_TIER_ROBUST, 0.0, { \
-      WINNOW_EXECUTION_SERIAL, {                                                     \
+      WINNOW_EXECUTION_DEFAULT, {                                                    \
         NULL, NULL, 0                                                                \
       }                                                                              \
     }                                                                                \

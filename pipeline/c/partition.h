@@ -6,6 +6,8 @@
 #include <winnow/c/core.h>
 #include <winnow/c/volumes.h>
 
+#include <math.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -159,10 +161,10 @@ typedef struct winnow_partition_options {
   winnow_margin margin;
   size_t build_budget;
 } winnow_partition_options;
-#define WINNOW_PARTITION_OPTIONS                                                          \
-  {                                                                                       \
-    sizeof(winnow_partition_options), NULL, {WINNOW_EXECUTION_PARALLEL, {NULL, NULL, 0}}, \
-        WINNOW_VOLUME_AABB, {0.0F, 0.0F}, 0                                               \
+#define WINNOW_PARTITION_OPTIONS                                                         \
+  {                                                                                      \
+    sizeof(winnow_partition_options), NULL, {WINNOW_EXECUTION_DEFAULT, {NULL, NULL, 0}}, \
+        WINNOW_VOLUME_AABB, {0.0F, 0.0F}, 0                                              \
   }
 
 WINNOW_C_API winnow_status winnow_partition_create(winnow_structure_kind structure,
@@ -268,17 +270,17 @@ WINNOW_C_API winnow_status winnow_partition_filter(const winnow_partition* parti
 
 WINNOW_C_API winnow_status winnow_partition_refresh(const winnow_partition* partition);
 
-/// Null in its place asks for {fast, incremental, all pairs}.
+/// Null, and zeros behind `size`, ask for all pairs in the fast order, incrementally.
 typedef struct winnow_pair_options {
   size_t size;  ///< sizeof(winnow_pair_options), of the caller
   winnow_order order;
-  uint8_t incremental;  ///< 0 or 1
+  uint8_t anew;  ///< 0 or 1: every pair is asked for anew, not by what moved
   /// A last word on each pair, or null; see winnow_filter.
   bool (*accept)(void* context, uint32_t first, uint32_t second);
   void* context;
 } winnow_pair_options;
 #define WINNOW_PAIR_OPTIONS \
-  { sizeof(winnow_pair_options), WINNOW_ORDER_FAST, 1, NULL, NULL }
+  { sizeof(winnow_pair_options), WINNOW_ORDER_FAST, 0, NULL, NULL }
 
 /// All pairs in `out`, what has changed in `events`: one of them may be null.
 WINNOW_C_API winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
@@ -304,6 +306,9 @@ typedef struct winnow_cast {
   float max_t;
 } winnow_cast;
 enum { WINNOW_CAST_RAY = 0, WINNOW_CAST_BOX = 1, WINNOW_CAST_SPHERE = 2, WINNOW_CAST_CAPSULE = 3 };
+/// A ray that has no end, of which origin and direction are still to be said.
+#define WINNOW_CAST \
+  { WINNOW_CAST_RAY, {{0.0F, 0.0F, 0.0F}}, {0.0F, 0.0F, 0.0F}, 0.0F, INFINITY }
 
 /// The null key where there is none.
 WINNOW_C_API winnow_status winnow_partition_closest(const winnow_partition* partition,

@@ -33,7 +33,7 @@ typedef struct winnow_scene_options {
 } winnow_scene_options;
 #define WINNOW_SCENE_OPTIONS                                                                    \
   {                                                                                             \
-    sizeof(winnow_scene_options), NULL, {WINNOW_EXECUTION_PARALLEL, {NULL, NULL, 0}},           \
+    sizeof(winnow_scene_options), NULL, {WINNOW_EXECUTION_DEFAULT, {NULL, NULL, 0}},            \
         {{WINNOW_LINEAR_BVH, 0.0F}, {WINNOW_LINEAR_BVH, 0.0F}, {WINNOW_LINEAR_BVH, 0.0F}}, 0.0, \
         WINNOW_TIER_ROBUST, 0, 0.0, 0, NULL                                                     \
   }
@@ -188,6 +188,8 @@ typedef struct winnow_scene_room {
   size_t manifolds;
   size_t points;
 } winnow_scene_room;
+#define WINNOW_SCENE_ROOM \
+  { sizeof(winnow_scene_room), {0, 0, 0}, 0, WINNOW_LEVEL_MANIFOLD, 0, 0, 0 }
 WINNOW_C_API winnow_status winnow_scene_reserve(winnow_scene* scene, const winnow_scene_room* room,
                                                 winnow_pages pages);
 WINNOW_C_API winnow_status winnow_scene_reserve_contacts(const winnow_scene* scene,

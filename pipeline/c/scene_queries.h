@@ -85,6 +85,8 @@ typedef struct winnow_shape_cast {
   double direction[3];
   double max_t;
 } winnow_shape_cast;
+#define WINNOW_SHAPE_CAST \
+  { WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {1.0, 0.0, 0.0}, 1.0 }
 #define WINNOW_CAST_TOLERANCE 1e-6
 
 WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(winnow_scene_queries* queries,
@@ -114,6 +116,13 @@ WINNOW_C_API winnow_status winnow_scene_queries_overlap(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
     const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
 
+/// Which pairs of bodies a question about two bodies or about sets of them takes; see PairRules.
+typedef int32_t winnow_pair_rules;
+enum {
+  WINNOW_PAIR_RULES_SCENE = 0,  ///< those of which winnow_scene_collide would make a pair
+  WINNOW_PAIR_RULES_NONE = 1    ///< any two bodies
+};
+
 /// Two points, and how far they are apart.
 typedef struct winnow_scene_distance {
   winnow_key key;
@@ -126,8 +135,10 @@ typedef struct winnow_scene_distance {
   double point_a[3];
   double point_b[3];
 } winnow_scene_distance;
+/// `limit` is INFINITY for none.
 WINNOW_C_API winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries,
-                                                         winnow_key a, winnow_key b,
+                                                         winnow_key a, winnow_key b, double limit,
+                                                         winnow_pair_rules rules,
                                                          winnow_scene_distance* answer);
 WINNOW_C_API winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries,
                                                         const double point[3], size_t count,
@@ -141,17 +152,28 @@ typedef struct winnow_set_distance {
   uint64_t data_a;
   winnow_scene_distance to;
 } winnow_set_distance;
-WINNOW_C_API winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
-                                                               const winnow_key* a, size_t count_a,
-                                                               const winnow_key* b, size_t count_b,
-                                                               double limit,
-                                                               winnow_set_distance* answer);
+WINNOW_C_API winnow_status winnow_scene_queries_least_distance(
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer);
 /// At most `most` pairs (body of a, body of b).
 WINNOW_C_API winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries,
                                                          const winnow_key* a, size_t count_a,
                                                          const winnow_key* b, size_t count_b,
-                                                         size_t most, const winnow_key_pair** pairs,
+                                                         size_t most, winnow_pair_rules rules,
+                                                         const winnow_key_pair** pairs,
                                                          size_t* count);
+/// The first pair (body of a, body of b) that touches or is no farther apart than `margin`; two
+/// null keys if there is none.
+WINNOW_C_API winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries,
+                                                            const winnow_key* a, size_t count_a,
+                                                            const winnow_key* b, size_t count_b,
+                                                            double margin, winnow_pair_rules rules,
+                                                            winnow_key_pair* pair);
+/// Asks about the whole scene.
+WINNOW_C_API winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
+                                                                     double margin,
+                                                                     winnow_pair_rules rules,
+                                                                     winnow_key_pair* pair);
 WINNOW_C_API winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,
                                                           winnow_footprint* footprint);
 

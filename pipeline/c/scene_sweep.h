@@ -19,12 +19,13 @@ enum {
 };
 typedef int32_t winnow_sweep_pairs;
 
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_sweep_options {
   size_t size;  ///< sizeof(winnow_sweep_options), of the caller
   winnow_sweep_pairs pairs;
   uint8_t leave_out_touching;  ///< 0 or 1: those that share a point at the start
   uint8_t first_only;          ///< 0 or 1
-  double tolerance;
+  double tolerance;            ///< 0: 1e-6
   /// By moving body, 0 or 1; null if none is one.
   const uint8_t* bullets;
 } winnow_sweep_options;

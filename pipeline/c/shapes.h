@@ -7,6 +7,8 @@
 #include <winnow/c/core.h>
 #include <winnow/c/volumes.h>
 
+#include <math.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -155,6 +157,8 @@ typedef struct winnow_shape_ray {
   double direction[3];
   double max_t;
 } winnow_shape_ray;
+#define WINNOW_SHAPE_RAY \
+  { {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, INFINITY }
 
 typedef struct winnow_shape_hit {
   bool hit;
@@ -174,8 +178,10 @@ WINNOW_C_API winnow_status winnow_composite_pool_create(const winnow_shape_pool*
                                                         winnow_composite_pool** pool);
 WINNOW_C_API void winnow_composite_pool_destroy(winnow_composite_pool* pool);
 
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_mesh_options {
   size_t size;  ///< sizeof(winnow_mesh_options), of the caller
+  /// 0: 0.02. For edges that bend by anything at all: the smallest double above 0.
   double active_edge_angle;
 } winnow_mesh_options;
 #define WINNOW_MESH_OPTIONS \
@@ -206,6 +212,12 @@ typedef struct winnow_height_samples {
   uint32_t row_stride;  ///< 0: columns
   double spacing[2];
 } winnow_height_samples;
+#define WINNOW_HEIGHT_SAMPLES \
+  {                           \
+    NULL, 0, 0, 0, 0, {       \
+      1.0, 1.0                \
+    }                         \
+  }
 WINNOW_C_API winnow_status winnow_composite_pool_add_height_field(
     winnow_composite_pool* pool, const winnow_height_samples* samples, winnow_shape_id* id);
 WINNOW_C_API winnow_status winnow_composite_pool_update_height_field(
@@ -217,6 +229,14 @@ typedef struct winnow_compound_child {
   winnow_shape_id shape;
   winnow_pose pose;
 } winnow_compound_child;
+#define WINNOW_COMPOUND_CHILD \
+  {                           \
+    WINNOW_NO_SHAPE, {        \
+      {0.0, 0.0, 0.0}, {      \
+        1.0, 0.0, 0.0, 0.0    \
+      }                       \
+    }                         \
+  }
 WINNOW_C_API winnow_status winnow_composite_pool_add_compound(winnow_composite_pool* pool,
                                                               const winnow_compound_child* children,
                                                               size_t count, winnow_shape_id* id);

@@ -38,9 +38,10 @@ typedef struct winnow_moving_bodies {
   size_t count;
 } winnow_moving_bodies;
 
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_impact_options {
-  size_t size;  ///< sizeof(winnow_impact_options), of the caller
-  double tolerance;
+  size_t size;       ///< sizeof(winnow_impact_options), of the caller
+  double tolerance;  ///< 0: 1e-6
   /// What holds meshes, height fields and compounds, or null.
   const winnow_composite_pool* composites;
   winnow_execution execution;
@@ -48,7 +49,7 @@ typedef struct winnow_impact_options {
 #define WINNOW_IMPACT_OPTIONS                    \
   {                                              \
     sizeof(winnow_impact_options), 1e-6, NULL, { \
-      WINNOW_EXECUTION_SERIAL, {                 \
+      WINNOW_EXECUTION_DEFAULT, {                \
         NULL, NULL, 0                            \
       }                                          \
     }                                            \

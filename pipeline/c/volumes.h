@@ -180,15 +180,16 @@ typedef struct winnow_debug_draw {
                winnow_colour colour);
 } winnow_debug_draw;
 
+/// Null, and zeros behind `size`, stand for what C++ has by default.
 typedef struct winnow_debug_draw_options {
-  size_t size;      ///< sizeof(winnow_debug_draw_options), of the caller
-  uint8_t objects;  ///< 0 or 1, as the next two
-  uint8_t structure;
+  size_t size;                ///< sizeof(winnow_debug_draw_options), of the caller
+  uint8_t leave_out_objects;  ///< 0 or 1, as the next two
+  uint8_t leave_out_structure;
   uint8_t labels;
-  int32_t max_depth;
+  int32_t max_depth;  ///< 0: 64
 } winnow_debug_draw_options;
 #define WINNOW_DEBUG_DRAW_OPTIONS \
-  { sizeof(winnow_debug_draw_options), 1, 1, 0, 64 }
+  { sizeof(winnow_debug_draw_options), 0, 0, 0, 64 }
 
 #ifdef __cplusplus
 }

@@ -15,8 +15,9 @@
 ///    others want the thing to themselves. Buffers of results belong to one thread at a time.
 ///  - Results are shown where they lie: a pointer that a call answers is valid until what it was
 ///    taken from is used again or destroyed.
-///  - Structs that may grow begin with their `size`, which the caller sets to sizeof. Each has a
-///    macro of its name in capitals with what C++ has by default, where that is not all zeros.
+///  - Structs that may grow begin with their `size`, which the caller sets to sizeof. Options with
+///    zeros behind it are what C++ has by default, and so is null in their place. A struct of which
+///    something else than zeros is the default has a macro of its name in capitals.
 ///  - Callbacks must not throw, jump out, or call what calls them.
 ///
 /// How the binary interface may change is written in README.md beside this file.

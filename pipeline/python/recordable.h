@@ -260,6 +260,10 @@ class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
     return on([&](auto& q) { return q.overlaps(given...); });
   }
   template <typename... Given>
+  Status any_contact(Given&&... given) {
+    return on([&](auto& q) { return q.any_contact(given...); });
+  }
+  template <typename... Given>
   Status nearest(Given&&... given) {
     return on([&](auto& q) { return q.nearest(given...); });
   }

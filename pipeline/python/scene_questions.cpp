@@ -23,6 +23,7 @@ namespace {
 enum class Wanted { closest, any, all };
 constexpr Choices<Wanted, 3> kWanted{
     {{"closest", Wanted::closest}, {"any", Wanted::any}, {"all", Wanted::all}}};
+constexpr Choices<PairRules, 2> kRules{{{"scene", PairRules::scene}, {"none", PairRules::none}}};
 
 /// Asks while nothing changes the scene, which is brought up to date before.
 template <typename Body>
@@ -329,8 +330,9 @@ template <typename CastAt>
           bodies.column<std::uint32_t>(offsetof(SceneOverlap, part))};
 }
 
-[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b,
-                                           double limit) {
+[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b, double limit,
+                                           const std::string& rules) {
+  const PairRules taken = chosen(kRules, rules, "rules");
   const KeyInput first(a, "a");
   const KeyInput second(b, "b");
   if (first.count() != second.count()) {
@@ -341,7 +343,8 @@ template <typename CastAt>
       s, first.count(), "distance",
       [&](const Asker& ask, std::size_t i, std::span<const SceneDistance>& found) {
         SceneDistance& answer = one[i / kQuestionsPerTask];
-        const Status status = ask->distance(first.keys()[i], second.keys()[i], answer, limit);
+        const Status status =
+            ask->distance(first.keys()[i], second.keys()[i], answer, limit, taken);
         if (answer) found = {&answer, 1};
         return status;
       }));
@@ -359,15 +362,7 @@ void ask_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&
   accept(outcome.status, call);
 }
 
-[[nodiscard]] py::array_t<std::uint64_t> overlaps(SharedScene& s, py::handle a, py::handle b,
-                                                  std::size_t most) {
-  std::vector<KeyPair> pairs;
-  ask_sets(s, a, b, "overlaps", [&](const Asker& ask, auto first, auto second) {
-    std::span<const KeyPair> found;
-    const Status status = ask->overlaps(first, second, found, most);
-    if (status == Status::ok) pairs.assign(found.begin(), found.end());
-    return status;
-  });
+[[nodiscard]] py::array_t<std::uint64_t> rows_of(std::span<const KeyPair> pairs) {
   auto result = fresh<std::uint64_t>(pairs.size(), 2);
   Key* const keys = keys_in(result);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -377,11 +372,47 @@ void ask_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&
   return result;
 }
 
+[[nodiscard]] py::array_t<std::uint64_t> overlaps(SharedScene& s, py::handle a, py::handle b,
+                                                  std::size_t most, const std::string& rules) {
+  const PairRules taken = chosen(kRules, rules, "rules");
+  std::vector<KeyPair> pairs;
+  ask_sets(s, a, b, "overlaps", [&](const Asker& ask, auto first, auto second) {
+    std::span<const KeyPair> found;
+    const Status status = ask->overlaps(first, second, found, most, taken);
+    if (status == Status::ok) pairs.assign(found.begin(), found.end());
+    return status;
+  });
+  return rows_of(pairs);
+}
+
+/// Without sets, of the whole scene; without the second, of the first with itself.
+[[nodiscard]] py::array_t<std::uint64_t> any_contact(SharedScene& s, const py::object& a,
+                                                     const py::object& b, double margin,
+                                                     const std::string& rules) {
+  const PairRules taken = chosen(kRules, rules, "rules");
+  KeyPair pair;
+  if (a.is_none()) {
+    if (!b.is_none()) throw Refusal(Status::invalid_argument, "any_contact: b without a");
+    const Outcome outcome = asking(s, [&] {
+      const Asker asker(s);
+      return Outcome{asker->any_contact(pair, margin, taken), 0};
+    });
+    accept(outcome.status, "any_contact");
+  } else {
+    const bool is_one = b.is_none();
+    ask_sets(s, a, is_one ? a : b, "any_contact", [&](const Asker& ask, auto first, auto second) {
+      return ask->any_contact(first, is_one ? first : second, pair, margin, taken);
+    });
+  }
+  return rows_of({&pair, pair.first == Key{} ? 0U : 1U});
+}
+
 [[nodiscard]] std::pair<py::array_t<std::uint64_t>, SceneDistanceTables> least_distance(
-    SharedScene& s, py::handle a, py::handle b, double limit) {
+    SharedScene& s, py::handle a, py::handle b, double limit, const std::string& rules) {
+  const PairRules taken = chosen(kRules, rules, "rules");
   SetDistance answer;
   ask_sets(s, a, b, "least_distance", [&](const Asker& ask, auto first, auto second) {
-    return ask->least_distance(first, second, answer, limit);
+    return ask->least_distance(first, second, answer, limit, taken);
   });
   auto lists = std::make_shared<Lists<SceneDistance>>(1);
   if (answer) lists->put(0, 0, &answer.to, &answer.to + 1);
@@ -480,17 +511,24 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
            arg("filter") = PythonFilter{},
            "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")
       .def("distance", &distance, arg("a"), arg("b"), py::kw_only(), arg("limit") = forever,
-           "Closest or deepest points of bodies a (n,) and b (n,), whatever their filters: one "
-           "answer to each question, and none to those whose bodies are farther apart than "
-           "`limit`.")
+           arg("rules") = "scene",
+           "Closest or deepest points of bodies a (n,) and b (n,): one answer to each question, "
+           "and none to those whose bodies are farther apart than `limit`. `rules`, here and "
+           "below: 'scene' takes pairs that `collide` would make, by their sets (one is dynamic), "
+           "filters, layers, ignored pairs and the predicate; 'none' takes any two bodies.")
       .def("least_distance", &least_distance, arg("a"), arg("b"), py::kw_only(),
-           arg("limit") = forever,
+           arg("limit") = forever, arg("rules") = "scene",
            "The closest, or deepest, bodies of two sets a (n,) and b (m,): the key of the first, "
            "(1,), and one answer; none of both where all are farther apart than `limit`.")
       .def("overlaps", &overlaps, arg("a"), arg("b"), py::kw_only(),
-           arg("most") = std::numeric_limits<std::size_t>::max(),
+           arg("most") = std::numeric_limits<std::size_t>::max(), arg("rules") = "scene",
            "Keys (k, 2) of bodies of two sets a (n,) and b (m,) that share a point, at most `most` "
            "of them: 1 stops at the first one.")
+      .def("any_contact", &any_contact, arg("a") = py::none(), arg("b") = py::none(), py::kw_only(),
+           arg("margin") = 0.0, arg("rules") = "scene",
+           "The first pair of bodies of two sets a (n,) and b (m,) that touch or are no farther "
+           "apart than `margin`: keys (1, 2), or (0, 2) if none do. Without b, of bodies of a with "
+           "each other; without both, of all bodies of the scene.")
       .def("nearest", filtered(&nearest), arg("points"), arg("count") = 1, py::kw_only(),
            arg("radius") = forever, arg("filter") = PythonFilter{},
            "The at most `count` bodies nearest to each point (n, 3), no farther than `radius`, "

@@ -18,7 +18,7 @@ namespace winnow {
 
 inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
 /// Written; all from the first on are read.
-inline constexpr std::uint32_t kRecordingVersion = 3;
+inline constexpr std::uint32_t kRecordingVersion = 4;
 /// Magic, version, and 4 bytes of 0.
 inline constexpr std::size_t kRecordingHeader = 16;
 /// Size of what follows, and its digest.
@@ -95,6 +95,13 @@ enum class RecordedCall : std::uint8_t {
   sense,
   sweep,
   sweep_motions,
+
+  // From version 4 on. Those above that ask about the same take any two bodies.
+  ask_distance_by_rules,
+  ask_least_distance_by_rules,
+  ask_overlaps_by_rules,
+  ask_any_contact,
+  ask_any_contact_of_sets,
 };
 
 /// The last call of a version; none of one that is not known.
@@ -102,7 +109,8 @@ enum class RecordedCall : std::uint8_t {
   if (version == 1) return RecordedCall::set_layers_meet;
   if (version == 2) return RecordedCall::ask_nearest;
   if (version == 3) return RecordedCall::sweep_motions;
-  static_assert(kRecordingVersion == 3);
+  if (version == 4) return RecordedCall::ask_any_contact_of_sets;
+  static_assert(kRecordingVersion == 4);
   return std::nullopt;
 }
 

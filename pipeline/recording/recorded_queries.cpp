@@ -202,10 +202,21 @@ Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& h
 
 // --- distances ---------------------------------------------------------------------------------
 
-Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double limit) {
-  const Status status = queries_.distance(a, b, answer, limit);
+/// Which call it is, after what the scene's predicate was told meanwhile.
+RecordedCall RecordedQueries::by(PairRules rules, RecordedCall any_two,
+                                 RecordedCall by_rules) noexcept {
+  if (rules == PairRules::none) return any_two;
+  scene_.show_passed();
+  return by_rules;
+}
+
+Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double limit,
+                                 PairRules rules) {
+  const Status status = queries_.distance(a, b, answer, limit, rules);
   if (status != Status::ok) return status;
-  CallWriter(scene_.recorder_, RecordedCall::ask_distance, scene_.world_)
+  const RecordedCall call =
+      by(rules, RecordedCall::ask_distance, RecordedCall::ask_distance_by_rules);
+  CallWriter(scene_.recorder_, call, scene_.world_)
       .put(a.id)
       .put(b.id)
       .put(limit)
@@ -214,10 +225,12 @@ Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double lim
 }
 
 Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
-                                       SetDistance& answer, double limit) {
-  const Status status = queries_.least_distance(a, b, answer, limit);
+                                       SetDistance& answer, double limit, PairRules rules) {
+  const Status status = queries_.least_distance(a, b, answer, limit, rules);
   if (status != Status::ok) return status;
-  CallWriter(scene_.recorder_, RecordedCall::ask_least_distance, scene_.world_)
+  const RecordedCall call =
+      by(rules, RecordedCall::ask_least_distance, RecordedCall::ask_least_distance_by_rules);
+  CallWriter(scene_.recorder_, call, scene_.world_)
       .put_ids(a)
       .put_ids(b)
       .put(limit)
@@ -226,14 +239,42 @@ Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const K
 }
 
 Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
-                                 std::span<const KeyPair>& pairs, std::size_t most) {
-  const Status status = queries_.overlaps(a, b, pairs, most);
+                                 std::span<const KeyPair>& pairs, std::size_t most,
+                                 PairRules rules) {
+  const Status status = queries_.overlaps(a, b, pairs, most, rules);
   if (status != Status::ok) return status;
-  CallWriter(scene_.recorder_, RecordedCall::ask_overlaps, scene_.world_)
+  const RecordedCall call =
+      by(rules, RecordedCall::ask_overlaps, RecordedCall::ask_overlaps_by_rules);
+  CallWriter(scene_.recorder_, call, scene_.world_)
       .put_ids(a)
       .put_ids(b)
       .put(std::uint64_t{most})
       .put(digest_of_answers(pairs).value());
+  return status;
+}
+
+Status RecordedQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
+                                    double margin, PairRules rules) {
+  const Status status = queries_.any_contact(a, b, pair, margin, rules);
+  if (status != Status::ok) return status;
+  const auto call = RecordedCall::ask_any_contact_of_sets;
+  CallWriter(scene_.recorder_, by(rules, call, call), scene_.world_)
+      .put(rules)
+      .put(margin)
+      .put_ids(a)
+      .put_ids(b)
+      .put(digest_of_answers(pair).value());
+  return status;
+}
+
+Status RecordedQueries::any_contact(KeyPair& pair, double margin, PairRules rules) {
+  const Status status = queries_.any_contact(pair, margin, rules);
+  if (status != Status::ok) return status;
+  const auto call = RecordedCall::ask_any_contact;
+  CallWriter(scene_.recorder_, by(rules, call, call), scene_.world_)
+      .put(rules)
+      .put(margin)
+      .put(digest_of_answers(pair).value());
   return status;
 }
 

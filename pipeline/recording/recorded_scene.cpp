@@ -402,6 +402,13 @@ void RecordedScene::record_passed() noexcept {
   passed_->pairs.clear();
 }
 
+// Several threads may ask SceneQueries: pairs that others were told of may be among these, and they
+// stay until the scene itself asks, so that each question finds its own.
+void RecordedScene::show_passed() noexcept {
+  if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
+  CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
+}
+
 // A question that was refused, and is not recorded, may have been told what passes for good: all is
 // asked again, here and where it is played.
 void RecordedScene::forget_passed() noexcept {

@@ -85,6 +85,9 @@ Status ReplayState::ask_scene(RecordedCall call, ReplayedWorld& of) {
       return ask_cast<MotionCast>(of);
     case RecordedCall::ask_nearest:
       return ask_nearest(of);
+    case RecordedCall::ask_any_contact:
+    case RecordedCall::ask_any_contact_of_sets:
+      return ask_any_contact(call, of);
     default:
       return ask_sets(call, of);
   }
@@ -159,33 +162,57 @@ Status ReplayState::ask_cast(ReplayedWorld& of) {
   return answered == Status::ok ? compare(hit) : answered;
 }
 
+/// Whether any bodies of the scene touch, or any of two sets.
+Status ReplayState::ask_any_contact(RecordedCall call, ReplayedWorld& of) {
+  const auto rules = in.get_enum(PairRules::none);
+  const auto margin = in.get<double>();
+  KeyPair pair;
+  if (call == RecordedCall::ask_any_contact) {
+    if (!in.ok()) return reading();
+    const Status answered = of.queries->any_contact(pair, margin, rules);
+    return answered == Status::ok ? compare(pair) : answered;
+  }
+  if (!read_sets(of)) return reading();
+  const Status answered = of.queries->any_contact(first_set(), second_set(), pair, margin, rules);
+  return answered == Status::ok ? compare(pair) : answered;
+}
+
+bool ReplayState::read_sets(ReplayedWorld& of) {
+  if (!read_keys(*of.scene)) return false;
+  keys.swap(others);
+  return read_keys(*of.scene);
+}
+
 /// Questions about bodies that are named.
 Status ReplayState::ask_sets(RecordedCall call, ReplayedWorld& of) {
-  if (call == RecordedCall::ask_distance) {
+  const bool any_two = call == RecordedCall::ask_distance ||
+                       call == RecordedCall::ask_least_distance ||
+                       call == RecordedCall::ask_overlaps;
+  const PairRules rules = any_two ? PairRules::none : PairRules::scene;
+  if (call == RecordedCall::ask_distance || call == RecordedCall::ask_distance_by_rules) {
     const Key a = of.scene->key_of(in.get<ObjectId>());
     const Key b = of.scene->key_of(in.get<ObjectId>());
     const auto limit = in.get<double>();
     SceneDistance answer;
     if (!in.ok()) return reading();
-    const Status answered = of.queries->distance(a, b, answer, limit);
+    const Status answered = of.queries->distance(a, b, answer, limit, rules);
     return answered == Status::ok ? compare(answer) : answered;
   }
-  if (!read_keys(*of.scene)) return reading();
-  keys.swap(others);
-  if (!read_keys(*of.scene)) return reading();
-  const std::span<const Key> first(others.data(), others.size());
-  const std::span<const Key> second(keys.data(), keys.size());
-  if (call == RecordedCall::ask_least_distance) {
+  if (!read_sets(of)) return reading();
+  const std::span<const Key> first = first_set();
+  const std::span<const Key> second = second_set();
+  if (call == RecordedCall::ask_least_distance ||
+      call == RecordedCall::ask_least_distance_by_rules) {
     const auto limit = in.get<double>();
     SetDistance answer;
     if (!in.ok()) return reading();
-    const Status answered = of.queries->least_distance(first, second, answer, limit);
+    const Status answered = of.queries->least_distance(first, second, answer, limit, rules);
     return answered == Status::ok ? compare(answer) : answered;
   }
   const auto most = static_cast<std::size_t>(in.get<std::uint64_t>());
   if (!in.ok()) return reading();
   std::span<const KeyPair> pairs;
-  const Status answered = of.queries->overlaps(first, second, pairs, most);
+  const Status answered = of.queries->overlaps(first, second, pairs, most, rules);
   return answered == Status::ok ? compare(pairs) : answered;
 }
 

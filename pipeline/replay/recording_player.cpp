@@ -126,6 +126,7 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   if (call == RecordedCall::make_scene) return make_scene(*of);
   if (call > RecordedCall::make_scene) {
     if (!of->scene) return Status::invalid_argument;
+    if (call >= RecordedCall::ask_distance_by_rules) return ask_scene(call, *of);
     if (call >= RecordedCall::sweep) return sweep(call, *of);
     if (call >= RecordedCall::make_sensors) return play_sensors(call, *of);
     const bool asks = call >= RecordedCall::ask_ray && call < RecordedCall::load_scene;

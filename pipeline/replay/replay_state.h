@@ -136,6 +136,15 @@ struct ReplayState {
   template <typename Moving>
   [[nodiscard]] Status ask_cast(ReplayedWorld& of);
   [[nodiscard]] Status ask_sets(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status ask_any_contact(RecordedCall call, ReplayedWorld& of);
+  /// Two sets of bodies, into `others` and `keys`.
+  [[nodiscard]] bool read_sets(ReplayedWorld& of);
+  [[nodiscard]] std::span<const Key> first_set() const noexcept {
+    return {others.data(), others.size()};
+  }
+  [[nodiscard]] std::span<const Key> second_set() const noexcept {
+    return {keys.data(), keys.size()};
+  }
   [[nodiscard]] Status ask_nearest(ReplayedWorld& of);
   [[nodiscard]] bool read_shape(const ReplayedWorld& of, ShapeId& id) noexcept;
   [[nodiscard]] bool read_question() noexcept;

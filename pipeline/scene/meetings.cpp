@@ -1,10 +1,11 @@
-// Which pairs of bodies may meet, beyond their filters: those whose layers meet, that are not
-// ignored and that the caller's predicate accepts.
+// Which pairs of bodies may meet: beyond their sets and filters those whose layers meet, that are
+// not ignored and that the caller's predicate accepts.
 
 #include "core/hooks/log.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -139,6 +140,20 @@ bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
   if (!layers.meet(layer_of(a), layer_of(b))) return false;
   if (is_ignored(a, b)) return false;
   return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
+}
+
+bool SceneState::would_pair(ObjectId a, ObjectId b) const noexcept {
+  if (motion[a] != Motion::dynamic) std::swap(a, b);
+  if (a == b || motion[a] != Motion::dynamic || !may_meet(filter_of(a), filter_of(b))) return false;
+  // The predicate is asked about the two in the order in which partitions have them.
+  if (motion[b] == Motion::dynamic && place[b].id < place[a].id) std::swap(a, b);
+  return may_pair(a, b);
+}
+
+ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
+  ObjectFilter filter;
+  (void)set(motion[body]).partition->filter(place[body], filter);
+  return filter;
 }
 
 // Whatever was said of bodies that were removed: their ids are going to be others'.

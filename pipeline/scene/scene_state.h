@@ -234,6 +234,9 @@ struct SceneState {
     return with_layers ? layer[body] : std::uint16_t{0};
   }
   [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
+  /// All that decides whether `collide` makes a pair of two live bodies whose boxes meet.
+  [[nodiscard]] bool would_pair(ObjectId a, ObjectId b) const noexcept;
+  [[nodiscard]] ObjectFilter filter_of(ObjectId body) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] bool add_ignored(std::span<const KeyPair> told) noexcept;
   void forget_ignored(std::span<const Key> removed) noexcept;

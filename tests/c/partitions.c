@@ -142,7 +142,7 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   OK(winnow_partition_self_pairs(partition, pairs, NULL, &options));
   note_pairs(t, "self_pairs", pairs);
   options.accept = sum_is_even;
-  options.incremental = 0;
+  options.anew = 1;
   OK(winnow_partition_self_pairs(partition, copy, NULL, &options));
   note_pairs(t, "accepted pairs", copy);
 

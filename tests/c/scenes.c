@@ -161,22 +161,34 @@ static void ask_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shap
     note(t, "overlap", bodies[i].data);
     note(t, "overlap", bodies[i].part);
   }
-  OK(winnow_scene_queries_distance(ask, keys[1], keys[30], &apart));
+  OK(winnow_scene_queries_distance(ask, keys[1], keys[30], INFINITY, WINNOW_PAIR_RULES_NONE,
+                                   &apart));
   note_distance(t, "distance", &apart);
   OK(winnow_scene_queries_nearest(ask, pose.position, 5, 10.0, NULL, &near_ones, &count));
   note(t, "nearest", count);
   for (size_t i = 0; i < count; ++i) note_distance(t, "nearest", &near_ones[i]);
   winnow_set_distance least;
-  OK(winnow_scene_queries_least_distance(ask, keys + 4, 6, keys + 16, 8, 1e9, &least));
+  OK(winnow_scene_queries_least_distance(ask, keys + 4, 6, keys + 16, 8, 1e9,
+                                         WINNOW_PAIR_RULES_SCENE, &least));
   note(t, "least of sets", least.a.id);
   note(t, "least of sets", least.data_a);
   note_distance(t, "least of sets", &least.to);
   const winnow_key_pair* pairs = NULL;
-  OK(winnow_scene_queries_overlaps(ask, keys + 4, 6, keys + 16, 12, 7, &pairs, &count));
+  OK(winnow_scene_queries_overlaps(ask, keys + 4, 6, keys + 16, 12, 7, WINNOW_PAIR_RULES_SCENE,
+                                   &pairs, &count));
   note(t, "overlaps of sets", count);
   for (size_t i = 0; i < count; ++i) {
     note(t, "overlaps of sets", pairs[i].first.id);
     note(t, "overlaps of sets", pairs[i].second.id);
+  }
+  for (winnow_pair_rules rules = 0; rules <= WINNOW_PAIR_RULES_NONE; ++rules) {
+    winnow_key_pair found;
+    OK(winnow_scene_queries_any_contact(ask, keys + 4, 6, keys + 16, 12, 0.25, rules, &found));
+    note(t, "any contact of sets", found.first.id);
+    note(t, "any contact of sets", found.second.id);
+    OK(winnow_scene_queries_any_contact_in_scene(ask, 0.0, rules, &found));
+    note(t, "any contact", found.first.id);
+    note(t, "any contact", found.second.id);
   }
   winnow_footprint bytes = {.size = sizeof bytes};
   OK(winnow_scene_queries_footprint(ask, &bytes));

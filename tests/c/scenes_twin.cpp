@@ -144,7 +144,8 @@ void ask_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<co
     note(t, "overlap", body.data);
     note(t, "overlap", body.part);
   }
-  (void)ask.distance(keys[1], keys[30], apart);
+  (void)ask.distance(keys[1], keys[30], apart, std::numeric_limits<double>::infinity(),
+                     PairRules::none);
   note_distance(t, "distance", apart);
   (void)ask.nearest(pose.position, 5, 10.0, near);
   note(t, "nearest", near.size());
@@ -160,6 +161,15 @@ void ask_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<co
   for (const KeyPair& pair : pairs) {
     note(t, "overlaps of sets", pair.first.id);
     note(t, "overlaps of sets", pair.second.id);
+  }
+  for (const PairRules rules : {PairRules::scene, PairRules::none}) {
+    KeyPair found;
+    (void)ask.any_contact(keys.subspan(4, 6), keys.subspan(16, 12), found, 0.25, rules);
+    note(t, "any contact of sets", found.first.id);
+    note(t, "any contact of sets", found.second.id);
+    (void)ask.any_contact(found, 0.0, rules);
+    note(t, "any contact", found.first.id);
+    note(t, "any contact", found.second.id);
   }
   note(t, "queries take memory", 1);
 }

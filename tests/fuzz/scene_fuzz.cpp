@@ -392,7 +392,7 @@ void Play::ask_distance(SceneQueries& queries) {
   const auto& [a, body_a] = *bodies_.begin();
   const auto& [b, body_b] = *bodies_.rbegin();
   SceneDistance answer;
-  WINNOW_HOLDS(queries.distance(a, b, answer) == Status::ok);
+  WINNOW_HOLDS(queries.distance(a, b, answer, kInfinity, PairRules::none) == Status::ok);
   if (body_a.shape.is_composite() || body_b.shape.is_composite()) return;
   const double truth = distance(body_a.shape, body_a.pose, body_b.shape, body_b.pose);
   WINNOW_HOLDS(answer.distance == truth ||

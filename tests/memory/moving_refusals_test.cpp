@@ -199,6 +199,19 @@ void add_ways_and_volumes(MovingCalls& calls) {
                      if (status == Status::ok) w.answers.push_back(pairs.size());
                      return status;
                    }});
+  calls.push_back({"any contact of sets", [](auto& w) {
+                     KeyPair pair;
+                     const Status status = w.queries.any_contact(
+                         std::span(w.keys).first(9), std::span(w.keys).last(9), pair, 0.5);
+                     if (status == Status::ok) w.answers.push_back(pair.first.id);
+                     return status;
+                   }});
+  calls.push_back({"any contact", [](auto& w) {
+                     KeyPair pair;
+                     const Status status = w.queries.any_contact(pair, 0.5);
+                     if (status == Status::ok) w.answers.push_back(pair.first.id);
+                     return status;
+                   }});
   calls.push_back({"contacts at last", [](auto& w) { return w.collide(); }});
 }
 

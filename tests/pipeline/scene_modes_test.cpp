@@ -217,9 +217,9 @@ void ask_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
     tally.missed += hit.key == Key{} ? 1U : 0U;
     bits.add(hit);
     SceneDistance distance;
-    EXPECT_EQ(
-        queries.distance(world.keys()[i], world.keys()[(i + 1) % TinyWorld::kBodies], distance),
-        Status::ok);
+    EXPECT_EQ(queries.distance(world.keys()[i], world.keys()[(i + 1) % TinyWorld::kBodies],
+                               distance, kInfinity, PairRules::none),
+              Status::ok);
     bits.add(distance);
   }
 }

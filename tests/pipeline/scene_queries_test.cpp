@@ -135,7 +135,8 @@ TEST(SceneQueries, of_two_balls_in_a_row_are_answered_by_both_or_the_nearer) {
   EXPECT_EQ(overlaps[0].key, world.keys[1]);
 
   SceneDistance apart;
-  ASSERT_EQ(ask.distance(world.keys[0], world.keys[1], apart), Status::ok);
+  ASSERT_EQ(ask.distance(world.keys[0], world.keys[1], apart, kInfinity, PairRules::none),
+            Status::ok);
   EXPECT_DOUBLE_EQ(apart.distance, 8.0);
 
   const double origin[3] = {0, 0, 0};
@@ -508,7 +509,8 @@ TEST(SceneQueries, two_bodies_are_as_far_apart_as_their_closest_parts) {
       const std::size_t a = n % 2 == 0 ? 40 + random.below(12) : random.below(40);
       const std::size_t b = random.below(world.bodies.size());
       SceneDistance answer;
-      ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], answer), Status::ok);
+      ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], answer, kInfinity, PairRules::none),
+                Status::ok);
       EXPECT_EQ(answer.key, world.keys[b]);
       const PairAnswer truth =
           brute_distance(world, world.bodies[a].shape, world.bodies[a].pose, b);
@@ -532,13 +534,16 @@ TEST(SceneQueries, two_bodies_farther_apart_than_a_limit_have_no_distance) {
     const std::size_t b = random.below(world.bodies.size());
     SceneDistance free;
     SceneDistance limited;
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], free), Status::ok);
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], free, kInfinity, PairRules::none),
+              Status::ok);
     const double slack = 1e-9 + 0.01 * std::abs(free.distance);
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance + slack),
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance + slack,
+                               PairRules::none),
               Status::ok);
     EXPECT_EQ(limited.key, world.keys[b]);
     EXPECT_NEAR(limited.distance, free.distance, 1e-12);
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance - slack),
+    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance - slack,
+                               PairRules::none),
               Status::ok);
     EXPECT_FALSE(limited);
   }
@@ -567,28 +572,32 @@ TEST(SceneQueries, two_sets_are_as_far_apart_as_their_closest_bodies) {
         for (const Key b : sets[1]) {
           if (a == b) continue;
           SceneDistance pair;
-          ASSERT_EQ(queries.distance(a, b, pair), Status::ok);
+          ASSERT_EQ(queries.distance(a, b, pair, kInfinity, PairRules::none), Status::ok);
           least = std::min(least, pair.distance);
           if (pair.distance <= 0.0) overlapping.push_back({a, b});
         }
       }
       std::span<const KeyPair> found;
-      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found), Status::ok);
+      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, ~std::size_t{0}, PairRules::none),
+                Status::ok);
       EXPECT_TRUE(std::ranges::equal(found, overlapping));
-      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, 1), Status::ok);
+      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, 1, PairRules::none), Status::ok);
       EXPECT_EQ(found.size(), std::min<std::size_t>(overlapping.size(), 1));
       SetDistance answer;
-      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer), Status::ok);
+      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, kInfinity, PairRules::none),
+                Status::ok);
       ASSERT_EQ(static_cast<bool>(answer), least < kInfinity);
       if (!answer) continue;
       EXPECT_NEAR(answer.to.distance, least, 1e-9);
       SceneDistance own;
-      ASSERT_EQ(queries.distance(answer.a, answer.to.key, own), Status::ok);
+      ASSERT_EQ(queries.distance(answer.a, answer.to.key, own, kInfinity, PairRules::none),
+                Status::ok);
       EXPECT_NEAR(own.distance, least, 1e-9);
       BodyDefinition body;
       ASSERT_EQ(world.scene->body(answer.a, body), Status::ok);
       EXPECT_EQ(answer.data_a, body.data);
-      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, least - 1e-6), Status::ok);
+      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, least - 1e-6, PairRules::none),
+                Status::ok);
       EXPECT_FALSE(answer);
     }
   }

@@ -114,6 +114,21 @@ TEST(SceneQueryCalls, bad_questions_get_a_status_and_change_nothing) {
   EXPECT_EQ(queries.overlap(good.shape, Pose::at(nan, 0, 0), overlaps), Status::invalid_pose);
   SceneDistance distance;
   EXPECT_EQ(queries.distance(world.keys[0], {}, distance), Status::invalid_key);
+  const auto no_rules = static_cast<PairRules>(7);
+  EXPECT_EQ(queries.distance(world.keys[0], world.keys[1], distance, 1.0, no_rules),
+            Status::invalid_argument);
+  const KeyPair before{world.keys[0], world.keys[1]};
+  KeyPair pair = before;
+  const Key gone[] = {world.keys[0], Key{}};
+  EXPECT_EQ(queries.any_contact(gone, world.keys, pair), Status::invalid_key);
+  for (const double margin : {-1.0, nan, kInfinity}) {
+    EXPECT_EQ(queries.any_contact(world.keys, world.keys, pair, margin), Status::invalid_argument);
+    EXPECT_EQ(queries.any_contact(pair, margin), Status::invalid_argument);
+  }
+  EXPECT_EQ(queries.any_contact(world.keys, world.keys, pair, 0.0, no_rules),
+            Status::invalid_argument);
+  EXPECT_EQ(queries.any_contact(pair, 0.0, no_rules), Status::invalid_argument);
+  EXPECT_EQ(pair, before);
   std::span<const SceneDistance> near;
   const double nowhere[3] = {0.0, nan, 0.0};
   const double origin[3] = {0.0, 0.0, 0.0};

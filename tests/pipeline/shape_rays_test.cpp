@@ -68,6 +68,15 @@ struct Cast {
   return Vector3d::Map(c.hit.normal);
 }
 
+TEST(ShapeRays, without_max_t_have_no_end) {
+  ShapePool pool;
+  const ShapeId ball = pool.add(SphereShape{1.0});
+  const ShapeRay ray{.origin = {-1e6, 0.0, 0.0}, .direction = {1.0, 0.0, 0.0}};
+  ShapeHit hit;
+  ASSERT_EQ(cast_ray(pool.tables(), ball, {}, ray, hit), Status::ok);
+  EXPECT_DOUBLE_EQ(hit.t, 1e6 - 1.0);
+}
+
 TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
   ShapePool pool;
   ShapeId box;

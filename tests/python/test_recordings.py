@@ -112,6 +112,9 @@ def test_scenes_are_recorded(file):
         scene.distance(keys[:9], keys[9:18])
         scene.least_distance(keys[:9], keys[9:])
         scene.overlaps(keys[:9], keys[9:])
+        for rules in ("scene", "none"):
+            scene.any_contact(keys[:9], keys[9:], margin=0.1, rules=rules)
+            scene.any_contact(rules=rules)
         scene.nearest(rays[0][:5], 3)
         scene.collide(contacts)
         touching.append(len(contacts))

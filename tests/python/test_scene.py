@@ -148,6 +148,20 @@ def test_shapes_are_cast_overlapped_and_measured(world):
         tuple(pair[::-1]) for pair in pairs
     )
     assert len(scene.overlaps(everyone, everyone, most=1)) == min(1, len(pairs))
+    assert scene.any_contact().shape == scene.any_contact(everyone).shape
+    assert len(scene.any_contact(balls[:2], balls[1:])) == 0
+    gap = apart.distance[1]
+    near = scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01)
+    assert near.tolist() == [[balls[1], balls[2]]]
+    scene.set_ignored([[balls[1], balls[2]]])
+    assert len(scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01)) == 0
+    assert len(scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01, rules="none")) == 1
+    assert len(scene.distance(balls[1:2], balls[2:]).key) == 0
+    assert len(scene.distance(balls[1:2], balls[2:], rules="none").key) == 1
+    with pytest.raises(winnow.StatusError):
+        scene.any_contact(b=balls)
+    with pytest.raises(winnow.StatusError):
+        scene.overlaps(balls, balls, rules="some")
     near = scene.nearest([[0, 0, 2.0], [9, 0, 9]], 2)
     assert near.data.tolist()[:2] == [1, 100] and near.distance[0] == pytest.approx(1.1)
     with pytest.raises(winnow.StatusError, match="unsupported"):

@@ -349,6 +349,15 @@ void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filte
   std::span<const KeyPair> pairs;
   EXPECT_EQ(ask.overlaps(keys.first(9), keys.last(9), pairs), Status::ok);
   EXPECT_EQ(ask.overlaps(keys, keys, pairs, 2), Status::ok);
+  EXPECT_EQ(ask.distance(keys[0], keys[1], gap, 9.0, PairRules::none), Status::ok);
+  EXPECT_EQ(ask.least_distance(keys.first(5), keys.last(9), least, 9.0, PairRules::none),
+            Status::ok);
+  for (const PairRules rules : {PairRules::scene, PairRules::none}) {
+    EXPECT_EQ(ask.overlaps(keys.first(9), keys.last(9), pairs, 9, rules), Status::ok);
+    KeyPair pair;
+    EXPECT_EQ(ask.any_contact(keys.first(9), keys.last(9), pair, 0.5, rules), Status::ok);
+    EXPECT_EQ(ask.any_contact(pair, 0.0, rules), Status::ok);
+  }
   std::span<const SceneDistance> near;
   EXPECT_EQ(ask.nearest(world.random_pose().position, 4, 9.0, near, filter), Status::ok);
 }

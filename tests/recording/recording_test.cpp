@@ -82,6 +82,12 @@ struct Row {
   std::vector<Key> keys;
 };
 
+/// The version stands behind the eight characters.
+Bytes8 as_version(Bytes8 bytes, std::uint32_t version) {
+  std::memcpy(bytes.data() + 8, &version, sizeof version);
+  return bytes;
+}
+
 TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
   const auto refuse_even = [](void*, ObjectId first, ObjectId) { return first % 2 != 0; };
   Row row;
@@ -296,6 +302,62 @@ TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit
   EXPECT_EQ(player.differences(), 0U);
 }
 
+TEST(ProgramRecordings, questions_by_rules_have_what_predicate_let_pass) {
+  Row row;
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, row.shapes);
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    scene.set_predicate({[](void*, ObjectId a, ObjectId b) { return (a + b) % 3 != 0; }});
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    Contacts contacts;
+    for (int frame = 0; frame < 3; ++frame) {
+      std::vector<std::thread> threads;
+      for (std::size_t thread = 0; thread < 4; ++thread) {
+        threads.emplace_back([&, thread] {
+          RecordedQueries ask(scene);
+          for (std::size_t i = 0; i + 4 < row.keys.size(); ++i) {
+            const std::span<const Key> some(row.keys.data() + i, thread + 1);
+            std::span<const KeyPair> pairs;
+            EXPECT_EQ(ask.overlaps(some, row.keys, pairs), Status::ok);
+            KeyPair pair;
+            EXPECT_EQ(ask.any_contact(some, row.keys, pair, 0.3), Status::ok);
+            EXPECT_EQ(ask.any_contact(pair), Status::ok);
+          }
+        });
+      }
+      for (std::thread& thread : threads) thread.join();
+      EXPECT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
+      EXPECT_GT(contacts.size(), 0U);
+      ASSERT_EQ(scene.move(row.keys[0], Pose::at(0, 0.1 * frame, 0)), Status::ok);
+      ASSERT_EQ(scene.refresh(), Status::ok);
+    }
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(bytes);
+}
+
+TEST(ProgramRecordings, of_version_3_take_any_two_bodies) {
+  Row row;
+  Bytes8 bytes;
+  Recorder recorder(kept_in(bytes));
+  {
+    RecordedScene scene(recorder, row.shapes);
+    ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
+    ASSERT_EQ(scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
+    ASSERT_EQ(scene.refresh(), Status::ok);
+    RecordedQueries ask(scene);
+    SceneDistance gap;
+    EXPECT_EQ(ask.distance(row.keys[0], row.keys[1], gap, 9.0, PairRules::none), Status::ok);
+    EXPECT_TRUE(gap);
+    std::span<const KeyPair> pairs;
+    EXPECT_EQ(ask.overlaps(row.keys, row.keys, pairs, 99, PairRules::none), Status::ok);
+  }
+  ASSERT_EQ(recorder.close(), Status::ok);
+  expect_same_everywhere(as_version(bytes, 3));
+}
+
 TEST(ProgramRecordings, of_questions_take_memory_of_the_question_and_the_recorder_alone) {
   Row row;
   CompositePool composites(row.shapes);
@@ -359,12 +421,6 @@ TEST(ProgramRecordings, of_questions_that_were_refused_have_none) {
   ASSERT_EQ(row.shapes.add(egg, function), Status::ok);
   EXPECT_EQ(ask.overlap(function, Pose{}, found), Status::ok);
   EXPECT_EQ(recorder.status(), Status::unsupported);
-}
-
-/// The version stands behind the eight characters.
-Bytes8 as_version(Bytes8 bytes, std::uint32_t version) {
-  std::memcpy(bytes.data() + 8, &version, sizeof version);
-  return bytes;
 }
 
 void expect_played(std::span<const unsigned char> recording, std::uint64_t calls,
@@ -488,7 +544,7 @@ TEST(ProgramRecordings, of_other_versions_are_refused_and_so_is_what_only_newer_
     const Bytes8 bytes = as_version(asking, version);
     EXPECT_EQ(RecordingPlayer(bytes).status(), Status::invalid_argument);
   }
-  for (const std::uint32_t too_old : {1U, 2U}) {
+  for (const std::uint32_t too_old : {1U, 2U, 3U}) {
     const Bytes8 bytes = as_version(asking, too_old);
     RecordingPlayer player(bytes);
     EXPECT_EQ(player.play_all(), Status::invalid_argument);

@@ -52,8 +52,8 @@ template <typename T>
   return given != nullptr && given->size >= kFirstSize<T> && given->size <= kLargestStruct;
 }
 
-/// Reads a struct that may grow; null leaves `own`, which holds what is so by default. What a later
-/// version has behind the end must be zero, which is what it is without it.
+/// Reads a struct that may grow; null leaves `own`, all zeros, which stand for the defaults. What
+/// a later version has behind the end must be zero, which is what it is without it.
 template <typename T>
 [[nodiscard]] bool read_sized(const T* given, T& own) noexcept {
   if (given == nullptr) return true;
@@ -97,6 +97,7 @@ template <typename Made>
 /// As much as a call lasts: the predicate leads to `given`.
 [[nodiscard]] Filter filter_of(const winnow_filter* given) noexcept;
 
+/// WINNOW_EXECUTION_DEFAULT leaves `execution` as it is.
 [[nodiscard]] bool read_execution(const winnow_execution& given, Execution& execution) noexcept;
 
 /// Null is `execution` as it is.

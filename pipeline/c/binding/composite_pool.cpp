@@ -4,6 +4,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
@@ -11,6 +12,14 @@
 #include <winnow/pipeline/triangle_mesh.h>
 
 namespace winnow::c {
+
+bool read_options(const winnow_mesh_options* given, MeshOptions& options) noexcept {
+  winnow_mesh_options own{};
+  if (!read_sized(given, own)) return false;
+  take_given(own.active_edge_angle, options.active_edge_angle);
+  return true;
+}
+
 namespace {
 
 [[nodiscard]] bool read_samples(const winnow_height_samples* given,
@@ -52,18 +61,17 @@ winnow_status winnow_composite_pool_add_mesh(winnow_composite_pool* pool,
                                              const winnow_mesh_options* options,
                                              const winnow_execution* execution,
                                              winnow_shape_id* id) {
-  winnow_mesh_options own = WINNOW_MESH_OPTIONS;
+  winnow::MeshOptions read;
   winnow::Execution run = winnow::Execution::parallel();
   winnow::PointView points;
   winnow::IndexView corners;
-  if (!are_given(pool, id) || !read_sized(options, own) || !read_execution(execution, run) ||
+  if (!are_given(pool, id) || !read_options(options, read) || !read_execution(execution, run) ||
       read_points(vertices, points) != winnow::Status::ok ||
       read_triangles(triangles, corners) != winnow::Status::ok) {
     return WINNOW_INVALID_ARGUMENT;
   }
   winnow::ShapeId made;
-  const winnow::Status status =
-      pool->value.add_mesh(points, corners, made, {own.active_edge_angle}, run);
+  const winnow::Status status = pool->value.add_mesh(points, corners, made, read, run);
   return added(status, made, id);
 }
 

@@ -67,6 +67,8 @@ Filter filter_of(const winnow_filter* given) noexcept {
 
 bool read_execution(const winnow_execution& given, Execution& execution) noexcept {
   switch (given.kind) {
+    case WINNOW_EXECUTION_DEFAULT:
+      return true;
     case WINNOW_EXECUTION_PARALLEL:
       execution = Execution::parallel();
       return true;

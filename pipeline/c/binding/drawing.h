@@ -25,7 +25,4 @@ class Drawing final : public DebugDraw {
   const winnow_debug_draw& draw_;
 };
 
-[[nodiscard]] bool read_drawing(const winnow_debug_draw_options* given,
-                                DebugDrawOptions& options) noexcept;
-
 }  // namespace winnow::c

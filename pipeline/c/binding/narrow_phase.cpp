@@ -5,23 +5,26 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
-namespace {
 
-[[nodiscard]] bool read_options(const winnow_narrow_options* given,
-                                NarrowOptions& options) noexcept {
-  winnow_narrow_options own = WINNOW_NARROW_OPTIONS;
+bool read_options(const winnow_narrow_options* given, NarrowOptions& options) noexcept {
+  winnow_narrow_options own{};
+  ContactLevel level{};
   if (!read_sized(given, own) || !read_execution(own.execution, options.execution) ||
-      !read_choice(own.level, ContactLevel::manifold, options.level) ||
+      !read_choice(own.level, ContactLevel::manifold, level) ||
       !read_choice(own.tier, NarrowTier::reference, options.tier)) {
     return false;
   }
+  take_given(level, options.level);
   options.margin = own.margin;
   return true;
 }
+
+namespace {
 
 [[nodiscard]] winnow_narrow_columns columns_of(const NarrowResult& result) noexcept {
   winnow_narrow_columns shown{};

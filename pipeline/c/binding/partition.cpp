@@ -4,6 +4,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/structures.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
@@ -47,11 +48,9 @@ winnow_structure_kind structure_of(StructureKind kind) noexcept {
   return found;
 }
 
-namespace {
-
-[[nodiscard]] bool read_options(const winnow_partition_options* given, const winnow_memory*& memory,
-                                PartitionOptions& options) noexcept {
-  winnow_partition_options own = WINNOW_PARTITION_OPTIONS;
+bool read_options(const winnow_partition_options* given, const winnow_memory*& memory,
+                  PartitionOptions& options) noexcept {
+  winnow_partition_options own{};
   if (!read_sized(given, own) || !read_execution(own.execution, options.execution) ||
       !read_choice(own.volume, Volume::kdop26, options.volume)) {
     return false;
@@ -61,6 +60,8 @@ namespace {
   options.build_budget = own.build_budget;
   return true;
 }
+
+namespace {
 
 [[nodiscard]] std::span<const ClientData> data_of(const uint64_t* data,
                                                   std::size_t count) noexcept {

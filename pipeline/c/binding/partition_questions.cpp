@@ -5,6 +5,7 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/drawing.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
@@ -12,18 +13,18 @@
 #include <winnow/core/region.h>
 
 namespace winnow::c {
-namespace {
 
-[[nodiscard]] bool read_pair_options(const winnow_pair_options* given,
-                                     PairOptions& options) noexcept {
-  winnow_pair_options own = WINNOW_PAIR_OPTIONS;
+bool read_options(const winnow_pair_options* given, PairOptions& options) noexcept {
+  winnow_pair_options own{};
   if (!read_sized(given, own) || !read_choice(own.order, Order::canonical, options.order)) {
     return false;
   }
-  options.incremental = own.incremental != 0;
+  options.incremental = own.anew == 0;
   options.predicate = {own.accept, own.context};
   return true;
 }
+
+namespace {
 
 [[nodiscard]] bool read_cast(const winnow_cast* given, Cast& cast) noexcept {
   if (given == nullptr) return false;
@@ -133,7 +134,7 @@ winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
                                           const winnow_pair_options* options) {
   winnow::PairOptions read;
   if (partition == nullptr || (out == nullptr && events == nullptr) ||
-      !read_pair_options(options, read)) {
+      !read_options(options, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   if (events == nullptr) return answer(partition->asked->self_pairs(out->value, read));
@@ -145,7 +146,7 @@ winnow_status winnow_partition_pairs_with(const winnow_partition* partition,
                                           const winnow_partition* other, winnow_pair_buffer* out,
                                           const winnow_pair_options* options) {
   winnow::PairOptions read;
-  if (!are_given(partition, other, out) || !read_pair_options(options, read)) {
+  if (!are_given(partition, other, out) || !read_options(options, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(partition->asked->pairs_with(*other->asked, out->value, read));
@@ -235,7 +236,7 @@ winnow_status winnow_partition_debug_draw(const winnow_partition* partition,
                                           const winnow_debug_draw* draw,
                                           const winnow_debug_draw_options* options) {
   winnow::DebugDrawOptions read;
-  if (!are_given(partition, draw) || !read_drawing(options, read)) return WINNOW_INVALID_ARGUMENT;
+  if (!are_given(partition, draw) || !read_options(options, read)) return WINNOW_INVALID_ARGUMENT;
   Drawing drawing(*draw);
   return answer(partition->asked->debug_draw(drawing, read));
 }

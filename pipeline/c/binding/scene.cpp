@@ -5,16 +5,16 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/drawing.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/structures.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
-namespace {
 
-[[nodiscard]] bool read_options(const winnow_scene_options* given, const winnow_memory*& memory,
-                                SceneOptions& options) noexcept {
-  winnow_scene_options own = WINNOW_SCENE_OPTIONS;
+bool read_options(const winnow_scene_options* given, const winnow_memory*& memory,
+                  SceneOptions& options) noexcept {
+  winnow_scene_options own{};
   if (!read_sized(given, own) || !read_execution(own.execution, options.execution) ||
       !read_choice(own.tier, NarrowTier::reference, options.tier)) {
     return false;
@@ -30,7 +30,6 @@ namespace {
   return true;
 }
 
-}  // namespace
 }  // namespace winnow::c
 
 using namespace winnow::c;
@@ -179,7 +178,7 @@ winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t motion,
 winnow_status winnow_scene_debug_draw(const winnow_scene* scene, const winnow_debug_draw* draw,
                                       const winnow_debug_draw_options* options) {
   winnow::DebugDrawOptions read;
-  if (!are_given(scene, draw) || !read_drawing(options, read)) return WINNOW_INVALID_ARGUMENT;
+  if (!are_given(scene, draw) || !read_options(options, read)) return WINNOW_INVALID_ARGUMENT;
   Drawing drawing(*draw);
   return answer(scene->value.debug_draw(drawing, read));
 }

@@ -37,6 +37,10 @@ template <typename Ask>
   return answer(status == Status::ok ? ask(batch) : status);
 }
 
+[[nodiscard]] bool read_rules(winnow_pair_rules given, PairRules& rules) noexcept {
+  return read_choice(given, PairRules::none, rules);
+}
+
 [[nodiscard]] ShapeCast cast_of(const winnow_shape_cast& given, bool touching) noexcept {
   const double(&direction)[3] = given.direction;
   return {{given.shape},
@@ -183,9 +187,12 @@ winnow_status winnow_scene_queries_overlap(winnow_scene_queries* queries, winnow
 }
 
 winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries, winnow_key a,
-                                            winnow_key b, winnow_scene_distance* answer) {
-  if (!are_given(queries, answer)) return WINNOW_INVALID_ARGUMENT;
-  return winnow::c::answer(queries->value.distance(*twin(&a), *twin(&b), *twin(answer)));
+                                            winnow_key b, double limit, winnow_pair_rules rules,
+                                            winnow_scene_distance* answer) {
+  winnow::PairRules taken{};
+  if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
+  return winnow::c::answer(
+      queries->value.distance(*twin(&a), *twin(&b), *twin(answer), limit, taken));
 }
 
 winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const double point[3],
@@ -200,23 +207,46 @@ winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const 
 winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
                                                   const winnow_key* a, size_t count_a,
                                                   const winnow_key* b, size_t count_b, double limit,
+                                                  winnow_pair_rules rules,
                                                   winnow_set_distance* answer) {
-  if (!are_given(queries, answer)) return WINNOW_INVALID_ARGUMENT;
+  winnow::PairRules taken{};
+  if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
-  return winnow::c::answer(queries->value.least_distance(
-      std::span(twin(a), count_a), std::span(twin(b), count_b), *twin(answer), limit));
+  return winnow::c::answer(queries->value.least_distance(twins(a, count_a), twins(b, count_b),
+                                                         *twin(answer), limit, taken));
 }
 
 winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const winnow_key* a,
                                             size_t count_a, const winnow_key* b, size_t count_b,
-                                            size_t most, const winnow_key_pair** pairs,
-                                            size_t* count) {
-  if (!are_given(queries, pairs, count)) return WINNOW_INVALID_ARGUMENT;
+                                            size_t most, winnow_pair_rules rules,
+                                            const winnow_key_pair** pairs, size_t* count) {
+  winnow::PairRules taken{};
+  if (!are_given(queries, pairs, count) || !read_rules(rules, taken)) {
+    return WINNOW_INVALID_ARGUMENT;
+  }
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
   return answer_list<winnow::KeyPair>(pairs, count, [&](auto& found) {
-    return queries->value.overlaps(std::span(twin(a), count_a), std::span(twin(b), count_b), found,
-                                   most);
+    return queries->value.overlaps(twins(a, count_a), twins(b, count_b), found, most, taken);
   });
+}
+
+winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries, const winnow_key* a,
+                                               size_t count_a, const winnow_key* b, size_t count_b,
+                                               double margin, winnow_pair_rules rules,
+                                               winnow_key_pair* pair) {
+  winnow::PairRules taken{};
+  if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
+  if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
+  return answer(
+      queries->value.any_contact(twins(a, count_a), twins(b, count_b), *twin(pair), margin, taken));
+}
+
+winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
+                                                        double margin, winnow_pair_rules rules,
+                                                        winnow_key_pair* pair) {
+  winnow::PairRules taken{};
+  if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
+  return answer(queries->value.any_contact(*twin(pair), margin, taken));
 }
 
 winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,

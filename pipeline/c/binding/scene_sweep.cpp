@@ -5,27 +5,26 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
-namespace {
 
-[[nodiscard]] bool read_sweep(const winnow_sweep_options* given, std::size_t count,
-                              SweepOptions& options) noexcept {
-  winnow_sweep_options own = WINNOW_SWEEP_OPTIONS;
+bool read_options(const winnow_sweep_options* given, std::size_t count,
+                  SweepOptions& options) noexcept {
+  winnow_sweep_options own{};
   if (!read_sized(given, own) ||
       !read_choice(own.pairs, SweepPairs::bullets_and_fixed, options.pairs)) {
     return false;
   }
   if (own.bullets != nullptr) options.bullets = {own.bullets, count};
-  options.tolerance = own.tolerance;
+  take_given(own.tolerance, options.tolerance);
   options.touching = own.leave_out_touching == 0;
   options.first_only = own.first_only != 0;
   return true;
 }
 
-}  // namespace
 }  // namespace winnow::c
 
 using namespace winnow::c;
@@ -46,7 +45,7 @@ winnow_status winnow_scene_sweep_sweep(winnow_scene_sweep* sweep, const winnow_k
                                        size_t count, const winnow_pose_view* ends,
                                        const winnow_sweep_options* options) {
   winnow::SweepOptions read;
-  if (!are_given(sweep, ends) || !is_array(keys, count) || !read_sweep(options, count, read)) {
+  if (!are_given(sweep, ends) || !is_array(keys, count) || !read_options(options, count, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   if (count != ends->count) return WINNOW_SIZE_MISMATCH;

@@ -5,24 +5,25 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 
 namespace winnow::c {
+
+bool read_options(const winnow_impact_options* given, ImpactOptions& options) noexcept {
+  winnow_impact_options own{};
+  if (!read_sized(given, own) || !read_execution(own.execution, options.execution)) return false;
+  take_given(own.tolerance, options.tolerance);
+  if (own.composites != nullptr) options.composites = &own.composites->value;
+  return true;
+}
+
 namespace {
 
 [[nodiscard]] winnow_status made(const RigidMotion& motion, winnow_rigid_motion* out) noexcept {
   if (!motion.is_valid()) return WINNOW_INVALID_POSE;
   *twin(out) = motion;
   return WINNOW_OK;
-}
-
-[[nodiscard]] bool read_options(const winnow_impact_options* given,
-                                ImpactOptions& options) noexcept {
-  winnow_impact_options own = WINNOW_IMPACT_OPTIONS;
-  if (!read_sized(given, own) || !read_execution(own.execution, options.execution)) return false;
-  options.tolerance = own.tolerance;
-  if (own.composites != nullptr) options.composites = &own.composites->value;
-  return true;
 }
 
 [[nodiscard]] winnow_impact_columns columns_of(const ImpactResult& result) noexcept {

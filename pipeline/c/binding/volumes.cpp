@@ -4,6 +4,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/drawing.h"
+#include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/twins.h"
 
 #include <winnow/core/kdop_around.h>
@@ -47,10 +48,13 @@ void Drawing::text(const Vec3f& at, std::string_view text, Colour colour) {
   draw_.text(draw_.context, at.data(), text.data(), text.size(), of(colour));
 }
 
-bool read_drawing(const winnow_debug_draw_options* given, DebugDrawOptions& options) noexcept {
-  winnow_debug_draw_options own = WINNOW_DEBUG_DRAW_OPTIONS;
+bool read_options(const winnow_debug_draw_options* given, DebugDrawOptions& options) noexcept {
+  winnow_debug_draw_options own{};
   if (!read_sized(given, own)) return false;
-  options = {own.objects != 0, own.structure != 0, own.labels != 0, own.max_depth};
+  options.objects = own.leave_out_objects == 0;
+  options.structure = own.leave_out_structure == 0;
+  options.labels = own.labels != 0;
+  take_given(own.max_depth, options.max_depth);
   return true;
 }
 

@@ -1,5 +1,7 @@
-// SceneQueries: two bodies, or two sets of bodies: how far they are apart, and which overlap.
+// SceneQueries: two bodies, or two sets of bodies: how far they are apart, which overlap, and
+// whether any do.
 
+#include <winnow/core/rounding.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/box_gaps.kernel.h"
 #include "pipeline/scene/queries/queries.h"
@@ -17,6 +19,12 @@ namespace {
 /// Squared gaps between boxes are sums of three squares of differences of floats, all rounded; and
 /// the solver's distance to what lies on the border of a box is.
 constexpr double kSquareSlack = 1e-5;
+
+[[nodiscard]] Aabb box_of(const SceneState& scene, std::uint32_t body) noexcept {
+  Aabb box;
+  (void)scene.set(scene.motion[body]).partition->bounds(scene.place[body], box);
+  return box;
+}
 
 /// The boxes of a set of bodies, and how far others are from them. Those that the partitions hold
 /// serve: they contain the bodies.
@@ -37,7 +45,7 @@ class SetBoxes {
       std::fill(column[k] + count_, column[k] + whole, 0.0F);
     }
     for (std::size_t i = 0; i < count_; ++i) {
-      const Aabb box = box_of(keys[i]);
+      const Aabb box = box_of(state_.scene, keys[i].id);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         column[axis][i] = box.min[axis];
         column[3 + axis][i] = box.max[axis];
@@ -47,7 +55,7 @@ class SetBoxes {
   }
   /// The square of how far each of the set is from a body, or less.
   [[nodiscard]] std::span<const float> squared_gaps(Key from) noexcept {
-    const Aabb box = box_of(from);
+    const Aabb box = box_of(state_.scene, from.id);
     const float low[3] = {box.min[0], box.min[1], box.min[2]};
     const float high[3] = {box.max[0], box.max[1], box.max[2]};
     box_gaps_kernels().squared(bounds_, count_, low, high, state_.gaps.data());
@@ -55,26 +63,27 @@ class SetBoxes {
   }
 
  private:
-  [[nodiscard]] Aabb box_of(Key key) const noexcept {
-    const SceneState& scene = state_.scene;
-    Aabb box;
-    const SceneSet& set = scene.set(scene.motion[key.id]);
-    (void)set.partition->bounds(scene.place[key.id], box);
-    return box;
-  }
-
   QueryState& state_;
   const float* bounds_[6] = {};
   std::size_t count_ = 0;
 };
 
-/// Pairs of bodies of two sets, without those of a body and itself.
+[[nodiscard]] bool do_rules_take(const SceneState& scene, PairRules rules, std::uint32_t a,
+                                 std::uint32_t b) noexcept {
+  return rules == PairRules::none || scene.would_pair(a, b);
+}
+
+/// Pairs of bodies of two sets that the rules take, without those of a body and itself.
 class SetPairs {
  public:
-  SetPairs(QueryState& state, std::span<const Key> a, std::span<const Key> b) noexcept
-      : a_(a), b_(b), boxes_(state) {}
+  SetPairs(QueryState& state, std::span<const Key> a, std::span<const Key> b,
+           PairRules rules) noexcept
+      : scene_(state.scene), a_(a), b_(b), rules_(rules), boxes_(state) {}
 
   [[nodiscard]] bool find_boxes() noexcept { return boxes_.take(b_); }
+  [[nodiscard]] bool is_one_set() const noexcept {
+    return a_.data() == b_.data() && a_.size() == b_.size();
+  }
 
   /// The pair whose boxes are the nearest, if they are no farther apart than `most`.
   [[nodiscard]] KeyPair nearest(double most) noexcept {
@@ -84,7 +93,8 @@ class SetPairs {
       const std::span<const float> gaps = boxes_.squared_gaps(a);
       for (std::size_t i = 0; i < gaps.size(); ++i) {
         const auto gap = static_cast<double>(gaps[i]);
-        if (!(gap < least || (gap == least && found.first == Key{})) || a == b_[i]) continue;
+        if (!(gap < least || (gap == least && found.first == Key{}))) continue;
+        if (!takes(a, b_[i])) continue;
         least = gap;
         found = {a, b_[i]};
       }
@@ -93,14 +103,16 @@ class SetPairs {
   }
 
   /// Calls look(body of a, body of b) for pairs whose boxes are no farther apart than most(), which
-  /// may shrink meanwhile, until it says false.
+  /// may shrink meanwhile, until it says false. With `once`, and one set, each pair once.
   template <typename Most, typename Look>
-  void each_within(Most&& most, Look&& look) {
+  void each_within(Most&& most, Look&& look, bool once = false) {
     double least = square_of(most());
-    for (const Key a : a_) {
+    const bool skips = once && is_one_set();
+    for (std::size_t k = 0; k < a_.size(); ++k) {
+      const Key a = a_[k];
       const std::span<const float> gaps = boxes_.squared_gaps(a);
-      for (std::size_t i = 0; i < gaps.size(); ++i) {
-        if (!(static_cast<double>(gaps[i]) <= least) || a == b_[i]) continue;
+      for (std::size_t i = skips ? k + 1 : 0; i < gaps.size(); ++i) {
+        if (!(static_cast<double>(gaps[i]) <= least) || !takes(a, b_[i])) continue;
         if (!look(a, b_[i])) return;
         least = square_of(most());
       }
@@ -108,13 +120,85 @@ class SetPairs {
   }
 
  private:
+  [[nodiscard]] bool takes(Key a, Key b) const noexcept {
+    return a != b && do_rules_take(scene_, rules_, a.id, b.id);
+  }
   [[nodiscard]] static double square_of(double gap) noexcept {
     return gap * gap * (1.0 + kSquareSlack);
   }
 
+  const SceneState& scene_;
   std::span<const Key> a_;
   std::span<const Key> b_;
+  PairRules rules_;
   SetBoxes boxes_;
+};
+
+/// True if two bodies share a point or are no farther apart than a margin. It asks for a shared
+/// point first: that verdict is exact, so a wider margin never loses a contact.
+[[nodiscard]] bool are_near(const QueryState& state, std::uint32_t a, std::uint32_t b,
+                            double margin) noexcept {
+  const PlacedShape first = state.placed(a);
+  const PlacedShape second = state.placed(b);
+  std::uint32_t part = kWholeShape;
+  if (do_overlap(state.parts, first, second, part)) return true;
+  SceneDistance found;
+  return margin > 0.0 && ClosestParts(state.parts).find(first, second, margin, found);
+}
+
+/// Finds contacts of one body of the whole scene after another, by their ids, up to the first body
+/// that has one: those before it have none.
+class ContactOfBody {
+ public:
+  ContactOfBody(QueryState& state, double margin, PairRules rules) noexcept
+      : state_(state), margin_(margin), rules_(rules) {}
+
+  /// True if bodies of that motion are looked at one after another: every pair has one of them.
+  [[nodiscard]] bool looks_at(Motion motion) const noexcept {
+    return rules_ == PairRules::none || motion == Motion::dynamic;
+  }
+
+  /// kNoObject if there is none.
+  [[nodiscard]] Status find(std::uint32_t body, std::uint32_t& other) {
+    const SceneState& scene = state_.scene;
+    std::uint32_t least = kNoObject;
+    auto look = [&](std::uint32_t next) {
+      const bool was_looked_at = next <= body && looks_at(scene.motion[next]);
+      if (was_looked_at || next >= least || !do_rules_take(scene, rules_, body, next)) return false;
+      if (are_near(state_, body, next, margin_)) least = next;
+      return false;
+    };
+    Filter filter;
+    if (rules_ == PairRules::scene) {
+      // Subtrees of bodies that this one does not meet are not entered.
+      const ObjectFilter own = scene.filter_of(body);
+      filter = {.layers = own.layers, .mask = own.mask, .environment = own.environment};
+    }
+    LookingFilter looking(scene, filter, look);
+    const Aabb box = reach_of(body);
+    const Status status = state_.each_partition([&](const Partition& partition) {
+      return partition.overlap(box, state_.objects, looking.filter());
+    });
+    if (status == Status::ok) other = least;
+    return status;
+  }
+
+ private:
+  /// Adds as much as the solver's distance to a point on the border of a box may be too short by.
+  [[nodiscard]] Aabb reach_of(std::uint32_t body) const noexcept {
+    const Aabb box = box_of(state_.scene, body);
+    const double reach = margin_ * (1.0 + 1e-9);
+    Aabb wide;
+    for (int axis = 0; axis < 3; ++axis) {
+      wide.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -reach));
+      wide.max[axis] = round_up(add_up(static_cast<double>(box.max[axis]), reach));
+    }
+    return wide;
+  }
+
+  QueryState& state_;
+  double margin_;
+  PairRules rules_;
 };
 
 /// The closest pair of two sets. First looked at is the pair whose boxes are the nearest: hardly
@@ -158,27 +242,33 @@ class ClosestBodies {
 };
 
 [[nodiscard]] Status check_sets(const QueryState* state, std::span<const Key> a,
-                                std::span<const Key> b) noexcept {
+                                std::span<const Key> b, PairRules rules) noexcept {
   if (const Status status = QueryState::may_ask(state); status != Status::ok) return status;
+  if (rules > PairRules::none) return Status::invalid_argument;
   const auto is_there = [&](Key key) { return state->scene.keys.is_valid(key); };
   const bool all =
       std::all_of(a.begin(), a.end(), is_there) && std::all_of(b.begin(), b.end(), is_there);
   return all ? Status::ok : Status::invalid_key;
 }
 
+[[nodiscard]] bool is_margin(double margin) noexcept {
+  return margin >= 0.0 && std::isfinite(margin);
+}
+
 }  // namespace
 
-Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit) {
+Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit, PairRules rules) {
   const DefaultEnvironment environment;
-  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
-  const KeyTable& keys = state_->scene.keys;
-  if (!keys.is_valid(a) || !keys.is_valid(b)) return Status::invalid_key;
+  if (const Status status = check_sets(state_, {&a, 1}, {&b, 1}, rules); status != Status::ok) {
+    return status;
+  }
   if (std::isnan(limit)) return Status::invalid_argument;
   SceneDistance found;
   ClosestParts parts(state_->parts);
-  if (parts.find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
+  if (do_rules_take(state_->scene, rules, a.id, b.id) &&
+      parts.find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
     found.key = b;
-    found.data = keys.client_data(b.id);
+    found.data = state_->scene.keys.client_data(b.id);
     answer = found;
   } else {
     answer = {};
@@ -187,23 +277,23 @@ Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit)
 }
 
 Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
-                                    SetDistance& answer, double limit) {
+                                    SetDistance& answer, double limit, PairRules rules) {
   const DefaultEnvironment environment;
-  if (const Status status = check_sets(state_, a, b); status != Status::ok) return status;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   if (std::isnan(limit)) return Status::invalid_argument;
-  SetPairs pairs(*state_, a, b);
+  SetPairs pairs(*state_, a, b, rules);
   if (!pairs.find_boxes()) return Status::out_of_memory;
   answer = ClosestBodies(*state_, limit).find(pairs);
   return Status::ok;
 }
 
 Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
-                              std::span<const KeyPair>& pairs, std::size_t most) {
+                              std::span<const KeyPair>& pairs, std::size_t most, PairRules rules) {
   const DefaultEnvironment environment;
-  if (const Status status = check_sets(state_, a, b); status != Status::ok) return status;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   Column<KeyPair>& found = state_->overlapping;
   found.clear();
-  SetPairs all(*state_, a, b);
+  SetPairs all(*state_, a, b, rules);
   bool has_room = all.find_boxes();
   const auto look = [&](Key first, Key second) {
     std::uint32_t part = kWholeShape;
@@ -215,6 +305,42 @@ Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
   if (has_room && most != 0) all.each_within([] { return 0.0; }, look);
   if (!has_room) return Status::out_of_memory;
   pairs = {found.data(), found.size()};
+  return Status::ok;
+}
+
+Status SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
+                                 double margin, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
+  if (!is_margin(margin)) return Status::invalid_argument;
+  SetPairs all(*state_, a, b, rules);
+  if (!all.find_boxes()) return Status::out_of_memory;
+  KeyPair found;
+  const auto look = [&](Key first, Key second) {
+    if (!are_near(*state_, first.id, second.id, margin)) return true;
+    found = {first, second};
+    return false;
+  };
+  all.each_within([&] { return margin; }, look, true);
+  pair = found;
+  return Status::ok;
+}
+
+Status SceneQueries::any_contact(KeyPair& pair, double margin, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, {}, {}, rules); status != Status::ok) return status;
+  if (!is_margin(margin)) return Status::invalid_argument;
+  const SceneState& scene = state_->scene;
+  ContactOfBody contact(*state_, margin, rules);
+  for (std::uint32_t body = 0; body < scene.keys.slot_count(); ++body) {
+    if (!scene.keys.is_live(body) || !contact.looks_at(scene.motion[body])) continue;
+    std::uint32_t other = kNoObject;
+    if (const Status status = contact.find(body, other); status != Status::ok) return status;
+    if (other == kNoObject) continue;
+    pair = {scene.keys.key_of(body), scene.keys.key_of(other)};
+    return Status::ok;
+  }
+  pair = {};
   return Status::ok;
 }
 

@@ -1,0 +1,349 @@
+// Prints the defaults of all structs that calls are asked with, a line "Struct.member = value" for
+// each, as C++ has them. Fails if C has others: by a macro, and for options by zeros and null. This
+// does not compile if a struct of C++ got a member that is not named here.
+
+#include <winnow/c/winnow.h>
+#include <winnow/core/ray.h>
+#include <winnow/pipeline/cluster.h>
+#include <winnow/pipeline/cluster_scene.h>
+#include <winnow/pipeline/deformable_mesh.h>
+#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/sensors.h>
+#include "pipeline/c/binding/arguments.h"
+#include "pipeline/c/binding/options.h"
+#include "pipeline/c/binding/twins.h"
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace winnow {
+namespace {
+
+// Members as text, as Python writes them.
+
+std::string text(bool value) {
+  return value ? "True" : "False";
+}
+template <typename Number>
+requires std::is_arithmetic_v<Number> std::string text(Number value) {
+  char room[64];
+  (void)std::snprintf(room, sizeof room, "%.17g", static_cast<double>(value));
+  return room;
+}
+std::string quoted(std::string_view name) {
+  std::string all(1, '\'');
+  return all.append(name).append(1, '\'');
+}
+std::string named(std::size_t which, std::initializer_list<const char*> names) {
+  return quoted(which < names.size() ? names.begin()[which] : "none of them");
+}
+std::string text(ContactLevel level) {
+  return named(static_cast<std::size_t>(level), {"pairs", "boolean", "distance", "manifold"});
+}
+std::string text(NarrowTier tier) {
+  return named(static_cast<std::size_t>(tier), {"robust", "reference"});
+}
+std::string text(Motion motion) {
+  return named(static_cast<std::size_t>(motion), {"fixed", "dynamic", "sleeping"});
+}
+std::string text(Order order) {
+  return named(static_cast<std::size_t>(order), {"fast", "canonical"});
+}
+std::string text(Volume volume) {
+  return named(static_cast<std::size_t>(volume), {"aabb", "sphere", "kdop14", "kdop18", "kdop26"});
+}
+std::string text(SweepPairs pairs) {
+  return named(static_cast<std::size_t>(pairs), {"all", "fixed", "bullets", "bullets_and_fixed"});
+}
+std::string text(const Execution& execution) {
+  if (execution == Execution::serial()) return "'serial'";
+  return execution == Execution::parallel() ? "'parallel'" : "'jobs'";
+}
+std::string text(const StructureKind& kind) {
+  return quoted(kind.name()) + " of " + text(kind.parameter());
+}
+std::string text(ShapeId id) {
+  return text(id.bits);
+}
+std::string text(Key key) {
+  return text(key.id) + " " + text(key.stamp);
+}
+std::string text(std::pmr::memory_resource* const& memory) {
+  return memory == default_memory() ? "'default'" : "'another'";
+}
+/// Tells no more of a pointer than whether it is null.
+template <typename Pointer>
+requires std::is_pointer_v<Pointer> std::string text(const Pointer& pointer) {
+  return pointer == nullptr ? "None" : "'something'";
+}
+template <typename T>
+std::string text(std::span<const T> values) {
+  return values.empty() ? "None" : "'something'";
+}
+std::string text(const PairPredicate& predicate) {
+  return text(reinterpret_cast<const char*>(predicate.accept)) + text(predicate.context);
+}
+std::string text(const ObjectPredicate& predicate) {
+  return text(reinterpret_cast<const char*>(predicate.accept)) + text(predicate.context);
+}
+template <typename T, std::size_t N>
+std::string text(const T (&values)[N]) {
+  std::string all;
+  for (const T& value : values) all += (all.empty() ? "[" : ", ") + text(value);
+  return all + "]";
+}
+std::string text(const Vec3d& v) {
+  const double numbers[] = {v.x(), v.y(), v.z()};
+  return text(numbers);
+}
+std::string text(const Pose& pose) {
+  return text(pose.position) + text(pose.orientation);
+}
+
+/// Members by name, in order.
+using Members = std::vector<std::pair<std::string, std::string>>;
+
+/// Calls give(member) for each of them; names are those of the list, in their order.
+template <typename... Given>
+Members list(std::string_view names, const Given&... given) {
+  Members members;
+  const auto put = [&](const auto& value) {
+    const std::size_t end = names.find(' ');
+    members.emplace_back(names.substr(0, end), text(value));
+    names = end == std::string_view::npos ? std::string_view() : names.substr(end + 1);
+  };
+  (put(given), ...);
+  return members;
+}
+
+Members members(const ObjectFilter& o) {
+  const auto& [layers, mask, environment] = o;
+  return list("layers mask environment", layers, mask, environment);
+}
+Members members(const Filter& o) {
+  const auto& [layers, mask, environment, predicate] = o;
+  return list("layers mask environment predicate", layers, mask, environment, predicate);
+}
+Members members(const PartitionOptions& o) {
+  const auto& [memory, execution, volume, margin, build_budget] = o;
+  return list("memory execution volume margin margin_share build_budget", memory, execution, volume,
+              margin.distance, margin.share, build_budget);
+}
+Members members(const PairOptions& o) {
+  const auto& [order, incremental, predicate] = o;
+  return list("order incremental predicate", order, incremental, predicate);
+}
+Members members(const DebugDrawOptions& o) {
+  const auto& [objects, structure, labels, max_depth] = o;
+  return list("objects structure labels max_depth", objects, structure, labels, max_depth);
+}
+Members members(const SceneOptions& o) {
+  const auto& [memory, execution, structures, margin, tier, carry_over, contact_reduction,
+               seamless_floors, warm_start, build_budget, composites] = o;
+  return list(
+      "memory execution structures margin tier carry_over contact_reduction seamless_floors "
+      "warm_start build_budget composites",
+      memory, execution, structures, margin, tier, carry_over, contact_reduction, seamless_floors,
+      warm_start, build_budget, composites);
+}
+Members members(const NarrowOptions& o) {
+  const auto& [level, tier, margin, execution, margins] = o;
+  return list("level tier margin execution margins", level, tier, margin, execution, margins);
+}
+Members members(const ImpactOptions& o) {
+  const auto& [tolerance, execution, composites] = o;
+  return list("tolerance execution composites", tolerance, execution, composites);
+}
+Members members(const SweepOptions& o) {
+  const auto& [pairs, bullets, tolerance, touching, first_only] = o;
+  return list("pairs bullets tolerance touching first_only", pairs, bullets, tolerance, touching,
+              first_only);
+}
+Members members(const MeshOptions& o) {
+  const auto& [active_edge_angle] = o;
+  return list("active_edge_angle", active_edge_angle);
+}
+Members members(const FeatureImpactOptions& o) {
+  const auto& [min_separation, tolerance, max_intervals] = o;
+  return list("min_separation tolerance max_intervals", min_separation, tolerance, max_intervals);
+}
+Members members(const DeformableMeshOptions& o) {
+  const auto& [memory, execution, origin, chunk] = o;
+  return list("memory execution origin chunk", memory, execution, origin, chunk);
+}
+Members members(const PairEventsOptions& o) {
+  const auto& [memory, client_data] = o;
+  return list("memory client_data", memory, client_data);
+}
+Members members(const ClusterOptions& o) {
+  const auto& [memory, execution, structure, imbalance] = o;
+  return list("memory execution structure imbalance", memory, execution, structure, imbalance);
+}
+Members members(const BodyDefinition& o) {
+  const auto& [shape, pose, motion, filter, data, offsets, layer] = o;
+  return list("shape pose motion layers mask environment data contact rest layer", shape, pose,
+              motion, filter.layers, filter.mask, filter.environment, data, offsets.contact,
+              offsets.rest, layer);
+}
+Members members(const SensorDefinition& o) {
+  const auto& [shape, pose, filter, carrier, data] = o;
+  return list("shape pose layers mask environment carrier data", shape, pose, filter.layers,
+              filter.mask, filter.environment, carrier, data);
+}
+Members members(const SceneRoom& o) {
+  const auto& [bodies, pairs, level, touching, manifolds, points] = o;
+  return list("bodies pairs level touching manifolds points", bodies, pairs, level, touching,
+              manifolds, points);
+}
+Members members(const ShapeRay& o) {
+  const auto& [origin, direction, max_t] = o;
+  return list("origin direction max_t", origin, direction, max_t);
+}
+Members members(const ShapeCast& o) {
+  const auto& [shape, pose, direction, max_t, touching] = o;
+  return list("shape pose direction max_t touching", shape, pose, direction, max_t, touching);
+}
+Members members(const HeightSamples& o) {
+  const auto& [heights, columns, rows, row_stride, spacing] = o;
+  return list("heights columns rows row_stride spacing", heights, columns, rows, row_stride,
+              spacing);
+}
+
+int differences = 0;
+
+/// Prints a struct as C++ has it, and what C has otherwise.
+template <typename OfCpp>
+void show(const char* name, const OfCpp& of_cpp,
+          std::initializer_list<std::pair<const char*, OfCpp>> of_c = {}) {
+  const Members own = members(of_cpp);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    std::printf("%s.%s = %s\n", name, own[i].first.c_str(), own[i].second.c_str());
+    for (const auto& [how, other] : of_c) {
+      const std::string said = members(other)[i].second;
+      if (said == own[i].second) continue;
+      ++differences;
+      (void)std::fprintf(stderr, "%s.%s is %s in C++, %s by %s of C\n", name, own[i].first.c_str(),
+                         own[i].second.c_str(), said.c_str(), how);
+    }
+  }
+}
+
+/// Options of C as its calls read them: read(given, options) says whether they can.
+template <typename Options, typename OfC, typename Read>
+void show_options(const char* name, const OfC& macro, Read&& read) {
+  OfC zeroed{};
+  zeroed.size = sizeof zeroed;
+  Options by_zeros;
+  Options by_macro;
+  Options by_null;
+  if (!read(&zeroed, by_zeros) || !read(&macro, by_macro) || !read(nullptr, by_null)) {
+    ++differences;
+    (void)std::fprintf(stderr, "%s: what C has by default is refused\n", name);
+  }
+  show(name, Options{}, {{"zeros", by_zeros}, {"macro", by_macro}, {"null", by_null}});
+}
+
+void show_all_options() {
+  const auto plain = [](const auto* given, auto& options) {
+    return c::read_options(given, options);
+  };
+  const auto with_memory = [](const auto* given, auto& options) {
+    const winnow_memory* memory = nullptr;
+    return c::read_options(given, memory, options) && memory == nullptr;
+  };
+  const auto sweep = [](const winnow_sweep_options* given, SweepOptions& options) {
+    return c::read_options(given, 0, options);
+  };
+  const auto typed = [](auto read, auto macro) {
+    return [read](const decltype(macro)* given, auto& options) { return read(given, options); };
+  };
+  const winnow_partition_options partition = WINNOW_PARTITION_OPTIONS;
+  show_options<PartitionOptions>("PartitionOptions", partition, typed(with_memory, partition));
+  const winnow_pair_options pair = WINNOW_PAIR_OPTIONS;
+  show_options<PairOptions>("PairOptions", pair, typed(plain, pair));
+  const winnow_debug_draw_options draw = WINNOW_DEBUG_DRAW_OPTIONS;
+  show_options<DebugDrawOptions>("DebugDrawOptions", draw, typed(plain, draw));
+  const winnow_scene_options scene = WINNOW_SCENE_OPTIONS;
+  show_options<SceneOptions>("SceneOptions", scene, typed(with_memory, scene));
+  const winnow_narrow_options narrow = WINNOW_NARROW_OPTIONS;
+  show_options<NarrowOptions>("NarrowOptions", narrow, typed(plain, narrow));
+  const winnow_impact_options impact = WINNOW_IMPACT_OPTIONS;
+  show_options<ImpactOptions>("ImpactOptions", impact, typed(plain, impact));
+  const winnow_sweep_options swept = WINNOW_SWEEP_OPTIONS;
+  show_options<SweepOptions>("SweepOptions", swept, sweep);
+  const winnow_mesh_options mesh = WINNOW_MESH_OPTIONS;
+  show_options<MeshOptions>("MeshOptions", mesh, typed(plain, mesh));
+}
+
+/// Zeros are no default of these.
+void show_definitions() {
+  const winnow_object_filter object = WINNOW_OBJECT_FILTER;
+  show("ObjectFilter", ObjectFilter{}, {{"macro", *c::twin(&object)}});
+  const winnow_filter filter = WINNOW_FILTER;
+  show("Filter", Filter{}, {{"macro", c::filter_of(&filter)}, {"null", c::filter_of(nullptr)}});
+  const winnow_body_definition body = WINNOW_BODY_DEFINITION;
+  show("BodyDefinition", BodyDefinition{}, {{"macro", *c::twin(&body)}});
+  const winnow_sensor_definition sensor = WINNOW_SENSOR_DEFINITION;
+  show("SensorDefinition", SensorDefinition{}, {{"macro", *c::twin(&sensor)}});
+  const winnow_shape_ray ray = WINNOW_SHAPE_RAY;
+  show("ShapeRay", ShapeRay{}, {{"macro", *c::twin(&ray)}});
+  const winnow_scene_room room = WINNOW_SCENE_ROOM;
+  const SceneRoom of_c{{room.bodies[0], room.bodies[1], room.bodies[2]},
+                       room.pairs,
+                       static_cast<ContactLevel>(room.level),
+                       room.touching,
+                       room.manifolds,
+                       room.points};
+  show("SceneRoom", SceneRoom{}, {{"macro", of_c}});
+  const winnow_shape_cast cast = WINNOW_SHAPE_CAST;
+  show("ShapeCast", ShapeCast{},
+       {{"macro", ShapeCast{{cast.shape},
+                            *c::twin(&cast.pose),
+                            {cast.direction[0], cast.direction[1], cast.direction[2]},
+                            cast.max_t}}});
+  const winnow_height_samples heights = WINNOW_HEIGHT_SAMPLES;
+  show("HeightSamples", HeightSamples{},
+       {{"macro", HeightSamples{{heights.heights, heights.count},
+                                heights.columns,
+                                heights.rows,
+                                heights.row_stride,
+                                {heights.spacing[0], heights.spacing[1]}}}});
+}
+
+void show_line(const char* name, double of_cpp, double of_c) {
+  std::printf("%s = %s\n", name, text(of_cpp).c_str());
+  if (of_cpp == of_c) return;
+  ++differences;
+  (void)std::fprintf(stderr, "%s is %g in C++, %g in C\n", name, of_cpp, of_c);
+}
+
+/// C has no struct of these, or one that is not read as a whole.
+void show_others() {
+  show("FeatureImpactOptions", FeatureImpactOptions{});
+  show("DeformableMeshOptions", DeformableMeshOptions{});
+  show("PairEventsOptions", PairEventsOptions{});
+  show("ClusterOptions", ClusterOptions{});
+  const ClusterSceneOptions cluster;
+  show("ClusterSceneOptions.scene", cluster.scene);
+  std::printf("ClusterSceneOptions.imbalance = %s\n", text(cluster.imbalance).c_str());
+  const winnow_cast cast = WINNOW_CAST;
+  show_line("Ray.min_t", Ray{}.min_t, cast.min_t);
+  show_line("Ray.max_t", Ray{}.max_t, cast.max_t);
+  std::printf("MotionCast.touching = %s\n", text(MotionCast{}.touching).c_str());
+  std::printf("WINNOW_CAST_TOLERANCE = %s\n", text(WINNOW_CAST_TOLERANCE).c_str());
+}
+
+}  // namespace
+}  // namespace winnow
+
+int main() {
+  winnow::show_all_options();
+  winnow::show_definitions();
+  winnow::show_others();
+  return winnow::differences == 0 ? 0 : 1;
+}

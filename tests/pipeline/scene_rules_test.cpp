@@ -1,0 +1,349 @@
+// Questions about two bodies and about sets of them take the pairs that the scene itself would
+// make.
+
+#include <gtest/gtest.h>
+#include <winnow/pipeline/scene_queries.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "tests/pipeline/own_sets.h"
+#include "tests/pipeline/query_world.h"
+#include "tests/support/config.h"
+
+namespace winnow::test {
+namespace {
+
+using Ids = std::pair<ObjectId, ObjectId>;
+
+Ids ids_of(const KeyPair& pair) {
+  return {pair.first.id, pair.second.id};
+}
+
+/// Bodies of every kind of shape with random rules, and what is true of each two of them.
+class RuledWorld {
+ public:
+  explicit RuledWorld(Random& random) {
+    fill(world_, 24, 0.0, random);
+    add_own(random);
+    for (BodyDefinition& body : world_.bodies) {
+      if (random.chance(0.6)) body.motion = Motion::dynamic;
+      if (random.chance(0.4)) body.filter.layers = random.chance(0.5) ? 2U : 3U;
+      if (random.chance(0.4)) body.filter.mask = random.chance(0.5) ? 1U : 2U;
+      if (random.chance(0.2)) body.filter.environment = random.chance(0.3) ? kEveryEnvironment : 1U;
+      body.layer = static_cast<std::uint16_t>(random.below(3));
+    }
+    world_.add_to_scene({.execution = Execution::serial()});
+    tell(random);
+    EXPECT_EQ(world_.scene->refresh(), Status::ok);
+    measure();
+  }
+
+  [[nodiscard]] Scene& scene() { return *world_.scene; }
+  [[nodiscard]] const std::vector<Key>& keys() const { return world_.keys; }
+  [[nodiscard]] std::size_t size() const { return world_.keys.size(); }
+  [[nodiscard]] double distance(std::size_t a, std::size_t b) const {
+    return distance_[a * size() + b];
+  }
+
+  /// By all that the scene was told, not by what it made of that.
+  [[nodiscard]] bool may_meet(std::size_t a, std::size_t b) const {
+    const BodyDefinition& one = world_.bodies[a];
+    const BodyDefinition& other = world_.bodies[b];
+    if (a == b || (one.motion != Motion::dynamic && other.motion != Motion::dynamic)) return false;
+    if ((one.filter.layers & other.filter.mask) == 0) return false;
+    if ((other.filter.layers & one.filter.mask) == 0) return false;
+    const std::uint32_t in = one.filter.environment;
+    const std::uint32_t of = other.filter.environment;
+    if (in != of && in != kEveryEnvironment && of != kEveryEnvironment) return false;
+    if (one.layer + other.layer == 2 && one.layer != other.layer) return false;
+    if (ignored_.contains({std::min(a, b), std::max(a, b)})) return false;
+    return !has_predicate_ || !is_rejected(keys()[a].id, keys()[b].id);
+  }
+  [[nodiscard]] bool takes(PairRules rules, std::size_t a, std::size_t b) const {
+    return a != b && (rules == PairRules::none || may_meet(a, b));
+  }
+
+ private:
+  static bool is_rejected(ObjectId a, ObjectId b) { return (a + b) % 7 == 0; }
+
+  void add_own(Random& random) {
+    for (const OwnSet::Form form : {OwnSet::block, OwnSet::drum, OwnSet::egg}) {
+      world_.shapes.own.push_back({form, {0.9, 0.9, 1.4}, {}});
+      ShapeId id;
+      ASSERT_EQ(world_.shapes.pool.add(shape_of(world_.shapes.own.back(), 0.1), id), Status::ok);
+      for (int i = 0; i < 2; ++i) world_.add(id, random_pose(world_.size, random), random);
+    }
+    ShapeId ground;
+    ASSERT_EQ(world_.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, -0.8 * world_.size}, ground),
+              Status::ok);
+    world_.add(ground, Pose{}, random);
+  }
+  void tell(Random& random) {
+    Scene& scene = *world_.scene;
+    ASSERT_EQ(scene.set_layers_meet(0, 2, false), Status::ok);
+    for (std::size_t n = 0; n < 3 * size(); ++n) {
+      const std::size_t a = random.below(size());
+      const std::size_t b = random.below(size());
+      if (a == b || !ignored_.insert({std::min(a, b), std::max(a, b)}).second) continue;
+      ASSERT_EQ(scene.set_ignored(keys()[a], keys()[b]), Status::ok);
+    }
+    has_predicate_ = random.chance(0.5);
+    if (!has_predicate_) return;
+    scene.set_predicate({[](void*, ObjectId a, ObjectId b) { return !is_rejected(a, b); }});
+  }
+  void measure() {
+    SceneQueries queries(*world_.scene);
+    distance_.resize(size() * size());
+    for (std::size_t i = 0; i < distance_.size(); ++i) {
+      SceneDistance found;
+      if (i / size() == i % size()) continue;
+      ASSERT_EQ(queries.distance(keys()[i / size()], keys()[i % size()], found, kInfinity,
+                                 PairRules::none),
+                Status::ok);
+      distance_[i] = found ? found.distance : kInfinity;
+    }
+  }
+
+  QueryWorld world_;
+  std::set<std::pair<std::size_t, std::size_t>> ignored_;
+  bool has_predicate_ = false;
+  std::vector<double> distance_;
+};
+
+/// A set of bodies by their numbers.
+struct Chosen {
+  Chosen(const RuledWorld& world, std::size_t count, Random& random) {
+    for (std::size_t i = 0; i < count; ++i) {
+      numbers.push_back(random.below(world.size()));
+      keys.push_back(world.keys()[numbers.back()]);
+    }
+  }
+  std::vector<std::size_t> numbers;
+  std::vector<Key> keys;
+};
+
+/// All pairs of two sets that the rules take and that are no farther apart than a margin, in order.
+std::vector<Ids> brute_pairs(const RuledWorld& world, const Chosen& a, const Chosen& b,
+                             double margin, PairRules rules) {
+  std::vector<Ids> found;
+  for (const std::size_t one : a.numbers) {
+    for (const std::size_t other : b.numbers) {
+      if (!world.takes(rules, one, other) || world.distance(one, other) > margin) continue;
+      found.emplace_back(world.keys()[one].id, world.keys()[other].id);
+    }
+  }
+  return found;
+}
+
+void expect_sets(RuledWorld& world, SceneQueries& queries, Random& random, PairRules rules) {
+  const Chosen a(world, random.below(9), random);
+  const Chosen b(world, random.below(9), random);
+  std::span<const KeyPair> pairs;
+  ASSERT_EQ(queries.overlaps(a.keys, b.keys, pairs, ~std::size_t{0}, rules), Status::ok);
+  std::vector<Ids> found;
+  for (const KeyPair& pair : pairs) found.push_back(ids_of(pair));
+  EXPECT_EQ(found, brute_pairs(world, a, b, 0.0, rules));
+
+  double least = kInfinity;
+  for (const std::size_t one : a.numbers) {
+    for (const std::size_t other : b.numbers) {
+      if (world.takes(rules, one, other)) least = std::min(least, world.distance(one, other));
+    }
+  }
+  SetDistance closest;
+  ASSERT_EQ(queries.least_distance(a.keys, b.keys, closest, kInfinity, rules), Status::ok);
+  ASSERT_EQ(static_cast<bool>(closest), least < kInfinity);
+  if (closest) {
+    EXPECT_NEAR(closest.to.distance, least, 1e-9);
+  }
+
+  for (const double margin : {0.0, random.uniform(0.0, 2.0)}) {
+    const auto expect_first = [&](const Chosen& first, const Chosen& second) {
+      const std::vector<Ids> all = brute_pairs(world, first, second, margin, rules);
+      KeyPair pair;
+      ASSERT_EQ(queries.any_contact(first.keys, second.keys, pair, margin, rules), Status::ok);
+      EXPECT_EQ(ids_of(pair), all.empty() ? Ids(kNoObject, kNoObject) : all.front());
+    };
+    expect_first(a, b);
+    expect_first(a, a);
+  }
+}
+
+void expect_whole_scene(RuledWorld& world, SceneQueries& queries, double margin, PairRules rules) {
+  Ids least(kNoObject, kNoObject);
+  for (std::size_t a = 0; a < world.size(); ++a) {
+    BodyDefinition body;
+    ASSERT_EQ(world.scene().body(world.keys()[a], body), Status::ok);
+    if (rules == PairRules::scene && body.motion != Motion::dynamic) continue;
+    for (std::size_t b = 0; b < world.size(); ++b) {
+      if (!world.takes(rules, a, b) || world.distance(a, b) > margin) continue;
+      least = std::min(least, {world.keys()[a].id, world.keys()[b].id});
+    }
+  }
+  KeyPair pair;
+  ASSERT_EQ(queries.any_contact(pair, margin, rules), Status::ok);
+  EXPECT_EQ(ids_of(pair), least);
+}
+
+TEST(SceneRules, pairs_of_questions_are_those_of_collide) {
+  Random random(61);
+  for (std::size_t round = 0; round < scaled(6); ++round) {
+    RuledWorld world(random);
+    Contacts contacts;
+    ASSERT_EQ(world.scene().collide(ContactLevel::boolean, contacts), Status::ok);
+    std::set<Ids> touching;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      touching.insert(std::minmax(contacts.a()[i].id, contacts.b()[i].id));
+    }
+    SceneQueries queries(world.scene());
+    for (std::size_t a = 0; a < world.size(); ++a) {
+      for (std::size_t b = 0; b < world.size(); ++b) {
+        SceneDistance found;
+        ASSERT_EQ(queries.distance(world.keys()[a], world.keys()[b], found), Status::ok);
+        ASSERT_EQ(static_cast<bool>(found), world.may_meet(a, b)) << a << ' ' << b;
+        if (!found) continue;
+        EXPECT_EQ(found.distance, world.distance(a, b));
+        const Ids pair = std::minmax(world.keys()[a].id, world.keys()[b].id);
+        EXPECT_EQ(touching.contains(pair), found.distance <= 0.0);
+      }
+    }
+  }
+}
+
+TEST(SceneRules, questions_about_sets_agree_with_brute_force) {
+  Random random(62);
+  for (std::size_t round = 0; round < scaled(6); ++round) {
+    RuledWorld world(random);
+    SceneQueries queries(world.scene());
+    for (std::size_t n = 0; n < 30; ++n) {
+      expect_sets(world, queries, random, n % 3 == 0 ? PairRules::none : PairRules::scene);
+    }
+  }
+}
+
+TEST(SceneRules, any_contact_of_scene_agrees_with_brute_force) {
+  Random random(63);
+  for (std::size_t round = 0; round < scaled(8); ++round) {
+    RuledWorld world(random);
+    SceneQueries queries(world.scene());
+    for (const PairRules rules : {PairRules::scene, PairRules::none}) {
+      expect_whole_scene(world, queries, 0.0, rules);
+      expect_whole_scene(world, queries, random.uniform(0.0, 1.0), rules);
+    }
+    // Down to the last pair: each that was answered is ignored from then on.
+    for (std::size_t n = 0; n < world.size() * world.size(); ++n) {
+      KeyPair pair;
+      ASSERT_EQ(queries.any_contact(pair), Status::ok);
+      if (pair.first == Key{}) break;
+      ASSERT_FALSE(world.scene().is_ignored(pair.first, pair.second));
+      ASSERT_EQ(world.scene().set_ignored(pair.first, pair.second), Status::ok);
+    }
+    Contacts contacts;
+    ASSERT_EQ(world.scene().collide(ContactLevel::boolean, contacts), Status::ok);
+    EXPECT_EQ(contacts.size(), 0U);
+  }
+}
+
+/// A chain of capsules of which each touches the next, and a fixed box under its end.
+struct Robot {
+  static constexpr int kLinks = 5;
+
+  Robot() {
+    const ShapeId capsule = shapes.add(CapsuleShape{0.1, 0.5});
+    for (int i = 0; i < kLinks; ++i) {
+      links.push_back(scene.add({.shape = capsule, .pose = Pose::at(0.15 * i, 0, 0)}));
+    }
+    const ShapeId box = shapes.add(BoxShape{{0.1, 0.1, 0.1}});
+    table = scene.add({.shape = box, .pose = Pose::at(0.9, 0, 0), .motion = Motion::fixed});
+    EXPECT_EQ(scene.refresh(), Status::ok);
+  }
+  void ignore_neighbours() {
+    for (int i = 0; i + 1 < kLinks; ++i) {
+      EXPECT_EQ(scene.set_ignored(links[i], links[i + 1]), Status::ok);
+    }
+  }
+
+  ShapePool shapes;
+  Scene scene{shapes};
+  std::vector<Key> links;
+  Key table;
+};
+
+TEST(SceneRules, robot_with_ignored_neighbours_is_free) {
+  Robot robot;
+  SceneQueries ask(robot.scene);
+  KeyPair pair;
+  ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair), Status::ok);
+  EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
+  robot.ignore_neighbours();
+  for (const double margin : {0.0, 0.09}) {
+    ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair, margin), Status::ok);
+    EXPECT_EQ(pair, KeyPair{});
+  }
+  ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair, 0.11), Status::ok);
+  EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[2]}));
+  SetDistance least;
+  ASSERT_EQ(ask.least_distance(robot.links, robot.links, least), Status::ok);
+  EXPECT_NEAR(least.to.distance, 0.1, 1e-12);
+  std::span<const KeyPair> pairs;
+  ASSERT_EQ(ask.overlaps(robot.links, robot.links, pairs), Status::ok);
+  EXPECT_TRUE(pairs.empty());
+  ASSERT_EQ(ask.overlaps(robot.links, robot.links, pairs, 1, PairRules::none), Status::ok);
+  EXPECT_EQ(pairs.size(), 1U);
+  const Key table[] = {robot.table};
+  ASSERT_EQ(ask.any_contact(robot.links, table, pair, 0.2), Status::ok);
+  EXPECT_EQ(pair, (KeyPair{robot.links[4], robot.table}));
+}
+
+TEST(SceneRules, two_fixed_bodies_are_no_pair) {
+  Robot robot;
+  ASSERT_EQ(robot.scene.set_motion(robot.links, Motion::fixed), Status::ok);
+  ASSERT_EQ(robot.scene.refresh(), Status::ok);
+  SceneQueries ask(robot.scene);
+  KeyPair pair;
+  ASSERT_EQ(ask.any_contact(pair), Status::ok);
+  EXPECT_EQ(pair, KeyPair{});
+  ASSERT_EQ(ask.any_contact(pair, 0.0, PairRules::none), Status::ok);
+  EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
+  SceneDistance apart;
+  ASSERT_EQ(ask.distance(robot.links[4], robot.table, apart), Status::ok);
+  EXPECT_FALSE(apart);
+  ASSERT_EQ(ask.distance(robot.links[4], robot.table, apart, kInfinity, PairRules::none),
+            Status::ok);
+  EXPECT_NEAR(apart.distance, 0.1, 1e-12);
+}
+
+TEST(SceneRules, any_contact_is_the_same_for_every_structure) {
+  Random random(64);
+  ShapePool shapes;
+  const ShapeId ball = shapes.add(SphereShape{0.5});
+  for (std::size_t round = 0; round < scaled(20); ++round) {
+    std::vector<BodyDefinition> bodies(400);
+    for (BodyDefinition& body : bodies) {
+      body = {.shape = ball, .pose = random_pose(9.0, random)};
+      body.motion = static_cast<Motion>(random.below(kMotions));
+    }
+    std::set<Ids> answers;
+    for (const StructureKind kind :
+         {linear_bvh(), static_bvh(), sweep_and_prune(), hierarchical_grid(), n_squared()}) {
+      for (const Execution& execution : {Execution::serial(), Execution::parallel()}) {
+        Scene scene(shapes, {.execution = execution, .structures = {kind, kind, kind}});
+        std::vector<Key> keys(bodies.size());
+        ASSERT_EQ(scene.add(bodies, keys), Status::ok);
+        ASSERT_EQ(scene.refresh(), Status::ok);
+        SceneQueries ask(scene);
+        KeyPair pair;
+        ASSERT_EQ(ask.any_contact(pair), Status::ok);
+        answers.insert(ids_of(pair));
+      }
+    }
+    EXPECT_EQ(answers.size(), 1U);
+  }
+}
+
+}  // namespace
+}  // namespace winnow::test

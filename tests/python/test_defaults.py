@@ -1,0 +1,108 @@
+"""Defaults of Python are those of C++ and of C, of which a program prints a table."""
+
+import ast
+import os
+import re
+import subprocess
+
+import pytest
+import winnow
+
+FILTER = {"layers": "layers", "mask": "mask", "environment": "environment"}
+DRAWING = dict.fromkeys(("objects", "structure", "labels", "max_depth"))
+SWEEP = dict.fromkeys(("pairs", "tolerance", "touching", "first_only"))
+FEATURES = dict.fromkeys(("min_separation", "tolerance", "max_intervals"))
+
+# Function, struct of C++, and its members by the names of arguments; None: the same name. Whether
+# calls are parallel is not among them: answers are the same, and arrays of Python are long.
+SAME = [
+    ("Partition.__init__", "PartitionOptions",
+     {"volume": None, "margin": None, "margin_share": None, "build_budget": None}),
+    ("Partition.set_filter", "ObjectFilter", FILTER),
+    ("Partition.self_pairs", "PairOptions", {"order": None, "incremental": None}),
+    ("Partition.pairs_with", "PairOptions", {"order": None}),
+    ("Partition.debug_draw", "DebugDrawOptions", DRAWING),
+    ("Partition.cast_rays", "Ray", {"min_t": None, "max_t": None}),
+    ("Partition.cast_boxes", "Ray", {"min_t": None, "max_t": None}),
+    ("Partition.cast_spheres", "Ray", {"min_t": None, "max_t": None}),
+    ("Partition.cast_capsules", "Ray", {"min_t": None, "max_t": None}),
+    ("PairEvents.__init__", "PairEventsOptions", {"client_data": None}),
+    ("Filter.__init__", "Filter", FILTER),
+    ("Scene.__init__", "SceneOptions",
+     dict.fromkeys(("margin", "tier", "carry_over", "contact_reduction", "seamless_floors",
+                    "warm_start", "build_budget"))),
+    ("Scene.add", "BodyDefinition",
+     {"motion": None, "contact": None, "rest": None, "layer": None, **FILTER}),
+    ("Scene.set_filter", "ObjectFilter", FILTER),
+    ("Scene.reserve", "SceneRoom",
+     dict.fromkeys(("pairs", "level", "touching", "manifolds", "points"))),
+    ("Scene.debug_draw", "DebugDrawOptions", DRAWING),
+    ("Scene.cast_rays", "ShapeRay", {"max_t": None}),
+    ("Scene.cast_shapes", "ShapeCast", {"max_t": None, "touching": None}),
+    ("Scene.cast_motions", "MotionCast", {"touching": None}),
+    ("Scene.cast_shapes", None, {"tolerance": "WINNOW_CAST_TOLERANCE"}),
+    ("Scene.cast_motions", None, {"tolerance": "WINNOW_CAST_TOLERANCE"}),
+    ("Scene.sweep", "SweepOptions", SWEEP),
+    ("Scene.sweep_motions", "SweepOptions", SWEEP),
+    ("Sensors.add", "SensorDefinition", FILTER),
+    ("Shapes.cast_rays", "ShapeRay", {"max_t": None}),
+    ("Shapes.add_mesh", "MeshOptions", {"active_edge_angle": None}),
+    ("Shapes.add_height_field", "HeightSamples", {"spacing": None}),
+    ("NarrowPhase.collide", "NarrowOptions", {"level": None, "tier": None, "margin": None}),
+    ("time_of_impact", "ImpactOptions", {"tolerance": None}),
+    ("DeformableMesh.__init__", "DeformableMeshOptions", {"origin": None}),
+    ("DeformableMesh.self_impacts", "FeatureImpactOptions", FEATURES),
+    ("DeformableMesh.impacts_with", "FeatureImpactOptions", FEATURES),
+    ("DeformableMesh.impacts_with_shape", "ImpactOptions", {"tolerance": None}),
+    ("feature_impacts", "FeatureImpactOptions", FEATURES),
+    ("ClusterScene.__init__", "ClusterSceneOptions.scene",
+     {"margin": None, "tier": None, "contact_reduction": None}),
+    ("ClusterScene.__init__", "ClusterSceneOptions", {"imbalance": None}),
+    ("Cluster.__init__", "ClusterOptions", {"imbalance": None}),
+]
+
+
+def value(text):
+    """Of a literal, or of numbers that are none."""
+    number = text.strip()
+    if re.fullmatch(r"-?inf", number):
+        return float(number)
+    return ast.literal_eval(number.replace("inf", "1e999"))
+
+
+def python_defaults(name):
+    """Arguments that have one, from the first line of the docstring."""
+    function = winnow._core
+    for part in name.split("."):
+        function = getattr(function, part, None)
+        if function is None:
+            return None
+    line = function.__doc__.split("\n")[0]
+    inside = line[line.index("(") + 1 : line.rindex(")")]
+    # Commas within brackets part no arguments.
+    arguments = re.split(r",\s*(?![^\[\]<>()]*[\]>)])", inside)
+    parts = (re.match(r"(\w+): .*? = (.*)", argument) for argument in arguments)
+    return {part.group(1): part.group(2) for part in parts if part}
+
+
+@pytest.fixture(scope="module")
+def table():
+    said = subprocess.run([os.environ["WINNOW_DEFAULTS"]], capture_output=True, text=True)
+    assert said.returncode == 0, said.stderr
+    return dict(line.split(" = ", 1) for line in said.stdout.splitlines())
+
+
+@pytest.mark.parametrize("function, struct, names", SAME, ids=lambda x: x if isinstance(x, str) else "")
+def test_defaults_are_those_of_cpp_and_c(table, function, struct, names):
+    own = python_defaults(function)
+    if own is None and function.startswith("Cluster"):
+        pytest.skip("built without clusters")
+    for argument, member in names.items():
+        row = (struct + "." if struct else "") + (member or argument)
+        assert value(own[argument]) == value(table[row]), function + ": " + argument
+
+
+def test_structures_are_those_of_cpp_and_c(table):
+    names = value(python_defaults("Scene.__init__")["structures"])
+    of_cpp = table["SceneOptions.structures"]
+    assert re.findall(r"'(\w+)'", of_cpp) == names
