@@ -1,27 +1,29 @@
 # shellcheck shell=bash
-# Sourced by bench/run and tests/run: installs what a bare Debian 12 lacks.
+# Sourced by bench/run and tests/run: installs the packages that a bare Debian 12 lacks.
 
-# What every build of winnow needs.
+# Required by every build of winnow.
 WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
-# What the winnow tool needs on top.
+# Also required by the winnow tool.
 WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
                        libjs-three libjs-chart.js)
-# What the Python package is built with and runs on, and what its tests take besides.
+# Required by the Python package, and by its tests.
 WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy python3-mpi4py)
-# Clusters over MPI, and what cuts space for them.
+# Clusters over MPI, and Zoltan, which divides space for them.
 WINNOW_CLUSTER_PACKAGES=(libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev)
 # Mesh files for `winnow simulate`.
 WINNOW_MESH_PACKAGES=(libassimp-dev)
-# What bench/site/build makes pages of: mkdocs with Pygments, and Doxygen for the reference.
+# Required by bench/site/build: mkdocs with Pygments for pages, and Doxygen for the reference.
 WINNOW_SITE_PACKAGES=(mkdocs python3-pygments doxygen)
-# What opens the pages of `winnow draw` in a test: Chromium without its windows.
+# The spell checker of the test house_spelling.
+WINNOW_SPELLING_PACKAGES=(codespell)
+# Headless Chromium, in which tests open the pages of `winnow draw`.
 WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
-# Other libraries that winnow can be measured against.
+# Other libraries that winnow can be compared with.
 WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev
                       libccd-dev)
 
-# winnow_missing PACKAGE...: prints those that are not installed.
+# winnow_missing PACKAGE...: prints the packages that are not installed.
 winnow_missing() {
   local package
   for package in "$@"; do
@@ -30,9 +32,9 @@ winnow_missing() {
   done
 }
 
-# winnow_need PACKAGE...: installs those that are missing, saying which. Without the right to
-# install it prints the command and returns 1. On systems without dpkg it leaves finding the
-# dependencies to CMake.
+# winnow_need PACKAGE...: installs missing packages and prints their names. If it lacks the right to
+# install, it prints the command and returns 1. On systems without dpkg it does nothing, and CMake has to
+# find the dependencies.
 winnow_need() {
   command -v dpkg-query >/dev/null || return 0
   local missing
@@ -51,7 +53,7 @@ winnow_need() {
   echo "installing: ${missing[*]}" >&2
   local log
   log=$(mktemp)
-  # Old package lists may do: only the installation decides.
+  # A failed update is ignored: old package lists may suffice.
   if ! { "${as_root[@]}" apt-get update || true
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
       apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
@@ -64,8 +66,8 @@ winnow_need() {
   rm -f "$log"
 }
 
-# winnow_steps LOG: copies standard input to LOG and tells on standard error how many of ninja's steps
-# are done: in place on a terminal, else whenever a tenth of them is.
+# winnow_steps LOG: copies standard input to LOG and prints the number of finished ninja steps to standard
+# error: in place on a terminal, otherwise after each tenth of them.
 winnow_steps() {
   local line told=-1 began=$SECONDS
   while IFS= read -r line; do
@@ -83,8 +85,8 @@ winnow_steps() {
   [[ ! -t 2 ]] || printf '\r\033[K' >&2
 }
 
-# winnow_build FOLDER PRESET TARGET [CMAKE OPTION...]: configures and builds one target, telling how
-# far it is; the log is shown if that fails.
+# winnow_build FOLDER PRESET TARGET [CMAKE OPTION...]: configures and builds one target and prints the
+# progress; prints the log if that fails.
 winnow_build() {
   local folder=$1 preset=$2 target=$3
   shift 3

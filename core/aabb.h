@@ -8,27 +8,29 @@
 
 namespace winnow {
 
-/// Axis-aligned box [min, max], closed: boxes that touch overlap, a box of zero extent is legal,
-/// and an axis may reach to infinity. Default-constructed it is empty and overlaps nothing.
+/// Axis-aligned box [min, max]. It is closed: boxes that touch overlap. A box of zero extent is
+/// valid, and an axis may extend to infinity. A default-constructed box is empty and overlaps
+/// nothing.
 struct Aabb {
-  /// Least corner; +infinity if empty.
+  /// Lower corner; +infinity if the box is empty.
   Vec3f min = Vec3f::constant(std::numeric_limits<float>::infinity());
-  /// Greatest corner; -infinity if empty.
+  /// Upper corner; -infinity if the box is empty.
   Vec3f max = Vec3f::constant(-std::numeric_limits<float>::infinity());
 
-  /// The smallest float box that contains the double box [min, max].
+  /// Returns the smallest float box that contains the double box [min, max].
   [[nodiscard]] static Aabb outward(const Vec3d& min, const Vec3d& max) {
     return {round_down(min), round_up(max)};
   }
 
-  /// The smallest float box that contains the double box [min, max], measured from `origin`. Far
-  /// from 0 floats are coarse (8 apart at 1e8): boxes that are measured from a point among the
-  /// objects are as tight there, and as cheap to prune by, as those of objects around 0. The
-  /// difference of two doubles is rounded outward, too, so nothing sticks out.
+  /// Returns the smallest float box that contains the double box [min, max], relative to `origin`.
+  /// Floats are coarse far from 0 (8 apart at 1e8), so boxes relative to a point among the objects
+  /// are tighter there and prune better. The subtraction is rounded outward too: the result always
+  /// contains the exact box.
   [[nodiscard]] WINNOW_API static Aabb outward(const Vec3d& min, const Vec3d& max,
                                                const Vec3d& origin) noexcept;
 
-  /// True if a partition takes this box: no NaN, min <= max, and not wholly at infinity.
+  /// Returns true if a partition accepts this box: no NaN, min <= max, and not entirely at
+  /// infinity.
   [[nodiscard]] bool is_valid() const noexcept {
     constexpr float inf = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -37,13 +39,13 @@ struct Aabb {
     return true;
   }
 
-  /// Closed overlap test; false if either box has a NaN.
+  /// Returns true if the closed boxes overlap; false if either has a NaN.
   [[nodiscard]] bool overlaps(const Aabb& other) const noexcept {
     return min.x() <= other.max.x() && other.min.x() <= max.x() && min.y() <= other.max.y() &&
            other.min.y() <= max.y() && min.z() <= other.max.z() && other.min.z() <= max.z();
   }
 
-  /// Grows to contain `other`.
+  /// Grows this box to contain `other`.
   void merge(const Aabb& other) noexcept {
     const auto lesser = [](const Vec3f& a, const Vec3f& b) {
       return Vec3f(detail::lesser(a.x(), b.x()), detail::lesser(a.y(), b.y()),
@@ -53,7 +55,7 @@ struct Aabb {
     max = -lesser(-max, -other.max);
   }
 
-  /// The same corners, float by float.
+  /// True if all coordinates are equal.
   friend bool operator==(const Aabb& a, const Aabb& b) noexcept {
     return a.min == b.min && a.max == b.max;
   }

@@ -9,17 +9,17 @@
 
 namespace winnow {
 
-/// Boxes where the caller keeps them: six float pointers, one stride in bytes, a count. Nothing is
-/// copied to make one, and it must not outlive the memory it looks at.
+/// Non-owning view of boxes in the caller's memory: six float pointers, one stride in bytes and a
+/// count. It copies nothing and must not outlive that memory.
 struct BoxView {
-  std::array<const float*, 3> min{};   ///< least corner of the first box: x, y, z
-  std::array<const float*, 3> max{};   ///< greatest corner of the first box: x, y, z
+  std::array<const float*, 3> min{};   ///< lower corner of the first box: x, y, z
+  std::array<const float*, 3> max{};   ///< upper corner of the first box: x, y, z
   std::size_t stride = sizeof(float);  ///< bytes from one box to the next
-  std::size_t count = 0;               ///< boxes
+  std::size_t count = 0;               ///< number of boxes
 
   BoxView() = default;
 
-  /// An array of boxes.
+  /// Views an array of boxes.
   BoxView(std::span<const Aabb> boxes) noexcept {  // NOLINT(google-explicit-constructor)
     if (boxes.empty()) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,7 @@ struct BoxView {
     count = boxes.size();
   }
 
-  /// Any contiguous container of boxes.
+  /// Views any contiguous container of boxes.
   template <typename Boxes>
   requires(std::convertible_to<const Boxes&, std::span<const Aabb>> &&
            !std::same_as<Boxes, std::span<const Aabb>> && !std::same_as<Boxes, BoxView>)
@@ -38,12 +38,12 @@ struct BoxView {
   noexcept  // NOLINT(google-explicit-constructor)
       : BoxView(std::span<const Aabb>(boxes)) {}
 
-  /// Columns, or members of any struct: `stride` is the distance in bytes between two boxes.
+  /// Views columns, or members of any struct: `stride_bytes` is the distance between two boxes.
   BoxView(std::array<const float*, 3> mins, std::array<const float*, 3> maxs, std::size_t boxes,
           std::size_t stride_bytes = sizeof(float)) noexcept
       : min(mins), max(maxs), stride(stride_bytes), count(boxes) {}
 
-  /// Box i, copied out; i is below `count`.
+  /// Returns a copy of box i; i must be below `count`.
   [[nodiscard]] Aabb operator[](std::size_t i) const noexcept {
     return {{at(min[0], i), at(min[1], i), at(min[2], i)},
             {at(max[0], i), at(max[1], i), at(max[2], i)}};

@@ -1,4 +1,4 @@
-# What every winnow target is built with, the dependencies, and the include tree.
+# Compile options of all targets, the dependencies, and the include tree.
 
 include(FetchContent)
 include(GNUInstallDirs)
@@ -8,15 +8,15 @@ if(BUILD_SHARED_LIBS)
   set(WINNOW_SHARED ON)
 endif()
 
-# winnow_public_name(OUT header): how <winnow/...> spells a public header.
+# winnow_public_name(OUT header): sets OUT to the path of a public header below <winnow/...>.
 function(winnow_public_name out header)
   string(REGEX REPLACE "^pipeline/(winnow\\.h|c/)" "\\1" public ${header})
   set(${out} ${public} PARENT_SCOPE)
 endfunction()
 
-# <winnow/core/aabb.h> is spelled in the tree as it is after installation: one line in the build
-# tree leads to each public header, the headers that lie at a room's root. Everything else is
-# spelled by its path from the root of the tree.
+# Sources include public headers as <winnow/core/aabb.h>, as users do after installation: for each
+# public header, which are the headers directly in a room's folder, the build tree has a file that
+# includes it. All other headers are included by their path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 set(WINNOW_PUBLIC_HEADERS "")
 set(winnow_public_folders core simd partitions pipeline)
@@ -72,8 +72,8 @@ target_link_libraries(winnow_flags INTERFACE Eigen3::Eigen)
 target_compile_options(winnow_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
   $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>)
-# So would Eigen's own vectors on AArch64, which fuse where this says that they can. Kernels, which
-# fuse for bounds, do not read Eigen.
+# Eigen's vectors on AArch64 fuse, too, if __ARM_FEATURE_FMA is defined. Kernels keep it: they do
+# not include Eigen, and fuse only for bounds.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
   target_compile_options(winnow_flags INTERFACE
     $<$<NOT:$<BOOL:$<TARGET_PROPERTY:WINNOW_KERNELS>>>:-U__ARM_FEATURE_FMA>)
@@ -89,7 +89,7 @@ endif()
 if(WINNOW_SANITIZER STREQUAL "address")
   set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
-  # Two fifths of the time that such a build takes.
+  # These two checks cost much of the time of such a build.
   option(WINNOW_SANITIZE_POINTERS "Look for null and misaligned pointers before each use" ON)
   if(NOT WINNOW_SANITIZE_POINTERS)
     list(APPEND winnow_sanitize -fno-sanitize=alignment,null)
@@ -108,15 +108,15 @@ endif()
 target_compile_options(winnow_flags INTERFACE ${winnow_sanitize})
 target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 
-# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): one of the four rooms
-# of the library, an archive of every source below its folder. A `*.kernel.cpp` is compiled once per
-# instruction set. Reading headers is most of what compiling the others takes: those of one folder,
-# which a program links together anyway, are compiled together, but for those APART whose own names
-# meet others'.
+# winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): adds one of the four
+# rooms of the library, an archive of every source below its folder. A `*.kernel.cpp` is compiled
+# once per instruction set. The other sources of a folder are compiled together (unity build),
+# because most of their time goes into headers and programs link them together anyway. Sources in
+# APART, whose local names collide with others, are compiled on their own.
 function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
-  # Libraries of their own, of their folders' CMakeLists.txt.
+  # These folders have a CMakeLists.txt with libraries of their own.
   list(FILTER sources EXCLUDE REGEX "^(c|python|cluster/mpi)/")
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "\\.kernel\\.cpp$")
@@ -136,7 +136,7 @@ function(winnow_library room)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()
-  # For programs that are linked with --gc-sections.
+  # Lets programs that are linked with --gc-sections drop what they do not use.
   target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${WINNOW_INCLUDE_DIR}>
@@ -146,7 +146,8 @@ function(winnow_library room)
   target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS}
                              $<$<BOOL:${WINNOW_SHARED}>:WINNOW_SHARED=1>
                              $<$<BOOL:${WINNOW_SHARED}>:WINNOW_EXPORTS=1>)
-  # Eigen takes longer to read than what is written with it. A compiler cache does better without.
+  # Eigen takes most of the time that a source needs. Compiler caches work better without a
+  # precompiled header.
   if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
   endif()
@@ -155,9 +156,9 @@ function(winnow_library room)
   endif()
 endfunction()
 
-# winnow::winnow, what a simulation links: all rooms. Shared, it is one library of all their objects
-# that exports what WINNOW_API marks; tests and bench, which look inside, link the archive
-# winnow::pipeline and with it all rooms below.
+# winnow::winnow, the target that simulations link: all rooms. A shared library contains the objects
+# of all rooms and exports the names marked WINNOW_API. Tests and bench, which use internal names,
+# link the archive winnow::pipeline, and with it all rooms below.
 function(winnow_whole_library)
   if(NOT WINNOW_SHARED)
     add_library(winnow INTERFACE)

@@ -8,21 +8,21 @@
 
 namespace winnow {
 
-/// All points within `radius` of the segment from `a` to `b`; closed. Equal ends make a ball, a
-/// radius of zero a segment.
+/// All points within `radius` of the segment from `a` to `b`; closed. If `a` equals `b` the capsule
+/// is a ball; if the radius is zero it is a segment.
 struct Capsule {
-  /// One end of the segment.
+  /// First end of the segment; finite.
   Vec3f a;
-  /// Its other end, which may be the same.
+  /// Second end of the segment; finite, may be equal to `a`.
   Vec3f b;
-  float radius = 0.0F;  ///< distance from the segment up to which points belong to it; finite, >= 0
+  float radius = 0.0F;  ///< finite, >= 0
 
-  /// True if a query takes this capsule: finite ends, finite radius >= 0.
+  /// Returns true if a query accepts this capsule: finite ends, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
     return a.all_finite() && b.all_finite() && std::isfinite(radius) && radius >= 0.0F;
   }
 
-  /// The smallest float box that contains the capsule.
+  /// Returns the smallest float box that contains the capsule.
   [[nodiscard]] Aabb bounds() const noexcept {
     Aabb box = Sphere{a, radius}.bounds();
     box.merge(Sphere{b, radius}.bounds());

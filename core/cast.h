@@ -11,53 +11,54 @@
 
 namespace winnow {
 
-/// A box moved by t * direction for t in [min_t, max_t], without turning.
+/// A box that moves by t * direction for t in [min_t, max_t] and does not rotate.
 struct BoxCast {
-  Aabb box;  ///< where it stands at t = 0
-  /// By which it moves while t grows by 1; finite, not zero.
+  Aabb box;  ///< the box at t = 0
+  /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// True if a query takes it: finite box with min <= max, and a valid direction and range.
+  /// Returns true if a query accepts this cast: finite box with min <= max, valid direction and
+  /// range.
   [[nodiscard]] bool is_valid() const noexcept {
     return box.min.all_finite() && box.max.all_finite() && box.is_valid() &&
            is_valid_sweep(direction, min_t, max_t);
   }
 };
 
-/// A ball moved by t * direction for t in [min_t, max_t].
+/// A ball that moves by t * direction for t in [min_t, max_t].
 struct SphereCast {
-  Sphere sphere;  ///< where it stands at t = 0
-  /// By which it moves while t grows by 1; finite, not zero.
+  Sphere sphere;  ///< the ball at t = 0
+  /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// True if a query takes it: a valid sphere and a valid sweep.
+  /// Returns true if a query accepts this cast: a valid sphere and a valid sweep.
   [[nodiscard]] bool is_valid() const noexcept {
     return sphere.is_valid() && is_valid_sweep(direction, min_t, max_t);
   }
 };
 
-/// A capsule moved by t * direction for t in [min_t, max_t], without turning.
+/// A capsule that moves by t * direction for t in [min_t, max_t] and does not rotate.
 struct CapsuleCast {
-  Capsule capsule;  ///< where it stands at t = 0
-  /// By which it moves while t grows by 1; finite, not zero.
+  Capsule capsule;  ///< the capsule at t = 0
+  /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< begin of the sweep; finite, >= 0
+  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
   /// End of the sweep; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// True if a query takes it: a valid capsule and a valid sweep.
+  /// Returns true if a query accepts this cast: a valid capsule and a valid sweep.
   [[nodiscard]] bool is_valid() const noexcept {
     return capsule.is_valid() && is_valid_sweep(direction, min_t, max_t);
   }
 };
 
-/// Anything that can be swept along a line; every one of these converts to it.
+/// A shape that is swept along a line; each alternative converts to it implicitly.
 using Cast = std::variant<Ray, BoxCast, SphereCast, CapsuleCast>;
 
 }  // namespace winnow

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kLine = Column<std::byte>::kAlignment;
 
-/// Of a room: no size of an element needs to divide a line.
+/// Size of an allocation in bytes; the size of an element need not divide a line.
 std::size_t whole_lines(std::size_t count, std::size_t element) noexcept {
   return (count * element + kLine - 1) / kLine * kLine;
 }
@@ -21,7 +21,7 @@ void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
 }
 
 void touch_pages(void* begin, std::size_t bytes) noexcept {
-  constexpr std::size_t kSmallestPage = 4096;  // of any system
+  constexpr std::size_t kSmallestPage = 4096;  // on all supported systems
   touch_each_page(begin, bytes, kSmallestPage);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Column, the growable array in which winnow stores all its rows, pairs and hits, and the functions
+// that allocate its memory. Implemented in core/column.cpp.
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 
@@ -13,58 +15,60 @@
 
 namespace winnow {
 
-/// `memory.allocate(bytes, alignment)`, or null if the resource throws.
+/// Returns `memory.allocate(bytes, alignment)`, or null if the resource throws.
 [[nodiscard]] WINNOW_API void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
                                             std::size_t alignment) noexcept;
 
-/// Whether memory that is made ready is written to as well, once on each page: who uses it first
-/// then waits for no page of the system.
+/// Whether a reservation also writes to each page of the new memory (prefaulting). The first real
+/// use then causes no page faults.
 enum class Pages : std::uint8_t {
-  untouched,  ///< asked for alone
-  touched,    ///< and written to
+  untouched,  ///< only allocated
+  touched,    ///< allocated, and written to once per page
 };
 
-/// Writes to every page of memory that holds nothing yet.
+/// Writes a zero to every page of memory whose content is not needed.
 WINNOW_API void touch_pages(void* begin, std::size_t bytes) noexcept;
 
-/// The memory of a column: where its elements lie, and how many there is room for.
+/// The memory of a column: its address and its capacity.
 struct ColumnRoom {
-  void* data = nullptr;      ///< null while nothing was allocated
+  void* data = nullptr;      ///< null if nothing is allocated
   std::size_t capacity = 0;  ///< in elements
 };
 
-/// Room for at least `count` elements of `element` bytes, in whole lines. The first `size` elements
-/// of the old room are moved there, and it is given back. Null data, and the old room as it was, if
-/// the resource refuses. O(size).
+/// Allocates room for at least `count` elements of `element` bytes each, in whole 64-byte lines,
+/// moves the first `size` elements of `old` to it and frees `old`. If the resource refuses, returns
+/// null data and leaves `old` as it was. O(size).
 [[nodiscard]] WINNOW_API ColumnRoom move_to_room(std::pmr::memory_resource& memory, ColumnRoom old,
                                                  std::size_t size, std::size_t count,
                                                  std::size_t element) noexcept;
 
-/// The same room, half as large again at least if the resource does not refuse that.
+/// As `move_to_room`, but tries first to grow the capacity by half if that is more than `count`.
 [[nodiscard]] WINNOW_API ColumnRoom grow_room(std::pmr::memory_resource& memory, ColumnRoom old,
                                               std::size_t size, std::size_t count,
                                               std::size_t element) noexcept;
 
-/// Gives a room back, if it is one.
+/// Frees the memory of a column; does nothing if its data is null.
 WINNOW_API void release_room(std::pmr::memory_resource& memory, ColumnRoom room,
                              std::size_t element) noexcept;
 
-/// One column of a structure of arrays: 64-byte aligned, its memory a whole number of 64-byte
-/// lines, growth reported instead of thrown. `std::pmr::vector` asks its resource only for
-/// alignof(T), hence this type. Elements past `size()` up to `capacity()` are uninitialised.
+/// One column of a structure of arrays. Its memory is 64-byte aligned and a whole number of 64-byte
+/// lines. If the memory resource refuses, functions return false instead of throwing.
+/// `std::pmr::vector` requests only alignof(T) from its resource, hence this type. Elements from
+/// `size()` up to `capacity()` are uninitialised.
 template <typename T>
 class Column {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Bytes; a cache line, and a register of the widest instruction set.
+  /// Alignment in bytes: a cache line, and a register of the widest instruction set.
   static constexpr std::size_t kAlignment = 64;
-  /// Elements whose bytes, in whole lines, can be counted.
+  /// Largest number of elements whose size in bytes, rounded up to whole lines, fits in
+  /// std::size_t.
   static constexpr std::size_t kMost = (~std::size_t{0} - kAlignment + 1) / sizeof(T);
 
-  /// An empty column. Every allocation comes from `memory`, which must outlive it.
+  /// Creates an empty column. Every allocation comes from `memory`, which must outlive the column.
   explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
-  /// Takes over the elements and the resource; `other` is left empty.
+  /// Takes the elements and the memory resource of `other`, which is left empty.
   Column(Column&& other) noexcept
       : memory_(other.memory_),
         data_(std::exchange(other.data_, nullptr)),
@@ -75,36 +79,35 @@ class Column {
   Column& operator=(Column&&) = delete;
   ~Column() { release_room(*memory_, room(), sizeof(T)); }
 
-  /// The first element; null while nothing was allocated.
+  /// Returns a pointer to the first element; null if nothing is allocated.
   [[nodiscard]] T* data() noexcept { return data_; }
-  /// The first element; null while nothing was allocated.
+  /// Returns a pointer to the first element; null if nothing is allocated.
   [[nodiscard]] const T* data() const noexcept { return data_; }
-  /// Elements in use.
+  /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Elements that there is room for.
+  /// Returns the number of elements that fit in the allocated memory.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
-  /// True without elements in use, whatever the capacity.
+  /// True if the size is 0.
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
-  /// Element i, below `capacity()`; nothing is checked.
+  /// Element i; i must be below `capacity()`, which is not checked.
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
-  /// Element i, below `capacity()`; nothing is checked.
+  /// Element i; i must be below `capacity()`, which is not checked.
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
-  /// The first element in use.
+  /// Iterators over the elements.
+  /// @{
   [[nodiscard]] T* begin() noexcept { return data_; }
-  /// Behind the last element in use.
   [[nodiscard]] T* end() noexcept { return data_ + size_; }
-  /// The first element in use.
   [[nodiscard]] const T* begin() const noexcept { return data_; }
-  /// Behind the last element in use.
   [[nodiscard]] const T* end() const noexcept { return data_ + size_; }
+  /// @}
 
-  /// Room for at least `count` elements, no more than the next full line. False, and unchanged, if
-  /// the resource refuses.
+  /// Ensures room for at least `count` elements, rounded up to whole lines. Returns false, and
+  /// changes nothing, if the resource refuses.
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
     return count <= capacity_ || take(move_to_room(*memory_, room(), size_, count, sizeof(T)));
   }
 
-  /// The same; touched, if it shall be, is all room behind the last element.
+  /// As above; with `Pages::touched`, also writes to all pages behind the last element.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
     if (!reserve(count)) return false;
     if (pages == Pages::touched) touch();
@@ -114,13 +117,14 @@ class Column {
   /// Writes to the pages behind the last element.
   void touch() noexcept { touch_pages(data_ + size_, capacity_bytes() - size_ * sizeof(T)); }
 
-  /// As `reserve`, but grows by half at least, so that repeated growth costs O(1) per element.
+  /// As `reserve`, but grows by at least half if the resource allows, so that repeated growth costs
+  /// O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
     return count <= capacity_ || take(grow_room(*memory_, room(), size_, count, sizeof(T)));
   }
 
-  /// Room for `count` elements but not for fewer than are in use, and no more than the next full
-  /// line. False, and unchanged, if the resource refuses.
+  /// Reduces the capacity to `count` elements, or to `size()` if that is more, rounded up to whole
+  /// lines. Returns false, and changes nothing, if the resource refuses.
   [[nodiscard]] bool shrink(std::size_t count) noexcept {
     const std::size_t kept = count < size_ ? size_ : count;
     if (kept >= capacity_) return true;
@@ -129,27 +133,29 @@ class Column {
     return true;
   }
 
-  /// Sets the size; the room must have been reserved. New elements are uninitialised.
+  /// Sets the size without allocating; the memory must be reserved. New elements are uninitialised.
   void set_size(std::size_t count) noexcept { size_ = count; }
 
-  /// Resizes and, on growth, leaves the new elements uninitialised.
+  /// Sets the size, and allocates if necessary; new elements are uninitialised. Returns false, and
+  /// changes nothing, if the resource refuses.
   [[nodiscard]] bool resize(std::size_t count) noexcept {
     if (!grow(count)) return false;
     size_ = count;
     return true;
   }
 
-  /// Adds an element. False, and unchanged, if memory is refused. O(1) but for growth.
+  /// Appends an element. Returns false, and changes nothing, if memory is refused. O(1) except for
+  /// growth.
   [[nodiscard]] bool push_back(const T& value) noexcept {
     if (size_ == capacity_ && !grow(size_ + 1)) return false;
     data_[size_++] = value;
     return true;
   }
 
-  /// No elements are in use any more; memory is kept.
+  /// Sets the size to 0; memory is kept.
   void clear() noexcept { size_ = 0; }
 
-  /// Gives the memory back.
+  /// Removes all elements and frees the memory.
   void release() noexcept {
     release_room(*memory_, room(), sizeof(T));
     data_ = nullptr;
@@ -163,19 +169,19 @@ class Column {
     std::swap(capacity_, other.capacity_);
   }
 
-  /// Where its memory comes from.
+  /// Returns the memory resource of all allocations.
   [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
-  /// Bytes of elements in use, and of all that it holds.
+  /// Returns the bytes of the elements and the bytes allocated.
   [[nodiscard]] Bytes bytes() const noexcept { return {size_ * sizeof(T), capacity_bytes()}; }
 
  private:
-  // The request was a whole number of lines and sizeof(T) need not divide a line.
+  // Allocations are whole lines, and sizeof(T) need not divide a line.
   [[nodiscard]] std::size_t capacity_bytes() const noexcept {
     return (capacity_ * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
   }
 
   [[nodiscard]] ColumnRoom room() const noexcept { return {data_, capacity_}; }
-  /// False, and unchanged, if it is none.
+  /// Adopts the room; returns false, and changes nothing, if its data is null.
   [[nodiscard]] bool take(ColumnRoom room) noexcept {
     if (room.data == nullptr) return false;
     data_ = static_cast<T*>(room.data);

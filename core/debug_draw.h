@@ -9,37 +9,37 @@
 
 namespace winnow {
 
-/// Red, green, blue and opacity, 0..255.
+/// Red, green, blue and opacity, each 0..255.
 struct Colour {
   std::uint8_t r = 255;  ///< red
   std::uint8_t g = 255;  ///< green
   std::uint8_t b = 255;  ///< blue
-  std::uint8_t a = 255;  ///< opacity: 255 hides what lies behind
+  std::uint8_t a = 255;  ///< opacity; 255 is opaque
 
-  /// All four are equal.
+  /// True if all four components are equal.
   friend constexpr bool operator==(const Colour&, const Colour&) noexcept = default;
 };
 
-/// What a caller implements to see inside: winnow calls it, from the calling thread, while
-/// `Partition::debug_draw` runs. Boxes and spheres are outlines. Ends at infinity come as they are.
-/// An exception that leaves it ends the process. The structure comes first, then the objects in
-/// ascending order of their ids. The colours are those of partitions/debug_colours.h: one per kind
-/// of thing.
+/// Interface that a caller implements to draw the content of a partition. `Partition::debug_draw`
+/// calls it on the calling thread. Boxes and spheres are meant as outlines. Infinite coordinates
+/// are passed on unchanged. An exception that leaves an implementation ends the process. The
+/// structure comes first, then the objects in ascending order of their ids. The colours are listed
+/// in partitions/debug_colours.h: one per kind of item.
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;
 
-  /// Draws the edges of a box, which may reach to infinity.
+  /// Draws the edges of a box, which may extend to infinity.
   virtual void box(const Aabb& box, Colour colour) = 0;
   /// Draws the segment between two points.
   virtual void line(const Vec3f& from, const Vec3f& to, Colour colour) = 0;
   /// Draws a ball, or its outline.
   virtual void sphere(const Sphere& sphere, Colour colour) = 0;
-  /// `text` is valid during the call only.
+  /// Draws a label at a point; `text` is valid only during the call.
   virtual void text(const Vec3f& at, std::string_view text, Colour colour) = 0;
 };
 
-/// What a partition draws.
+/// Selects what a partition draws.
 struct DebugDrawOptions {
   bool objects = true;    ///< the volume of every object
   bool structure = true;  ///< cells, strips, the sweep axis, nodes coloured by depth

@@ -1,7 +1,7 @@
 #pragma once
 
-// The one public header that reads Eigen, for who computes with it: nothing else needs it, since
-// winnow's vectors and matrices take those of Eigen, and turn into them, by themselves.
+// The only public header that includes Eigen, for programs that compute with Eigen. Others do not
+// need it: winnow's vectors and matrices convert from and to Eigen types without it.
 
 #include <winnow/core/matrix.h>
 #include <winnow/core/vec3.h>
@@ -10,24 +10,24 @@
 
 namespace winnow {
 
-/// A vector looked at in place as one of Eigen, to be read; it must outlive what this returns.
+/// Returns a read-only Eigen map of the vector, which must outlive the map.
 template <typename T>
 [[nodiscard]] Eigen::Map<const Eigen::Matrix<T, 3, 1>> as_eigen(const BasicVec3<T>& v) noexcept {
   return Eigen::Map<const Eigen::Matrix<T, 3, 1>>(v.data());
 }
-/// The same, to be set.
+/// Returns a writable Eigen map of the vector, which must outlive the map.
 template <typename T>
 [[nodiscard]] Eigen::Map<Eigen::Matrix<T, 3, 1>> as_eigen(BasicVec3<T>& v) noexcept {
   return Eigen::Map<Eigen::Matrix<T, 3, 1>>(v.data());
 }
 
-/// A matrix looked at in place as one of Eigen, to be read; it must outlive what this returns.
+/// Returns a read-only Eigen map of the matrix, which must outlive the map.
 template <typename T, int N>
 [[nodiscard]] Eigen::Map<const Eigen::Matrix<T, N, N>> as_eigen(
     const BasicMatrix<T, N>& m) noexcept {
   return Eigen::Map<const Eigen::Matrix<T, N, N>>(m.data());
 }
-/// The same, to be set.
+/// Returns a writable Eigen map of the matrix, which must outlive the map.
 template <typename T, int N>
 [[nodiscard]] Eigen::Map<Eigen::Matrix<T, N, N>> as_eigen(BasicMatrix<T, N>& m) noexcept {
   return Eigen::Map<Eigen::Matrix<T, N, N>>(m.data());

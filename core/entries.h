@@ -8,26 +8,26 @@
 
 namespace winnow {
 
-/// Some entries of arrays that a caller keeps of all its objects, for a call that is about these
-/// alone, so that nothing need be copied together. Nothing is copied to make one, and it must not
-/// outlive what it looks at.
+/// A subset of the entries of per-object arrays, for calls that process only this subset: the
+/// caller need not copy these entries into smaller arrays. It copies nothing and must not outlive
+/// the span that it was made from.
 class Entries {
  public:
-  /// By number, in any order.
+  /// Selects entries by index, in any order.
   [[nodiscard]] static Entries listed(std::span<const std::uint32_t> numbers) noexcept {
     return {numbers, {}, false};
   }
-  /// A bit each: entry i is meant if bit i % 64 of word i / 64 is set. A word for each 64 entries;
-  /// bits behind the last entry are not looked at.
+  /// Selects entries by a bit mask with one word per 64 entries: entry i is selected if bit i % 64
+  /// of word i / 64 is set. Bits behind the last entry are ignored.
   [[nodiscard]] static Entries masked(std::span<const std::uint64_t> words) noexcept {
     return {{}, words, true};
   }
 
-  /// Whether `words` says which entries are meant, or else `numbers`.
+  /// True if `words` selects the entries, false if `numbers` does.
   [[nodiscard]] bool is_mask() const noexcept { return is_mask_; }
-  /// Entries by number; empty for a mask.
+  /// Returns the indices of the selected entries; empty for a mask.
   [[nodiscard]] std::span<const std::uint32_t> numbers() const noexcept { return numbers_; }
-  /// A bit for each entry; empty for a list.
+  /// Returns the bit mask of the selected entries; empty for a list.
   [[nodiscard]] std::span<const std::uint64_t> words() const noexcept { return words_; }
 
  private:

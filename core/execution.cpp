@@ -16,11 +16,12 @@
 namespace winnow {
 namespace {
 
-// Of more threads than this some have nothing to do.
+// Maximum number of threads that share a call; more would stay idle.
 constexpr std::size_t kMostShares = 64;
 
-/// Tasks in a stretch for each thread, which takes them one by one and then what others have left:
-/// neighbours stay with one thread, and a task costs one addition.
+/// Tasks divided into one contiguous range per thread. A thread takes tasks one by one from its own
+/// range, then from the ranges of others (work stealing): neighbouring tasks stay on one thread,
+/// and taking a task costs one atomic addition.
 class SharedTasks {
  public:
   SharedTasks(std::size_t count, std::size_t threads, void* tasks, JobSystem::Task task) noexcept
@@ -32,7 +33,7 @@ class SharedTasks {
 
   [[nodiscard]] std::size_t shares() const noexcept { return shares_; }
 
-  /// Does tasks of a share, then of the others, until none is left that nobody has begun.
+  /// Runs tasks of range `own`, then of the other ranges, until all tasks have been started.
   void run(std::size_t own) noexcept {
     for (std::size_t k = 0; k < shares_; ++k) {
       Share& share = share_[own + k < shares_ ? own + k : own + k - shares_];
@@ -49,7 +50,7 @@ class SharedTasks {
     return AtomicRef<std::size_t>(share.next).fetch_add(1, std::memory_order_relaxed);
   }
 
-  std::array<Share, kMostShares> share_;  // as many as there are have values
+  std::array<Share, kMostShares> share_;  // only the first shares_ are initialised
   const std::size_t shares_;
   void* const tasks_;
   const JobSystem::Task task_;
@@ -61,9 +62,10 @@ std::size_t arena_threads() noexcept {
   return threads > 1 ? static_cast<std::size_t>(threads) : 1;
 }
 
-// Workers keep the floating-point environment of when the arena was made: they take the caller's,
-// so that its rounding, and what it makes of denormal numbers, are those of all tasks. Isolated:
-// whoever cancels the work that the call is part of must not leave it half done.
+// TBB's workers have the floating-point environment of the moment when their arena was created. The
+// context captures the caller's environment, so that all tasks round and treat denormals as the
+// caller does. It is isolated, so that a cancellation of the caller's task group does not leave the
+// call half done.
 void run_in_arena(SharedTasks& tasks) {
   using Context = tbb::task_group_context;
   Context environment(Context::isolated, Context::default_traits | Context::fp_settings);
@@ -78,7 +80,8 @@ void run_in_arena(SharedTasks& tasks) {
 }
 #endif
 
-/// Tasks that a host's threads run in the environment of the caller, and end in their own.
+/// Tasks on the threads of a host: each runs in the floating-point environment of the caller and
+/// restores the thread's own environment when it ends.
 struct HostedTasks {
   SharedTasks& tasks;
   FloatControl callers = float_control();

@@ -7,50 +7,50 @@
 
 namespace winnow {
 
-/// A host's own way to run tasks side by side: its job system, its pool of threads.
+/// A host's own job system or thread pool, on which winnow runs its tasks in parallel.
 struct JobSystem {
-  /// Does one task of `tasks`. It does not throw.
+  /// Runs task `i` of `tasks`; it does not throw.
   using Task = void (*)(void* tasks, std::size_t i);
 
   /// Calls `task(tasks, i)` once for every i < count, on any threads and in any order, and returns
-  /// when all of these calls have. What came before it happens before the tasks, and these before
-  /// it returns. While it waits it does nothing else that may call winnow, since its caller may
-  /// hold a lock. It is called from any thread, several at once, also from tasks of its own if the
-  /// host calls winnow there; it must not throw.
+  /// after all calls have returned. Everything before the call happens before the tasks, and the
+  /// tasks happen before its return. While it blocks it must not run other work that may call
+  /// winnow, because its caller may hold a lock. It is called from any thread, from several at
+  /// once, and from its own tasks if the host calls winnow there. It must not throw.
   void (*parallel_for)(void* context, std::size_t count, Task task, void* tasks) = nullptr;
-  /// Handed to parallel_for; it outlives everything that the job system was given to.
+  /// Passed to `parallel_for`; must outlive everything that the job system is passed to.
   void* context = nullptr;
-  /// How many tasks may run at the same time, and the most that a call of parallel_for is given.
-  /// More or fewer cost time alone.
+  /// Number of tasks that may run at the same time, and the largest `count` that is passed to
+  /// `parallel_for`. It affects only speed.
   std::size_t threads = 1;
 
-  /// The same function, context and number of threads.
+  /// True if function, context and number of threads are equal.
   friend constexpr bool operator==(const JobSystem&, const JobSystem&) noexcept = default;
 };
 
-/// How a partition uses the machine. Tasks run in the floating-point environment of the caller
-/// (rounding, flushing of denormal numbers). Results and their order are the same on any number of
-/// threads, whoever runs them.
+/// How a partition runs its work: on the calling thread, as oneTBB tasks, or on a host's job
+/// system. Tasks run in the floating-point environment of the caller (rounding, flushing of
+/// denormals). Results and their order do not depend on this choice or on the number of threads.
 class Execution {
  public:
-  /// All work is done by the thread that calls.
+  /// Runs all work on the calling thread.
   [[nodiscard]] static constexpr Execution serial() noexcept { return Execution({}, false); }
-  /// As oneTBB tasks inside the arena of the thread that calls, so the caller decides on the number
-  /// of threads (`tbb::task_arena(n).execute(...)`). They run to the end also where the caller's
-  /// own group of tasks is cancelled. A winnow that was built without oneTBB runs them one after
+  /// Runs work as oneTBB tasks inside the arena of the calling thread: the caller controls the
+  /// number of threads (`tbb::task_arena(n).execute(...)`). The tasks run to completion even if the
+  /// caller's own task group is cancelled. If winnow was built without oneTBB they run one after
   /// the other.
   [[nodiscard]] static constexpr Execution parallel() noexcept { return Execution({}, true); }
-  /// By the host's own means.
+  /// Runs work on the host's job system; serially if that has no `parallel_for` or only one thread.
   [[nodiscard]] static constexpr Execution on(const JobSystem& jobs) noexcept {
     return jobs.parallel_for != nullptr && jobs.threads > 1 ? Execution(jobs, false) : serial();
   }
 
-  /// Threads that can work on a call made from here.
+  /// Returns the number of threads that can work on a call made from here.
   [[nodiscard]] WINNOW_API std::size_t concurrency() const noexcept;
 
-  /// Calls `task(i)` once for every i < count, in any order; returns when all are done. Tasks must
-  /// not throw. A task never runs unrelated work of the arena while it waits, so it may be called
-  /// under a lock.
+  /// Calls `task(i)` once for every i < count, in any order; returns after all have returned. Tasks
+  /// must not throw. The caller may hold a lock, because its thread runs no unrelated work of the
+  /// arena during the call.
   template <typename Task>
   void for_each(std::size_t count, Task&& task) const {
     run(count, &task, [](void* context, std::size_t i) {
@@ -58,7 +58,7 @@ class Execution {
     });
   }
 
-  /// Work is done by the same means.
+  /// True if both run work in the same way.
   friend constexpr bool operator==(const Execution&, const Execution&) noexcept = default;
 
  private:

@@ -1,25 +1,25 @@
 #pragma once
 
-// What every public header includes first: the language that winnow is written in, and how its
-// names leave a shared library.
+// Every public header includes this one first. It checks the language version and the
+// floating-point mode, and defines how names are exported from a shared library.
 
-// Of cl _MSVC_LANG alone says it, unless it is told otherwise.
+// MSVC states the language version in _MSVC_LANG; __cplusplus is outdated without /Zc:__cplusplus.
 #if !(defined(__cplusplus) && __cplusplus >= 202002L) && \
     !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
 #error "winnow needs C++20: compile with -std=c++20 or later"
 #endif
 
-// Inline functions of the headers round outward and refuse NaN, which compilers leave out if they
-// may take numbers for what they are not.
+// Inline functions in the headers round outward and reject NaN. With fast-math options compilers
+// may remove both.
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
     defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
 #error "winnow needs strict floating point: compile what includes it without -ffast-math"
 #endif
 
-/// Marks what a shared winnow exports. Its users get the definition of WINNOW_SHARED from CMake or
-/// pkg-config; with archives it is not defined, and nothing of winnow is exported from what they
-/// are linked into. What builds a shared winnow defines WINNOW_EXPORTS, too: Windows tells the two
-/// apart.
+/// Marks the names that a shared winnow exports. CMake and pkg-config define WINNOW_SHARED for its
+/// users. Users of static archives do not define it, and the binary that they link exports nothing
+/// of winnow. The build of the shared library also defines WINNOW_EXPORTS, because Windows
+/// distinguishes export from import.
 #ifndef WINNOW_SHARED
 #define WINNOW_API
 #elif defined(_WIN32) && defined(WINNOW_EXPORTS)

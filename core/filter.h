@@ -7,41 +7,41 @@
 
 namespace winnow {
 
-/// True if two objects may be paired.
+/// Returns true if the filters allow a pair of the two objects.
 [[nodiscard]] constexpr bool may_meet(const ObjectFilter& a, const ObjectFilter& b) noexcept {
   return (a.layers & b.mask) != 0 && (b.layers & a.mask) != 0 &&
          (a.environment == b.environment || a.environment == kEveryEnvironment ||
           b.environment == kEveryEnvironment);
 }
 
-/// A caller's last word on an object that a query would report. Plain pointers, so that it costs
-/// one call per object. It may be called from several threads at once, in any order, and not for
-/// every object that is reported in the end; it must answer the same each time. It must not call
-/// what asks it, which may hold locks, and it must not throw: an exception that leaves it ends the
-/// process (`std::terminate`), whatever thread asks.
+/// Callback that accepts or rejects an object that a query would report. It is a plain function
+/// pointer, which costs one call per object. It may be called from several threads at once and in
+/// any order. It need not be called for every reported object, so it must return the same value
+/// each time for an object. It must not call the partition or scene that calls it, which may hold
+/// locks. It must not throw: an exception ends the process (`std::terminate`) on any thread.
 struct ObjectPredicate {
-  bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null: all
-  void* context = nullptr;                                            ///< handed to `accept`
+  bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null accepts all
+  void* context = nullptr;                                            ///< passed to `accept`
 };
 
-/// What a query asks for: the filter that stands for the one who asks, and a predicate. Subtrees in
-/// which the filter can match nothing are not entered.
+/// Filter of a query: layers, mask and environment, as if the query were an object, and a
+/// predicate. Queries skip subtrees in which no object can match.
 struct Filter {
-  std::uint32_t layers = ~0U;  ///< layers that the one who asks is in, a bit each; all by default
-  std::uint32_t mask = ~0U;    ///< layers that it wants to meet
-  std::uint32_t environment = kEveryEnvironment;  ///< objects of another one are not met
-  ObjectPredicate predicate{};  ///< asked last, about objects that the filter lets pass
+  std::uint32_t layers = ~0U;  ///< layers that the query is in, one bit each; all by default
+  std::uint32_t mask = ~0U;    ///< layers that it accepts
+  std::uint32_t environment = kEveryEnvironment;  ///< objects of other environments are skipped
+  ObjectPredicate predicate{};  ///< called last, for objects that pass the rest of the filter
 
-  /// The filter alone, as an object would have it.
+  /// Returns the layers, mask and environment as an ObjectFilter.
   [[nodiscard]] constexpr ObjectFilter object() const noexcept {
     return {layers, mask, environment};
   }
 };
 
-/// A caller's last word on a pair; see ObjectPredicate.
+/// Callback that accepts or rejects a pair; the rules of ObjectPredicate apply.
 struct PairPredicate {
-  bool (*accept)(void* context, ObjectId first, ObjectId second) = nullptr;  ///< null: all
-  void* context = nullptr;                                                   ///< handed to `accept`
+  bool (*accept)(void* context, ObjectId first, ObjectId second) = nullptr;  ///< null accepts all
+  void* context = nullptr;                                                   ///< passed to `accept`
 };
 
 }  // namespace winnow

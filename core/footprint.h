@@ -7,32 +7,32 @@
 
 namespace winnow {
 
-/// Bytes of one purpose: `used` holds live content, `reserved` is what the memory resource gave.
+/// Bytes of one purpose: `used` is live content, `reserved` is allocated from the memory resource.
 struct Bytes {
   std::size_t used = 0;      ///< bytes with content
-  std::size_t reserved = 0;  ///< bytes held, content or not
+  std::size_t reserved = 0;  ///< bytes allocated, with content or not
 
-  /// Adds both.
+  /// Adds both members.
   Bytes& operator+=(const Bytes& other) noexcept {
     used += other.used;
     reserved += other.reserved;
     return *this;
   }
-  /// Both are equal.
+  /// True if both members are equal.
   friend bool operator==(const Bytes&, const Bytes&) noexcept = default;
 };
 
-/// Bytes by purpose. The sum of `reserved` equals, to the byte, what is outstanding at the memory
-/// resource; the object itself (its sizeof) is not in it.
+/// Bytes by purpose. The sum of `reserved` equals, to the byte, the memory outstanding at the
+/// memory resource; the object itself (its sizeof) is not included.
 struct Footprint {
   Bytes bounds;       ///< bounding-volume columns
-  Bytes keys;         ///< slots, generations, row maps
-  Bytes client_data;  ///< the callers' values
-  Bytes structure;    ///< cells, nodes, sort orders: what the partition adds
+  Bytes keys;         ///< slots, generations and row maps
+  Bytes client_data;  ///< client data of all objects
+  Bytes structure;    ///< cells, nodes and sort orders of the partition
   Bytes scratch;      ///< buffers kept from frame to frame
-  Bytes results;      ///< pairs and hits on their way to the caller's buffer
+  Bytes results;      ///< pairs and hits, until they are in the caller's buffer
 
-  /// Sum of all purposes.
+  /// Returns the sum over all purposes.
   [[nodiscard]] Bytes total() const noexcept {
     Bytes sum;
     for (const Bytes* part : {&bounds, &keys, &client_data, &structure, &scratch, &results}) {

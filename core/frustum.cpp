@@ -13,21 +13,22 @@ namespace {
 
 using Corners = std::array<Eigen::Vector3d, 8>;
 
-/// A frustum without a meaning: `is_valid` says no.
+/// Returns a frustum for which `is_valid` is false.
 Frustum invalid() noexcept {
   Frustum frustum;
   for (Plane& plane : frustum.planes) plane = {{0.0F, 0.0F, 0.0F}, 0.0F};
   return frustum;
 }
 
-/// Unit normals keep the float planes as exact as they can be.
+/// Normalises a plane: unit normals keep float planes as exact as possible.
 Plane inward(const Eigen::Vector3d& normal, double offset) noexcept {
   const double length = normal.norm();
   const double scale = length > 0.0 ? 1.0 / length : 1.0;
   return {(normal * scale).cast<float>(), static_cast<float>(offset * scale)};
 }
 
-/// Grown by a little more than what computing the corners in double can be off by.
+/// Returns the bounding box, enlarged by slightly more than the rounding error of the corners.
+/// Infinite if a corner is not finite.
 Aabb around(const Corners& corners) noexcept {
   Eigen::Vector3d low = corners[0];
   Eigen::Vector3d high = corners[0];
@@ -90,8 +91,8 @@ Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth)
   for (std::size_t i = 0; i < 6; ++i) {
     frustum.planes[i] = inward(rows[i].head<3>(), rows[i].w());
   }
-  // A plane at infinity bounds nothing: the other stands in for it. Which of the two it is depends
-  // on which end of the depth range is near.
+  // A depth plane at infinity has no valid normal and bounds nothing: the other depth plane
+  // replaces it. A reversed depth range has its infinite plane at the other end.
   if (!frustum.planes[5].is_valid()) frustum.planes[5] = frustum.planes[4];
   if (!frustum.planes[4].is_valid()) frustum.planes[4] = frustum.planes[5];
 
@@ -102,7 +103,7 @@ Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth)
     const Eigen::Vector4d clip((i & 1U) != 0 ? 1.0 : -1.0, (i & 2U) != 0 ? 1.0 : -1.0,
                                (i & 4U) != 0 ? 1.0 : (from_zero ? 0.0 : -1.0), 1.0);
     const Eigen::Vector4d p = inverse.solve(clip);
-    // Behind the eye or at infinity: no box holds what is seen.
+    // The corner is behind the eye or at infinity: the frustum has no finite bounding box.
     if (!(p.w() > 1e-12 * p.cwiseAbs().maxCoeff())) return frustum;
     corners[i] = p.head<3>() / p.w();
   }

@@ -11,34 +11,35 @@
 
 namespace winnow {
 
-/// What a camera sees: six planes that face inward, and a box around what lies within them.
+/// View volume of a camera: six planes whose normals point inward, and a bounding box.
 struct WINNOW_API Frustum {
-  /// Depth that the near plane has in clip space.
+  /// Depth of the near plane in clip space.
   enum class NearDepth {
-    zero,       ///< as Vulkan, Direct3D and Metal have it
-    minus_one,  ///< as OpenGL has it
+    zero,       ///< Vulkan, Direct3D and Metal
+    minus_one,  ///< OpenGL
   };
 
   std::array<Plane, 6> planes;  ///< left, right, bottom, top, near, far
-  /// Contains the frustum; whatever lies outside of it is not seen. Infinite where not known.
+  /// Bounding box of the frustum; objects outside of it are not visible. Infinite if unknown.
   Aabb bounds{Vec3f::constant(-std::numeric_limits<float>::infinity()),
               Vec3f::constant(std::numeric_limits<float>::infinity())};
 
-  /// A camera at `eye` that looks along `forward` (any length), with `up` roughly upward; vertical
-  /// field of view in radians, in (0, pi); aspect = width / height > 0; 0 <= near_t < far_t are
-  /// distances along `forward`, far_t finite. Other values give an invalid frustum.
+  /// Returns the frustum of a camera at `eye` that looks along `forward` (any length), with `up`
+  /// roughly upward. The vertical field of view is in radians, in (0, pi); aspect = width / height
+  /// > 0. `near_t` and `far_t` are distances along `forward`: 0 <= near_t < far_t, far_t finite.
+  /// Other values give an invalid frustum.
   [[nodiscard]] static Frustum perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f& up,
                                            float vertical_fov, float aspect, float near_t,
                                            float far_t) noexcept;
 
-  /// From a matrix that takes column vectors of the world to clip space (Gribb and Hartmann, "Fast
-  /// extraction of viewing frustum planes", 2001). Planes carry the rounding of the matrix itself.
-  /// A far plane at infinity is legal, and so is a reversed depth; the box of an infinite frustum
-  /// is infinite.
+  /// Returns the frustum of a matrix that transforms column vectors from world to clip space (Gribb
+  /// and Hartmann, "Fast extraction of viewing frustum planes", 2001). The planes have the rounding
+  /// error of the matrix. A far plane at infinity and a reversed depth range are valid; the
+  /// bounding box of an infinite frustum is infinite.
   [[nodiscard]] static Frustum from_matrix(const Mat4d& clip_from_world,
                                            NearDepth near_depth = NearDepth::zero) noexcept;
 
-  /// True if a query takes it: six valid planes and a valid box.
+  /// Returns true if a query accepts this frustum: six valid planes and a valid box.
   [[nodiscard]] bool is_valid() const noexcept;
 };
 

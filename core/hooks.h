@@ -9,58 +9,60 @@
 
 namespace winnow {
 
-/// What winnow is at work on, for who wants to see where a frame's time goes. Stages nest: a query
-/// for pairs may refresh, and a refresh build. A scene of many pairs goes through the last three
-/// more than once in a frame.
+/// Stages of winnow's work, for profiling. Stages nest: a query for pairs may refresh, and a
+/// refresh may build. A scene with many pairs may run the last three stages more than once per
+/// frame.
 enum class WorkStage : std::uint8_t {
-  refresh,       ///< structures follow what changed
-  build,         ///< a structure is made anew
-  pairs,         ///< bounding volumes that overlap are found
+  refresh,       ///< structures are updated for changed objects
+  build,         ///< a structure is rebuilt
+  pairs,         ///< overlapping bounding volumes are found
   mid_phase,     ///< parts of meshes, height fields and compounds that may touch are found
-  narrow_phase,  ///< pairs of shapes are answered
-  contacts,      ///< answers are put into Contacts
+  narrow_phase,  ///< pairs of shapes are tested
+  contacts,      ///< results are written to Contacts
 };
-/// How many there are.
+/// Number of stages.
 inline constexpr std::size_t kWorkStages = 6;
 
-/// The enumerator's name. Never null.
+/// Returns the enumerator's name, never null.
 [[nodiscard]] WINNOW_API const char* to_string(WorkStage stage) noexcept;
 
-/// Is called when a stage begins and when it ends, by the thread that called winnow: what a
-/// profiler such as Tracy or Perfetto wants. Stages of one thread end in the reverse of the order
-/// in which they began. It must not throw, nor call what called it.
+/// Callback at the beginning and end of each stage, on the thread that called winnow. It serves
+/// profilers such as Tracy or Perfetto. Stages of a thread end in the reverse order of their
+/// beginning. The callback must not throw, and must not call the partition or scene that is
+/// working.
 using StageHook = void (*)(WorkStage stage, bool begins);
 
-/// Sets the hook of the process, null for none, and gives back the one before. Without one a stage
-/// costs a look at a pointer. At any time, from any thread: stages that are under way end with the
-/// hook that they began with.
+/// Sets the stage hook of the process (null for none) and returns the previous one. Without a hook
+/// a stage costs one pointer load. Thread-safe at any time: a stage in progress ends with the hook
+/// that it began with.
 WINNOW_API StageHook set_stage_hook(StageHook hook) noexcept;
 
-/// What a log is told.
+/// An entry that is passed to the log hook.
 struct LogEntry {
-  /// What happened.
+  /// Kind of event.
   enum class Kind : std::uint8_t {
-    choice,   ///< the structure of a partition changed by `automatic()`
+    choice,   ///< `automatic()` changed the structure of a partition
     refusal,  ///< a call of a Partition or Scene was refused
   };
-  Kind kind = Kind::refusal;  ///< says which of the rest are set
-  /// The structure from here on, or the call: "Scene::add".
+  Kind kind = Kind::refusal;  ///< determines which other members are set
+  /// Name of the new structure, or of the refused call, such as "Scene::add".
   std::string_view what{};
-  /// The structure before.
+  /// Name of the previous structure; empty for a refusal.
   std::string_view before{};
-  /// Why, in a few words; the status by name.
+  /// Reason in a few words; for a refusal, the name of the status.
   std::string_view reason{};
-  Status status = Status::ok;  ///< of a refusal
-  /// In the partition. 0 of a refusal.
+  Status status = Status::ok;  ///< status of the refused call
+  /// Number of objects in the partition; 0 for a refusal.
   std::size_t objects = 0;
 };
 
-/// Is called by the thread that called winnow, which may hold locks: it must not throw, nor call
-/// the partition or scene. The entry, and what it points to but names, is gone afterwards.
+/// Log callback, called on the thread that called winnow. That thread may hold locks: the callback
+/// must not throw, and must not call the partition or scene. The entry and its text are valid only
+/// during the call; names of structures, calls and statuses stay valid.
 using LogHook = void (*)(const LogEntry& entry);
 
-/// Sets the hook of the process, null for none, and gives back the one before. At any time, from
-/// any thread.
+/// Sets the log hook of the process (null for none) and returns the previous one. Thread-safe at
+/// any time.
 WINNOW_API LogHook set_log_hook(LogHook hook) noexcept;
 
 }  // namespace winnow

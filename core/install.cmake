@@ -1,10 +1,10 @@
-# Install rules: the library, public headers, the licence, and what find_package(winnow) and
-# pkg-config read.
+# Install rules: the library, public headers, the licence, and the files for find_package(winnow)
+# and pkg-config.
 
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 
-# Archives leave TBB to whoever links them; a shared library finds its own.
+# Users of the archives link TBB themselves; a shared library is linked to it.
 set(winnow_requires "")
 if(NOT WINNOW_SHARED AND WINNOW_TBB)
   list(APPEND winnow_requires tbb)
@@ -33,7 +33,7 @@ foreach(header ${WINNOW_PUBLIC_HEADERS})
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room})
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# What debuggers show of public types.
+# Pretty printers of public types for debuggers.
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/debuggers/winnow_gdb.py
               ${CMAKE_CURRENT_LIST_DIR}/debuggers/winnow.natvis
         DESTINATION ${CMAKE_INSTALL_DATADIR}/winnow)
@@ -45,7 +45,7 @@ if(TARGET winnow_cluster)
 endif()
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
 if(TARGET winnow_c)
-  # By itself: programs in C look for none of what the others need.
+  # A separate export set, so that programs in C need no other dependency.
   install(TARGETS winnow_c EXPORT winnow-c-targets
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -67,9 +67,9 @@ endif()
 
 file(RELATIVE_PATH winnow_pc_to_prefix
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-# Warnings about our headers are not their user's. /usr/include must not be named as a system folder
-# again: the standard library's own #include_next would lose its way. Where they go is known only
-# when they are installed.
+# -isystem hides warnings in winnow's headers from its users. /usr/include must not be given as a
+# system folder again, because #include_next of the standard library would then fail. The prefix is
+# known only at installation.
 set(winnow_pc_include "@winnow_pc_include@")
 set(winnow_pcs winnow)
 if(WINNOW_C)

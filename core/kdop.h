@@ -10,11 +10,10 @@
 
 namespace winnow {
 
-/// The slab directions of the k-DOPs, not normalised: the three axes, then the four cube
-/// diagonals, then the six edge diagonals. A k-DOP uses the first k/2 of its own list
-/// (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of
-/// k-DOPs", IEEE TVCG 4(1), 1998): 14 = axes + cube diagonals, 18 = axes + edge diagonals,
-/// 26 = all of them.
+/// Returns the slab directions of a k-DOP, not normalised: the three axes, then the four cube
+/// diagonals (K = 14 and 26), then the six edge diagonals (K = 18 and 26). See Klosowski et al.,
+/// "Efficient collision detection using bounding volume hierarchies of k-DOPs", IEEE TVCG 4(1),
+/// 1998.
 template <int K>
 [[nodiscard]] constexpr auto kdop_directions() noexcept {
   static_assert(K == 14 || K == 18 || K == 26, "a k-DOP has 14, 18 or 26 faces");
@@ -35,19 +34,20 @@ template <int K>
   return result;
 }
 
-/// Discrete oriented polytope: K/2 slabs [min, max] along `kdop_directions<K>()`; closed.
-/// Default-constructed it is empty. Overlap of slabs is necessary, not sufficient, for the
-/// polytopes to meet.
+/// Discrete oriented polytope: K/2 slabs [min, max] along `kdop_directions<K>()`; closed. A
+/// default-constructed k-DOP is empty. Overlap of all slabs is necessary, but not sufficient, for
+/// the polytopes to intersect.
 template <int K>
 struct Kdop {
-  static constexpr std::size_t kSlabs = K / 2;  ///< Pairs of opposite faces.
+  /// Number of slabs, which are pairs of opposite faces.
+  static constexpr std::size_t kSlabs = K / 2;
 
-  /// Lower ends of the slabs; +infinity if empty.
+  /// Lower ends of the slabs; +infinity if the k-DOP is empty.
   std::array<float, kSlabs> min = filled(std::numeric_limits<float>::infinity());
-  /// Upper ends of the slabs; -infinity if empty.
+  /// Upper ends of the slabs; -infinity if the k-DOP is empty.
   std::array<float, kSlabs> max = filled(-std::numeric_limits<float>::infinity());
 
-  /// The tightest k-DOP of a box, rounded outward.
+  /// Returns the tightest k-DOP of a box, rounded outward.
   [[nodiscard]] static Kdop around(const Aabb& box) noexcept {
     Kdop result;
     const auto directions = kdop_directions<K>();
@@ -72,7 +72,8 @@ struct Kdop {
     return result;
   }
 
-  /// The tightest k-DOP of a point set, rounded outward; empty for an empty set. O(points * K).
+  /// Returns the tightest k-DOP of a point set, rounded outward; empty for an empty set. O(points *
+  /// K).
   [[nodiscard]] static Kdop around(const PointView& points) noexcept {
     Kdop result;
     for (std::size_t i = 0; i < points.count; ++i) {
@@ -86,7 +87,8 @@ struct Kdop {
     return result;
   }
 
-  /// True if a partition takes it: in every slab no NaN, min <= max, not wholly at infinity.
+  /// Returns true if a partition accepts this k-DOP: each slab has no NaN, min <= max, and is not
+  /// entirely at infinity.
   [[nodiscard]] bool is_valid() const noexcept {
     constexpr float inf = std::numeric_limits<float>::infinity();
     for (std::size_t s = 0; s < kSlabs; ++s) {
@@ -95,12 +97,12 @@ struct Kdop {
     return true;
   }
 
-  /// The box of its first three slabs.
+  /// Returns the box of the first three slabs.
   [[nodiscard]] Aabb bounds() const noexcept {
     return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
   }
 
-  /// Closed test of all slabs.
+  /// Returns true if all slabs overlap; closed.
   [[nodiscard]] bool overlaps(const Kdop& other) const noexcept {
     for (std::size_t s = 0; s < kSlabs; ++s) {
       if (!(min[s] <= other.max[s] && other.min[s] <= max[s])) return false;

@@ -10,14 +10,15 @@
 
 namespace winnow {
 
-/// The k-DOP of a rotated box, rounded outward: in each slab larger than the tightest by at most
-/// 1e-14 of the sum of the box's coordinates and edges, and at each end by two ulp and the smallest
-/// normal float. The box is valid.
+/// Returns a k-DOP of a valid oriented box, rounded outward. Each slab is larger than the tightest
+/// one by at most 1e-14 of the sum of the box's coordinates and edges, plus, at each end, two ulp
+/// and the smallest normal float.
 template <int K>
 [[nodiscard]] Kdop<K> kdop_around(const OrientedBox& box) noexcept {
   constexpr auto directions = kdop_directions<K>();
-  constexpr float kUlp = 1.2e-7F;                              // a little more than 2^-23
-  constexpr float kLeast = std::numeric_limits<float>::min();  // less may be flushed
+  constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
+  // Smaller numbers may be flushed to 0.
+  constexpr float kLeast = std::numeric_limits<float>::min();
   double center[3];
   double edge[3][3];  // half edges as vectors
   double size = 0.0;
@@ -29,7 +30,7 @@ template <int K>
       size += std::abs(edge[i][axis]);
     }
   }
-  // More than the rounding of all sums: some 2^-53 of their terms.
+  // Exceeds the rounding error of all sums, which is a few 2^-53 of their terms.
   const double slack = 4e-15 * size;
   Kdop<K> result;
   for (std::size_t s = 0; s < Kdop<K>::kSlabs; ++s) {
@@ -41,9 +42,9 @@ template <int K>
     const double middle = along(center);
     const double reach =
         slack + std::abs(along(edge[0])) + std::abs(along(edge[1])) + std::abs(along(edge[2]));
-    // One ulp and a little further than the nearest float, whichever way that was rounded: to ask
-    // costs more than all the rest.
-    // What lies beyond all floats ends there: to a partition that is infinity.
+    // The nearest float moves outward by slightly more than one ulp, whichever way it was rounded.
+    // Testing the direction would cost more. Ends beyond the float range become the largest float,
+    // which a partition treats as infinity.
     const float low = finite_float(middle - reach);
     const float high = finite_float(middle + reach);
     result.min[s] = low - (std::abs(low) * kUlp + kLeast);

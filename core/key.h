@@ -7,32 +7,31 @@
 
 namespace winnow {
 
-/// A 64-bit value that a partition stores and gives back and never reads. Two objects may share
-/// one.
+/// A 64-bit value that a partition stores with an object and returns, but never interprets. Objects
+/// may share a value.
 using ClientData = std::uint64_t;
 
-/// Index of an object in its partition, stable from insert to remove and reused afterwards.
-/// Objects inserted into a fresh partition get 0, 1, 2, ... Pairs are given in these.
+/// Index of an object in its partition: stable from insert to remove, and reused afterwards.
+/// Objects inserted into a new partition get 0, 1, 2, ... Pairs consist of these ids.
 using ObjectId = std::uint32_t;
 
-/// No object.
+/// The id of no object.
 inline constexpr ObjectId kNoObject = 0xFFFFFFFFU;
 
-/// Objects that one partition can hold at a time.
+/// Maximum number of objects in a partition.
 inline constexpr std::uint64_t kMaxObjects = 0xFFFFFFFEULL;
 
-/// Opaque handle of an inserted object. The default key is null and is never handed out. A key
-/// whose object was removed, or that another partition or scene gave out, is answered with
-/// `Status::invalid_key`: the stamp holds 17 bits that tell 131,071 of them apart, as many as may
-/// live in one process at a time, and a 15-bit generation. One whose generations are used up, after
-/// 16,384 objects in one place, tells its keys by a further number. `std::hash`
-/// takes keys.
+/// Opaque handle of an inserted object. The default key is null and belongs to no object. A key of
+/// a removed object, or of another partition or scene, is rejected with `Status::invalid_key`: its
+/// stamp consists of a 17-bit tag and a 15-bit generation. Up to 131,071 partitions and scenes of a
+/// process have different tags at any one time. After 16,384 objects under one id its tag has no
+/// generation left, and the id continues with another tag. `std::hash` accepts keys.
 struct Key {
   ObjectId id = kNoObject;  ///< index of the object in its partition
-  /// Tells it from others that had the index, and from those of other partitions.
+  /// Distinguishes it from earlier objects with this index, and from objects of other partitions.
   std::uint32_t stamp = 0;
 
-  /// The same object of the same partition.
+  /// True if both belong to the same object of the same partition.
   friend constexpr bool operator==(const Key&, const Key&) noexcept = default;
 };
 
@@ -40,7 +39,7 @@ static_assert(sizeof(Key) == 8);
 
 }  // namespace winnow
 
-// Doxygen knows no namespace that it could be part of.
+// Hidden from Doxygen, which cannot assign it to a namespace.
 /// @cond
 template <>
 struct std::hash<winnow::Key> {

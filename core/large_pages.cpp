@@ -1,3 +1,6 @@
+// LargePages, a best-fit allocator of large blocks on slabs of 2 MB pages, and `default_memory`.
+// Slabs and free ranges are sorted arrays under one mutex.
+
 #include <winnow/core/large_pages.h>
 
 #include <winnow/core/column.h>
@@ -20,8 +23,8 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kLine = Column<std::byte>::kAlignment;
-constexpr std::size_t kMostAhead = std::size_t{32} << 20U;  // of a slab for what is to come
-constexpr std::size_t kKept = std::size_t{8} << 20U;        // free bytes, however few are in use
+constexpr std::size_t kMostAhead = std::size_t{32} << 20U;  // most that is mapped ahead of demand
+constexpr std::size_t kKept = std::size_t{8} << 20U;        // free bytes that are always kept
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kSanitized = true;
@@ -31,7 +34,7 @@ constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(me
 constexpr bool kSanitized = false;
 #endif
 
-// Whether the system gives large pages to who asks for them.
+// Returns true if the system gives large pages to programs that request them by madvise.
 bool has_large_pages() noexcept {
   std::FILE* const file = std::fopen("/sys/kernel/mm/transparent_hugepage/enabled", "r");
   if (file == nullptr) return false;
@@ -58,7 +61,7 @@ struct MemoryRange {
   [[nodiscard]] std::byte* end() const noexcept { return begin + bytes; }
 };
 
-/// Bytes from `at` to the next address of this alignment.
+/// Returns the bytes from `at` to the next address of this alignment.
 std::size_t bytes_to_aligned(const std::byte* at, std::size_t alignment) noexcept {
   const auto address = reinterpret_cast<std::uintptr_t>(at);
   return static_cast<std::size_t>(whole(address, alignment) - address);
@@ -68,20 +71,20 @@ std::size_t bytes_to_aligned(const std::byte* at, std::size_t alignment) noexcep
 
 constexpr bool kHasSlabs = true;
 
-/// Whole pages from the system; null if it refuses.
+/// Maps whole large pages; returns null if the system refuses.
 std::byte* map_pages(std::size_t bytes) noexcept {
   constexpr std::size_t kPage = LargePages::kPage;
   void* const mapped =
       ::mmap(nullptr, bytes + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) return nullptr;
-  // The system aligns to small pages: what lies before and behind the large ones goes back.
+  // mmap aligns to small pages: the bytes before and behind the large pages are unmapped.
   auto* const from = static_cast<std::byte*>(mapped);
   const std::size_t before = bytes_to_aligned(from, kPage);
   std::byte* const begin = from + before;
   if (before != 0) (void)::munmap(from, before);
   if (before != kPage) (void)::munmap(begin + bytes, kPage - before);
 #ifdef MADV_HUGEPAGE
-  // Where it has no large pages, small ones do.
+  // Without large pages the range keeps its small pages.
   (void)::madvise(begin, bytes, MADV_HUGEPAGE);
 #endif
   return begin;
@@ -102,7 +105,7 @@ void unmap_pages(const MemoryRange&) noexcept {}
 
 #endif
 
-/// The first of ranges in ascending order that begins behind an address.
+/// Returns the first range that begins behind an address; the list is in ascending order.
 MemoryRange* first_behind(Column<MemoryRange>& list, const std::byte* address) noexcept {
   return std::upper_bound(
       list.begin(), list.end(), address,
@@ -111,8 +114,8 @@ MemoryRange* first_behind(Column<MemoryRange>& list, const std::byte* address) n
 
 }  // namespace
 
-/// The slabs, and what is free in them. Both lists ascend by address; no two free ranges of a slab
-/// touch each other.
+/// The slabs and the free ranges in them. Both lists ascend by address. No two free ranges of a
+/// slab touch each other.
 class LargePages::Slabs {
  public:
   explicit Slabs(std::pmr::memory_resource* memory) noexcept : slabs_(memory), free_(memory) {}
@@ -120,7 +123,7 @@ class LargePages::Slabs {
   Slabs(const Slabs&) = delete;
   Slabs& operator=(const Slabs&) = delete;
 
-  /// Null if memory is refused.
+  /// Returns null if memory is refused.
   [[nodiscard]] void* take(std::size_t bytes, std::size_t alignment) noexcept;
   void give_back(void* block, std::size_t bytes) noexcept;
 
@@ -166,13 +169,13 @@ void* LargePages::Slabs::take(std::size_t bytes, std::size_t alignment) noexcept
   return block;
 }
 
-// Giving back must not be refused: behind every block, and at the beginning of every slab, there
-// may be a free range.
+// Deallocation must not fail, so its list entries are reserved here: there may be a free range
+// behind every block and at the beginning of every slab.
 bool LargePages::Slabs::reserve_ranges() noexcept {
   return slabs_.grow(slabs_.size() + 1) && free_.grow(blocks_ + slabs_.size() + 3);
 }
 
-// The shortest free range that has room; null if none has.
+// Returns the shortest free range with enough room; null if there is none.
 MemoryRange* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignment) noexcept {
   MemoryRange* best = nullptr;
   for (MemoryRange& range : free_) {
@@ -182,8 +185,8 @@ MemoryRange* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignmen
   return best;
 }
 
-// A free range of whole pages for a block, and for half as much as is held besides. Null if the
-// system refuses.
+// Maps a slab for a block, or for half of the bytes held if that is more, and returns its free
+// range. Null if the system refuses.
 MemoryRange* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
   const std::size_t ahead = std::min(held_ / 2, kMostAhead);
   const std::size_t pages = whole(std::max(bytes, ahead), kPage);
@@ -194,7 +197,7 @@ MemoryRange* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
   return insert(free_, slab);
 }
 
-// Takes [gap, gap + bytes) out of a free range.
+// Removes [gap, gap + bytes) from a free range.
 void LargePages::Slabs::cut(MemoryRange* from, std::size_t gap, std::size_t bytes) noexcept {
   const MemoryRange behind{from->begin + gap + bytes, from->bytes - gap - bytes};
   from->bytes = gap;
@@ -237,7 +240,7 @@ void LargePages::Slabs::return_empty_slabs() noexcept {
   }
 }
 
-// Room was made.
+// The list must have room; see `reserve_ranges`.
 MemoryRange* LargePages::Slabs::insert(Column<MemoryRange>& list,
                                        const MemoryRange& range) noexcept {
   MemoryRange* const at = first_behind(list, range.begin);
@@ -279,10 +282,11 @@ bool LargePages::is_large(std::size_t bytes, std::size_t alignment) const noexce
 
 void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   if (!is_large(bytes, alignment)) return small_blocks_->allocate(bytes, alignment);
-  // No system has as much.
+  // No system has that much memory, and rounding it up could overflow.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
   if (block == nullptr) leave_without_memory();
-  // Before threads do so at once and wait for each other.
+  // Prefaults on this thread, because threads that write first to a page at the same time block
+  // each other.
   touch_each_page(block, bytes, kPage);
   return block;
 }
@@ -296,7 +300,7 @@ std::pmr::memory_resource* default_memory() noexcept {
   static const bool wanted = wants_large_pages();
   std::pmr::memory_resource* const set = std::pmr::get_default_resource();
   if (!wanted || !set->is_equal(*std::pmr::new_delete_resource())) return set;
-  // Never ended: objects that live as long as the process may give memory back after it would be.
+  // Never destroyed: objects with static lifetime may free memory at the end of the process.
   alignas(LargePages) static std::byte room[sizeof(LargePages)];
   static LargePages* const pages = ::new (static_cast<void*>(room)) LargePages();
   return pages;

@@ -7,39 +7,40 @@
 
 namespace winnow {
 
-/// Memory on pages of 2 MB, where the system has such. Who writes to fresh memory waits for each of
-/// its pages, some 0.1 to 10 us for one of 4 KB: the first frame of 100,000 objects can wait for
-/// pages ten times as long as it computes. Large pages are 512 times fewer and take far less
-/// together, and addresses on them are looked up in fewer steps. Blocks follow each other by whole
-/// cache lines, so that columns of one length do not fall on the same sets of a cache.
+/// Memory resource on pages of 2 MB, if the system has them. The first write to each page of fresh
+/// memory causes a page fault. Large pages cause 512 times fewer faults than pages of 4 KB and need
+/// fewer steps of address translation. bench/measure/cold_frames.cpp measures the effect on first
+/// frames. Blocks are multiples of a cache line, not of a page, so that columns of one length do
+/// not compete for the same sets of a cache.
 ///
-/// Large blocks lie in *slabs*, runs of large pages that the system is asked for, 32 MB or one
-/// block at the most; other blocks come from another resource. All pages of a block are there when
-/// it is handed out, whether they will be used or not: threads that are the first to write to a
-/// page at once may wait for each other for milliseconds. When a slab becomes empty, empty ones are
-/// given back as long as more bytes are free than in use and 8 MB. O(free ranges) each. Any number
-/// of threads may use it at once. Linux has large pages where
-/// /sys/kernel/mm/transparent_hugepage/enabled says `madvise` or `always`, and otherwise slabs are
-/// of ordinary ones, which come when they are first written to; on other systems all blocks come
-/// from the other resource.
+/// Large blocks are part of *slabs*, runs of large pages that are mapped from the system. A new
+/// slab has room for the block, and at least for half the size of all slabs, up to 32 MB. Other
+/// blocks come from another resource. All pages of a block are present when it is returned, whether
+/// they will be used or not: threads that write first to a page at the same time block each other.
+/// When a slab becomes empty, empty slabs are returned to the system as long as the free bytes
+/// exceed the used bytes and 8 MB. Allocation and deallocation take O(free ranges). Thread-safe.
+/// Linux has large pages if /sys/kernel/mm/transparent_hugepage/enabled selects `madvise` or
+/// `always`. Otherwise slabs consist of ordinary pages, which become present on the first write to
+/// each. On other systems all blocks come from the other resource.
 class WINNOW_API LargePages final : public std::pmr::memory_resource {
  public:
-  /// Bytes of a page, of which slabs are multiples.
+  /// Bytes of a large page; slabs are multiples of it.
   static constexpr std::size_t kPage = std::size_t{2} << 20U;
-  /// Bytes from which on a block is a large one.
+  /// Size in bytes from which on a block is taken from a slab.
   static constexpr std::size_t kLargeBlock = std::size_t{32} << 10U;
 
-  /// Allocates a few hundred bytes from `small_blocks`, which must outlive it.
+  /// Creates a resource without slabs. Other blocks, and a few hundred bytes for the resource
+  /// itself, come from `small_blocks`, which must outlive it.
   explicit LargePages(
       std::pmr::memory_resource* small_blocks = std::pmr::new_delete_resource()) noexcept;
-  /// Every block of it must have been given back.
+  /// All blocks must have been deallocated before.
   ~LargePages() override;
   LargePages(const LargePages&) = delete;
   LargePages& operator=(const LargePages&) = delete;
 
-  /// Bytes of all slabs.
+  /// Returns the bytes of all slabs.
   [[nodiscard]] std::size_t held_bytes() const noexcept;
-  /// Bytes of the large blocks in use, in whole cache lines.
+  /// Returns the bytes of the used blocks in slabs, rounded up to whole cache lines.
   [[nodiscard]] std::size_t used_bytes() const noexcept;
 
  private:
@@ -53,14 +54,14 @@ class WINNOW_API LargePages final : public std::pmr::memory_resource {
   }
 
   std::pmr::memory_resource* small_blocks_;
-  Slabs* slabs_;  // null where there are none
+  Slabs* slabs_;  // null if the system has no slabs
 };
 
-/// Where objects of winnow take their memory from if they are not told: the standard library's
-/// default resource, if the program has set one (`std::pmr::set_default_resource`) or the system
-/// has no large pages, and else such pages that the whole process shares. Tools that look for
-/// errors watch over the blocks of `new`: with the environment variable WINNOW_LARGE_PAGES=0, or
-/// built with the address or memory sanitizer, winnow takes the default resource in any case.
+/// Returns the memory resource that objects of winnow use by default. It is the standard library's
+/// default resource if the program has set one (`std::pmr::set_default_resource`) or if the system
+/// has no large pages, and otherwise a LargePages resource that the whole process shares. Error
+/// checkers watch the blocks of `new`: if the environment variable WINNOW_LARGE_PAGES is 0, or in
+/// builds with the address or memory sanitizer, it is always the standard library's.
 [[nodiscard]] WINNOW_API std::pmr::memory_resource* default_memory() noexcept;
 
 }  // namespace winnow

@@ -12,8 +12,8 @@ class BasicMatrix;
 
 namespace detail {
 
-/// N x N numbers of type T read by (row, column): matrices and expressions of Eigen, and those of
-/// users that are written alike.
+/// A matrix type whose (row, column) is a T, except BasicMatrix: matrices and expressions of Eigen,
+/// and user types with this interface. If its size is known at compile time it must be N x N.
 template <typename Matrix, typename T, int N>
 concept MatrixLike = !std::derived_from<Matrix, BasicMatrix<T, N>> && requires(const Matrix& m) {
   requires std::same_as<std::remove_cvref_t<decltype(m(0, 0))>, T>;
@@ -22,7 +22,7 @@ concept MatrixLike = !std::derived_from<Matrix, BasicMatrix<T, N>> && requires(c
   requires Matrix::RowsAtCompileTime != N || Matrix::ColsAtCompileTime != N;
 };
 
-/// A matrix that Eigen stores; see EigenVector.
+/// An Eigen matrix that stores its elements; see EigenVector.
 template <typename Matrix, typename T, int N>
 concept EigenMatrix = requires {
   requires std::same_as<typename Matrix::Scalar, T>;
@@ -32,26 +32,26 @@ concept EigenMatrix = requires {
 
 }  // namespace detail
 
-/// N x N numbers, one column after another. Takes any matrix whose (row, column) is of type T, as
-/// those of Eigen, and becomes a matrix of Eigen where one is asked for.
+/// N x N matrix, stored column by column. Any matrix whose (row, column) is a T, such as Eigen's,
+/// converts to it, and it converts to Eigen matrices.
 template <typename T, int N>
 class BasicMatrix {
  public:
-  /// All zeros.
+  /// Creates a matrix of zeros.
   constexpr BasicMatrix() noexcept = default;
-  /// From its numbers, row by row.
+  /// Creates a matrix from its elements, row by row.
   template <std::convertible_to<T>... Rest>
   requires(sizeof...(Rest) == N * N - 1) constexpr BasicMatrix(T first, Rest... rest) noexcept {
     const T rows[N * N] = {first, static_cast<T>(rest)...};
     fill([&](int row, int column) { return rows[row * N + column]; });
   }
-  /// From any other type of matrices.
+  /// Converts a matrix of another type.
   template <detail::MatrixLike<T, N> Matrix>
   constexpr BasicMatrix(const Matrix& other) noexcept {  // NOLINT(google-explicit-constructor)
     decltype(auto) m = detail::value_of(other);
     fill([&](int row, int column) { return m(row, column); });
   }
-  /// To a matrix of Eigen.
+  /// Converts to an Eigen matrix.
   template <detail::EigenMatrix<T, N> Matrix>
   operator Matrix() const noexcept {  // NOLINT(google-explicit-constructor)
     Matrix result;
@@ -61,35 +61,35 @@ class BasicMatrix {
     return result;
   }
 
-  /// 1 on the diagonal, 0 elsewhere.
+  /// Returns the identity matrix.
   [[nodiscard]] static constexpr BasicMatrix identity() noexcept {
     BasicMatrix result;
     result.fill([](int row, int column) { return row == column ? T{1} : T{0}; });
     return result;
   }
 
-  /// The number in a row and a column, both 0..N - 1.
+  /// Element in a row and a column, both 0..N - 1.
   template <std::integral Index>
   [[nodiscard]] constexpr T operator()(Index row,
                                        std::type_identity_t<Index> column) const noexcept {
     return at_[column][row];
   }
-  /// The same, to be set.
+  /// Writable element in a row and a column, both 0..N - 1.
   template <std::integral Index>
   [[nodiscard]] constexpr T& operator()(Index row, std::type_identity_t<Index> column) noexcept {
     return at_[column][row];
   }
 
-  /// A column of a 3 x 3 matrix.
+  /// Returns column `i` of a 3 x 3 matrix.
   [[nodiscard]] constexpr BasicVec3<T> column(int i) const noexcept requires(N == 3) {
     return {at_[i][0], at_[i][1], at_[i][2]};
   }
-  /// Sets a column of a 3 x 3 matrix.
+  /// Sets column `i` of a 3 x 3 matrix.
   constexpr void set_column(int i, const BasicVec3<T>& v) noexcept requires(N == 3) {
     for (int row = 0; row < 3; ++row) at_[i][row] = v[row];
   }
 
-  /// Every number converted to another type, rounded to the nearest.
+  /// Returns the matrix with each element converted to another type, rounded to nearest.
   template <typename Other>
   [[nodiscard]] constexpr BasicMatrix<Other, N> cast() const noexcept {
     BasicMatrix<Other, N> result;
@@ -101,7 +101,7 @@ class BasicMatrix {
     return result;
   }
 
-  /// True unless a number is infinite or NaN.
+  /// Returns true if no element is infinite or NaN.
   [[nodiscard]] constexpr bool all_finite() const noexcept {
     for (const auto& column : at_) {
       for (const T number : column) {
@@ -111,12 +111,12 @@ class BasicMatrix {
     return true;
   }
 
-  /// The numbers, one column after another.
+  /// Returns a pointer to the elements, column by column.
   [[nodiscard]] constexpr const T* data() const noexcept { return at_[0]; }
-  /// The same, to be set.
+  /// Returns a writable pointer to the elements, column by column.
   [[nodiscard]] constexpr T* data() noexcept { return at_[0]; }
 
-  /// True if all numbers are equal; NaN is equal to nothing.
+  /// True if all elements are equal; NaN equals nothing.
   [[nodiscard]] friend constexpr bool operator==(const BasicMatrix&,
                                                  const BasicMatrix&) noexcept = default;
 
@@ -131,11 +131,11 @@ class BasicMatrix {
   T at_[N][N] = {};
 };
 
-/// 3 x 3 floats.
+/// 3 x 3 matrix of floats.
 using Mat3f = BasicMatrix<float, 3>;
-/// 3 x 3 doubles.
+/// 3 x 3 matrix of doubles.
 using Mat3d = BasicMatrix<double, 3>;
-/// 4 x 4 doubles.
+/// 4 x 4 matrix of doubles.
 using Mat4d = BasicMatrix<double, 4>;
 
 static_assert(sizeof(Mat3f) == 36 && alignof(Mat3f) == 4 && std::is_trivially_copyable_v<Mat3f>);

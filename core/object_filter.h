@@ -6,17 +6,17 @@
 
 namespace winnow {
 
-/// An environment that meets every other.
+/// Environment of objects that can form pairs with objects of every environment.
 inline constexpr std::uint32_t kEveryEnvironment = 0xFFFFFFFFU;
 
-/// What an object lets itself be paired with. Two objects pair only if their environments are equal
-/// (or one is `kEveryEnvironment`), and each one's mask has a layer of the other.
+/// Restricts which objects form a pair. Two objects pair only if their environments are equal (or
+/// one is `kEveryEnvironment`), and each one's mask contains a layer of the other.
 struct ObjectFilter {
-  std::uint32_t layers = 1;       ///< layers that the object is in, a bit each
-  std::uint32_t mask = ~0U;       ///< layers that it wants to meet
-  std::uint32_t environment = 0;  ///< objects of different environments never meet
+  std::uint32_t layers = 1;       ///< layers that the object is in, one bit each
+  std::uint32_t mask = ~0U;       ///< layers of objects that it accepts
+  std::uint32_t environment = 0;  ///< objects of different environments do not pair
 
-  /// The same layers, mask and environment.
+  /// True if layers, masks and environments are equal.
   friend constexpr bool operator==(const ObjectFilter&, const ObjectFilter&) noexcept = default;
 };
 

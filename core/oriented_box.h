@@ -9,23 +9,23 @@
 
 namespace winnow {
 
-/// The points center + axes * s with |s_i| <= half_i; closed. The columns of `axes` are meant to be
-/// orthogonal unit vectors; any finite ones are taken, and then make a parallelepiped.
+/// All points center + axes * s with |s_i| <= half_i; closed. The columns of `axes` should be
+/// orthogonal unit vectors. Other finite columns are accepted and give a parallelepiped.
 struct OrientedBox {
-  /// The middle.
+  /// Centre of the box.
   Vec3f center;
-  /// Extent from the middle along each column of `axes`.
+  /// Half extent along each column of `axes`.
   Vec3f half;
-  /// Directions as columns.
+  /// Directions of the edges, as columns.
   Mat3f axes = Mat3f::identity();
 
-  /// True if a query takes this box: all finite, half >= 0.
+  /// Returns true if a query accepts this box: all finite, half >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
     return center.all_finite() && half.all_finite() && axes.all_finite() && half.x() >= 0.0F &&
            half.y() >= 0.0F && half.z() >= 0.0F;
   }
 
-  /// A float box around it, at most two ulp larger than the smallest.
+  /// Returns a float box that contains it, at most two ulp larger than the smallest.
   [[nodiscard]] Aabb bounds() const noexcept {
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {

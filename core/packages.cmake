@@ -1,5 +1,5 @@
-# Packages of what is installed: `cpack --config BUILD/CPackConfig.cmake` writes a .deb, for Debian
-# 12 and what descends from it, and a .tar.gz that may be unpacked anywhere.
+# Packages of the installed files: `cpack --config BUILD/CPackConfig.cmake` writes a .deb for Debian
+# 12 and its derivatives, and a .tar.gz that can be unpacked anywhere.
 
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_VENDOR "The winnow authors")
@@ -12,9 +12,9 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 
-# The tool, where it was built, is a package of its own: it needs more than the library.
+# The tool, if it is built, is a separate package: it has more dependencies than the library.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-# Told by name, since the library's alone would have the project's name.
+# All components are listed, because a single one would get the name of the project.
 get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -34,7 +34,7 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "libjs-chart.js, libjs-three")
 set(CPACK_COMPONENT_TOOL_DESCRIPTION
     "The winnow tool: which partition to take for a recording of yours, and how fast and how
 exact all of them are on this machine.")
-# What the tool and a shared library are linked to.
+# Adds the libraries that the tool and a shared library are linked to.
 find_program(WINNOW_DPKG_SHLIBDEPS dpkg-shlibdeps)
 if(WINNOW_DPKG_SHLIBDEPS)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -1,5 +1,7 @@
 #pragma once
 
+// PairBuffer, the caller's array of pairs. Queries of a Partition fill it, and update it from frame
+// to frame: see PairWriter, PairTracker and LinkedPairs in partitions/pairs/.
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
@@ -15,33 +17,33 @@
 
 namespace winnow {
 
-/// Two objects that may touch. From `self_pairs`: first < second. From `pairs_with`: first belongs
-/// to the partition that was asked, second to the other one.
+/// Two objects that may touch. `self_pairs` writes first < second. `pairs_with` writes first an
+/// object of the partition that it is called on, then an object of the other one.
 struct Pair {
-  ObjectId first = kNoObject;   ///< an id of the partition that was asked
-  ObjectId second = kNoObject;  ///< an id of it, or of the other one
+  ObjectId first = kNoObject;   ///< an id of the partition that was queried
+  ObjectId second = kNoObject;  ///< an id of this partition, or of the other one
 
-  /// By the first object, then by the second.
+  /// Orders pairs by the first object, then by the second.
   friend constexpr auto operator<=>(const Pair&, const Pair&) noexcept = default;
 };
 
-/// The caller's array of pairs, reused from frame to frame. Handed to the same partition again it
-/// carries last frame's pairs along: where few objects moved, only their pairs are redone. Where
-/// very few did in two frames one after the other, the buffer is linked, for 16 bytes a pair and 4
-/// an object of its memory: an object then leads to its pairs, and a frame no longer looks at any
-/// others. Any other use (another partition, `clear`, `edit`) makes the next query a full one; the
-/// result is the same set either way. Not for use from two threads at once.
+/// The caller's array of pairs, reused from frame to frame. If it is passed to the same partition
+/// again, the query starts from the previous frame's pairs. If few objects moved, only their pairs
+/// are recomputed. If very few objects moved in two consecutive frames, the buffer also links each
+/// object to its pairs, which takes 16 bytes per pair and 4 per object, and a frame then visits no
+/// other pairs. Any other use (another partition, `clear`, `edit`) makes the next query a full one.
+/// The set of pairs is the same in all cases. Not thread-safe.
 class WINNOW_API PairBuffer {
  public:
-  /// Which complete query the content came from; 0 is none.
+  /// Identifies the complete query that wrote the content; 0 is none.
   struct Provenance {
-    std::uint64_t partition = 0;  ///< a number that no other partition of the process has
-    std::uint64_t serial = 0;     ///< grows with each query
-    /// The same query.
+    std::uint64_t partition = 0;  ///< a number unique to the partition in the process
+    std::uint64_t serial = 0;     ///< increases with each query
+    /// True if both identify the same query.
     friend constexpr bool operator==(const Provenance&, const Provenance&) noexcept = default;
   };
 
-  /// An empty buffer. Every allocation comes from `memory`, which must outlive it.
+  /// Creates an empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit PairBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
       : pairs_(memory),
         pages_(memory),
@@ -49,7 +51,7 @@ class WINNOW_API PairBuffer {
         links_(memory),
         heads_(memory),
         places_(memory) {}
-  /// `other` is left empty: its next query is a full one.
+  /// Takes the content of `other`, which is left empty: its next query is a full one.
   PairBuffer(PairBuffer&& other) noexcept
       : pairs_(std::move(other.pairs_)),
         pages_(std::move(other.pages_)),
@@ -61,55 +63,56 @@ class WINNOW_API PairBuffer {
         may_link_(other.may_link_),
         provenance_(std::exchange(other.provenance_, {})) {}
 
-  /// All pairs, in the order that was asked for.
+  /// Returns all pairs, in the order that the query requested.
   [[nodiscard]] std::span<const Pair> pairs() const noexcept { return {pairs_.data(), size()}; }
-  /// Pairs in it.
+  /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
-  /// True without pairs.
+  /// True if there are no pairs.
   [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
-  /// Pair i, below `size()`.
+  /// Pair i; i must be below `size()`.
   [[nodiscard]] const Pair& operator[](std::size_t i) const noexcept { return pairs_[i]; }
-  /// The first pair.
+  /// Iterators over all pairs.
+  /// @{
   [[nodiscard]] const Pair* begin() const noexcept { return pairs_.begin(); }
-  /// Behind the last pair.
   [[nodiscard]] const Pair* end() const noexcept { return pairs_.end(); }
+  /// @}
 
-  /// Room for `count` pairs. False if memory is refused. What it takes besides to find them is made
-  /// ready by `Partition::reserve_pairs`.
+  /// Ensures room for `count` pairs. Returns false if memory is refused. `Partition::reserve_pairs`
+  /// reserves the other memory that finding them takes.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
     return pairs_.reserve(count, pages);
   }
 
-  /// Pairs that there is room for.
+  /// Returns the number of pairs that fit in the allocated memory.
   [[nodiscard]] std::size_t capacity() const noexcept { return pairs_.capacity(); }
-  /// Gives back the room for more than `count` pairs, or than it holds. False, and unchanged, if
-  /// memory is refused. O(pairs).
+  /// Frees the room for more than `count` pairs, or for more than `size()` if that is larger.
+  /// Returns false, and changes nothing, if memory is refused. O(pairs).
   [[nodiscard]] bool shrink(std::size_t count) noexcept { return pairs_.shrink(count); }
 
-  /// Takes the pairs of another buffer over as they are, so that the next query may go on from
-  /// either. False, and unchanged, if memory is refused. O(pairs).
+  /// Copies the pairs of another buffer; the next query can start from either of the two. Returns
+  /// false, and changes nothing, if memory is refused. O(pairs).
   [[nodiscard]] bool assign(const PairBuffer& other) noexcept;
 
-  /// Forgets all pairs, so that the next query is a full one; memory is kept.
+  /// Removes all pairs: the next query is a full one. Memory is kept.
   void clear() noexcept {
     pairs_.clear();
     state_ = State::loose;
     provenance_ = {};
   }
 
-  /// Empties it and gives its memory back.
+  /// Removes all pairs and frees the memory.
   void release() noexcept;
 
-  /// The pairs, to be changed at will.
+  /// Returns the pairs for arbitrary changes; the next query is a full one.
   [[nodiscard]] Column<Pair>& edit() noexcept {
     state_ = State::loose;
     provenance_ = {};
     return pairs_;
   }
 
-  /// Puts the pairs that `is_first(pair)` is true of before all others, and returns how many they
-  /// are. The next query may go on from these pairs as from any. O(pairs), of which only those move
-  /// that it is false of.
+  /// Moves all pairs for which `is_first(pair)` is true before all others, and returns their
+  /// number. The next query can still start from these pairs. O(pairs), with one swap for each pair
+  /// for which it is false.
   template <typename IsFirst>
   [[nodiscard]] std::size_t partition(IsFirst&& is_first) noexcept {
     state_ = State::loose;
@@ -124,7 +127,8 @@ class WINNOW_API PairBuffer {
     return end;
   }
 
-  /// Bytes of pairs under `results`; links and what tasks wrote to under `scratch`.
+  /// Returns the bytes of pairs under `results`, and of links and of buffers that tasks fill under
+  /// `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -132,7 +136,7 @@ class WINNOW_API PairBuffer {
   friend class PairTracker;
   friend class LinkedPairs;
 
-  /// What leads from objects to pairs, and when that is made; see LinkedPairs.
+  /// Whether objects are linked to their pairs, or will be if few move again; see LinkedPairs.
   enum class State : std::uint8_t { loose, few_moved, linked };
   struct Link {
     std::uint32_t next[2];
@@ -140,7 +144,7 @@ class WINNOW_API PairBuffer {
   };
 
   Column<Pair> pairs_;
-  // What tasks write before their output is put in order; see PairWriter.
+  // Output of tasks before it is put in order; see PairWriter.
   Column<Pair> pages_;
   Column<std::uint64_t> page_table_;
   Column<Link> links_;

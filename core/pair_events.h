@@ -16,43 +16,43 @@
 
 namespace winnow {
 
-/// Two objects by key, first.id < second.id. Keys, because an object that ended its pair may be
-/// gone, and its id another object's.
+/// Two objects by key, first.id < second.id. An object whose pair ended may be removed and its id
+/// reused: hence keys instead of ids.
 struct KeyPair {
-  Key first;   ///< with the smaller id
-  Key second;  ///< with the larger id
+  Key first;   ///< key with the smaller id
+  Key second;  ///< key with the larger id
 
-  /// The same two objects.
+  /// True if both objects are equal.
   friend constexpr bool operator==(const KeyPair&, const KeyPair&) noexcept = default;
 };
 
 /// The client data of two objects.
 struct ClientDataPair {
-  ClientData first = 0;   ///< that the one with the smaller id was inserted with
-  ClientData second = 0;  ///< that the one with the larger id was inserted with
+  ClientData first = 0;   ///< client data of the object with the smaller id
+  ClientData second = 0;  ///< client data of the object with the larger id
 
-  /// The same data.
+  /// True if both values are equal.
   friend constexpr bool operator==(const ClientDataPair&, const ClientDataPair&) noexcept = default;
 };
 
-/// How PairEvents are kept.
+/// Options of PairEvents.
 struct PairEventsOptions {
-  /// Every allocation comes from here. It must outlive them.
+  /// Source of every allocation; must outlive the events.
   std::pmr::memory_resource* memory = default_memory();
-  /// Give client data with the pairs. Takes 8 bytes an object and 16 a pair that begins or ends; a
-  /// frame then costs O(pairs that begin or end + objects that moved) more.
+  /// Also return the client data of pairs. It takes 8 bytes per object and 16 per pair that begins
+  /// or ends, and O(pairs that begin or end + objects that moved) per frame.
   bool client_data = false;
 };
 
-/// What changed between two frames: handed to `Partition::self_pairs` with the PairBuffer that
-/// holds the earlier frame's pairs. With another buffer, or one that was used otherwise in between,
-/// it starts anew: every pair begins and none ends. A refused call reports nothing and forgets
-/// nothing: the buffer holds the earlier frame's pairs, in any order, and the next call reports
-/// what changed since then. A caller who wants only the changes passes no buffer: the events then
-/// keep the pairs themselves.
+/// Pairs that began or ended between two frames. Callers pass it to `Partition::self_pairs` with
+/// the PairBuffer that holds the earlier frame's pairs. With another buffer, or one that was used
+/// otherwise in between, it starts anew: every pair begins and none ends. A refused call reports no
+/// change and loses none: the buffer still holds the earlier frame's pairs, in any order, and the
+/// next call reports the changes since then. Callers that need only the changes pass no buffer:
+/// PairEvents then stores the pairs itself.
 class WINNOW_API PairEvents {
  public:
-  /// Nothing has happened yet.
+  /// Creates events without any pair.
   explicit PairEvents(const PairEventsOptions& options) noexcept
       : begun_(options.memory),
         ended_(options.memory),
@@ -66,10 +66,12 @@ class WINNOW_API PairEvents {
         data_(options.memory),
         pairs_(options.memory),
         with_client_data_(options.client_data) {}
-  /// The same without client data. Every allocation comes from `memory`, which must outlive it.
+  /// As above, without client data. Every allocation comes from `memory`, which must outlive the
+  /// events.
   explicit PairEvents(std::pmr::memory_resource* memory = default_memory()) noexcept
       : PairEvents(PairEventsOptions{memory, false}) {}
-  /// `other` is left empty and starts anew, with client data if it had them.
+  /// Takes the content of `other`, which is left empty, starts anew and keeps its `client_data`
+  /// option.
   PairEvents(PairEvents&& other) noexcept
       : begun_(std::move(other.begun_)),
         ended_(std::move(other.ended_)),
@@ -87,30 +89,31 @@ class WINNOW_API PairEvents {
         after_is_all_(std::exchange(other.after_is_all_, false)),
         provenance_(std::exchange(other.provenance_, {})) {}
 
-  /// Pairs that are in this frame and were not in the last, sorted by ids.
+  /// Returns the pairs of this frame that were not in the previous one, sorted by ids.
   [[nodiscard]] std::span<const KeyPair> begun() const noexcept {
     return {begun_.data(), begun_.size()};
   }
-  /// Pairs that were in the last frame and are not in this one, sorted by ids. A removed object's
-  /// key is stale.
+  /// Returns the pairs of the previous frame that are not in this one, sorted by ids. The key of a
+  /// removed object is stale.
   [[nodiscard]] std::span<const KeyPair> ended() const noexcept {
     return {ended_.data(), ended_.size()};
   }
-  /// Client data of the pairs in `begun()`, in its order; none unless they were asked for, see
-  /// PairEventsOptions.
+  /// Returns the client data of the pairs in `begun()`, in the same order; empty without the
+  /// `client_data` option.
   [[nodiscard]] std::span<const ClientDataPair> begun_data() const noexcept {
     return {begun_data_.data(), begun_data_.size()};
   }
-  /// Client data of the pairs in `ended()`, in its order, of removed objects as of others, whoever
-  /// has their ids now; none unless they were asked for.
+  /// Returns the client data of the pairs in `ended()`, in the same order; empty without the
+  /// `client_data` option. Data of a removed object are its own, even if its id was reused.
   [[nodiscard]] std::span<const ClientDataPair> ended_data() const noexcept {
     return {ended_data_.data(), ended_data_.size()};
   }
-  /// How many pairs are in both: the first ones of the PairBuffer; those that began follow, in the
-  /// order in which they are told.
+  /// Returns the number of pairs that are in both frames. They come first in the PairBuffer; the
+  /// pairs that began follow, in the order of `begun()`.
   [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
 
-  /// Forgets what there was: the next query starts anew, and every pair begins. Memory is kept.
+  /// Removes all events and pairs: the next query starts anew, and every pair begins. Memory is
+  /// kept.
   void clear() noexcept {
     begun_.clear();
     ended_.clear();
@@ -121,8 +124,8 @@ class WINNOW_API PairEvents {
     provenance_ = {};
   }
 
-  /// Bytes of begun and ended pairs and of their client data under `results`, the rest under
-  /// `scratch`.
+  /// Returns the bytes of begun and ended pairs and of their client data under `results`, the rest
+  /// under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -135,13 +138,13 @@ class WINNOW_API PairEvents {
   Column<Pair> dropped_;
   Column<std::uint64_t> before_;  // pairs that may have ended, as (first << 32 | second)
   Column<std::uint64_t> after_;   // pairs that may have begun
-  Column<std::uint64_t> spare_;   // what pairs are sorted through
-  Column<std::uint32_t> stamps_;  // by id, as of the last frame
-  Column<ClientData> data_;       // by id, as of the last frame, if client data are asked for
-  PairBuffer pairs_;              // of a caller who has no buffer
+  Column<std::uint64_t> spare_;   // scratch of sorting
+  Column<std::uint32_t> stamps_;  // by id, in the previous frame
+  Column<ClientData> data_;       // by id, in the previous frame; empty without client data
+  PairBuffer pairs_;              // used if the caller passes no buffer
   std::size_t persisting_ = 0;
   bool with_client_data_;
-  bool after_is_all_ = false;  // after_ holds every pair of the last frame
+  bool after_is_all_ = false;  // after_ holds all pairs of the previous frame
   PairBuffer::Provenance provenance_;
 };
 

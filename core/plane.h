@@ -7,14 +7,14 @@
 
 namespace winnow {
 
-/// The closed half-space of points p with normal . p + offset >= 0. The normal points inward and
-/// has any finite length but zero.
+/// The closed half-space of all points p with normal . p + offset >= 0. The normal points inward
+/// and may have any finite length except zero.
 struct Plane {
-  /// Inward; finite, not zero.
+  /// Inward normal; finite, not zero.
   Vec3f normal = {1.0F, 0.0F, 0.0F};
-  float offset = 0.0F;  ///< finite; of the origin, along the normal, times its length
+  float offset = 0.0F;  ///< signed distance of the origin times the normal's length; finite
 
-  /// True if a query takes this plane: finite, and its normal not zero.
+  /// Returns true if a query accepts this plane: all finite, and its normal not zero.
   [[nodiscard]] bool is_valid() const noexcept {
     return normal.all_finite() && std::isfinite(offset) && !normal.is_zero();
   }

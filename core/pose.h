@@ -1,25 +1,27 @@
 #pragma once
 
-// Plain arrays on purpose: kernel files read poses too, and they include no Eigen.
+// Plain arrays, because kernel files include this header: they may include only plain structs, see
+// simd/kernels/kernels.h.
 
 #include <winnow/core/export.h>
 
 namespace winnow {
 
-/// Where a body is: x -> position + R(orientation) x. Position and orientation are in double, so
-/// that poses read from a file or a solver are taken as they are; answers are computed from the
-/// difference of positions and do not depend on where in the world they are asked.
+/// Position and orientation of a body: maps x to position + R(orientation) x. Both are in double,
+/// so that poses from a file or a solver are used unchanged. Results are computed from differences
+/// of positions and do not depend on the distance from the world's origin.
 struct Pose {
-  double position[3] = {0.0, 0.0, 0.0};  ///< of the shape's own origin, in the world
-  /// Quaternion w, x, y, z of any finite length but zero; R is that of the normalised quaternion.
+  double position[3] = {0.0, 0.0, 0.0};  ///< of the shape's origin, in world coordinates
+  /// Quaternion w, x, y, z of any finite length except zero; R is the rotation of the normalised
+  /// quaternion.
   double orientation[4] = {1.0, 0.0, 0.0, 0.0};
 
-  /// At a place, not turned.
+  /// Returns a pose at a position, without rotation.
   [[nodiscard]] static constexpr Pose at(double x, double y, double z) noexcept {
     return {{x, y, z}, {1.0, 0.0, 0.0, 0.0}};
   }
 
-  /// True if all numbers are finite and the quaternion is not zero.
+  /// Returns true if all numbers are finite and the quaternion is not zero.
   [[nodiscard]] bool is_valid() const noexcept {
     double sum = 0.0;
     double turn = 0.0;

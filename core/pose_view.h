@@ -10,25 +10,25 @@
 
 namespace winnow {
 
-/// Poses where the caller keeps them: pointers to the three coordinates of position (double) and
-/// the four of orientation (w, x, y, z; double or float), and the distance in bytes from one pose
-/// to the next. Nothing is copied to make one, and it must not outlive the memory it looks at.
-/// Without orientations bodies that are moved do not turn, and poses that are read have the
+/// Non-owning view of poses in the caller's memory: pointers to the three coordinates of positions
+/// (double) and to the four of orientations (w, x, y, z; double or float), and the distances in
+/// bytes from one pose to the next. It copies nothing and must not outlive that memory. Without
+/// orientations, bodies that are moved keep their orientation, and poses that are read have the
 /// identity.
 struct PoseView {
   std::array<const double*, 3> position{};  ///< of the first pose: x, y, z
   /// Bytes from one position to the next.
   std::size_t position_stride = sizeof(double);
   std::array<const double*, 4> orientation{};  ///< of the first pose: w, x, y, z
-  /// Read where `orientation` is null.
+  /// The orientations in float, used if `orientation` is null.
   std::array<const float*, 4> orientation_float{};
   /// Bytes from one orientation to the next.
   std::size_t orientation_stride = sizeof(double);
-  std::size_t count = 0;  ///< poses
+  std::size_t count = 0;  ///< number of poses
 
   PoseView() = default;
 
-  /// An array of poses.
+  /// Views an array of poses.
   PoseView(std::span<const Pose> poses) noexcept {  // NOLINT(google-explicit-constructor)
     if (poses.empty()) return;
     for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = poses.data()->position + axis;
@@ -37,7 +37,7 @@ struct PoseView {
     count = poses.size();
   }
 
-  /// Any contiguous container of poses.
+  /// Views any contiguous container of poses.
   template <typename Poses>
   requires(std::convertible_to<const Poses&, std::span<const Pose>> &&
            !std::same_as<Poses, std::span<const Pose>> && !std::same_as<Poses, PoseView>)
@@ -45,11 +45,11 @@ struct PoseView {
   noexcept  // NOLINT(google-explicit-constructor)
       : PoseView(std::span<const Pose>(poses)) {}
 
-  /// Positions alone.
+  /// Views positions without orientations.
   PoseView(std::array<const double*, 3> positions, std::size_t poses,
            std::size_t position_bytes = sizeof(double)) noexcept
       : position(positions), position_stride(position_bytes), count(poses) {}
-  /// An array of positions alone, of vectors in double; see PointView.
+  /// Views an array of positions, which are vectors in double, without orientations; see PointView.
   template <detail::ArrayOfPoints Points>
   [[nodiscard]] static PoseView of_positions(const Points& positions) noexcept {
     static_assert(std::same_as<decltype(std::data(positions)->data()), const double*>);
@@ -57,7 +57,7 @@ struct PoseView {
     return {points.precise, points.count, points.stride};
   }
 
-  /// Columns, or members of any struct.
+  /// Views columns, or members of any struct.
   PoseView(std::array<const double*, 3> positions, std::array<const float*, 4> orientations,
            std::size_t poses, std::size_t position_bytes = sizeof(double),
            std::size_t orientation_bytes = sizeof(float)) noexcept
@@ -66,7 +66,7 @@ struct PoseView {
         orientation_float(orientations),
         orientation_stride(orientation_bytes),
         count(poses) {}
-  /// The same with orientations in double.
+  /// As above, with orientations in double.
   PoseView(std::array<const double*, 3> positions, std::array<const double*, 4> orientations,
            std::size_t poses, std::size_t position_bytes = sizeof(double),
            std::size_t orientation_bytes = sizeof(double)) noexcept
@@ -76,11 +76,11 @@ struct PoseView {
         orientation_stride(orientation_bytes),
         count(poses) {}
 
-  /// False where bodies do not turn.
+  /// Returns true if the view has orientations.
   [[nodiscard]] bool has_orientations() const noexcept {
     return orientation[0] != nullptr || orientation_float[0] != nullptr;
   }
-  /// Pose i, copied out; i is below `count`.
+  /// Returns a copy of pose i; i must be below `count`.
   [[nodiscard]] Pose operator[](std::size_t i) const noexcept {
     Pose pose;
     for (std::size_t axis = 0; axis < 3; ++axis) {

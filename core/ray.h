@@ -12,26 +12,26 @@
 
 namespace winnow {
 
-/// True if `direction` is finite and not zero, and 0 <= min_t <= max_t with min_t finite.
+/// Returns true if `direction` is finite and not zero, and 0 <= min_t <= max_t with min_t finite.
 [[nodiscard]] inline bool is_valid_sweep(const Vec3f& direction, float min_t,
                                          float max_t) noexcept {
   const bool moves = direction.all_finite() && !direction.is_zero();
   return moves && min_t >= 0.0F && std::isfinite(min_t) && min_t <= max_t;
 }
 
-/// The points origin + t * direction for t in [min_t, max_t]. The direction has any finite length
-/// but zero, and t counts in it: for a unit direction t is a distance.
+/// The points origin + t * direction for t in [min_t, max_t]. The direction may have any finite
+/// length except zero. t is in units of this length: a distance if the direction is a unit vector.
 struct Ray {
-  /// The point at t = 0.
+  /// Point at t = 0.
   Vec3f origin;
-  /// By which the point moves while t grows by 1.
+  /// Displacement while t grows by 1.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< begin; finite, >= 0
+  float min_t = 0.0F;  ///< start; finite, >= 0
   /// End; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// True if a query takes this ray: finite origin, finite direction that is not zero,
-  /// 0 <= min_t <= max_t, min_t finite.
+  /// Returns true if a query accepts this ray: finite origin, finite direction that is not zero, 0
+  /// <= min_t <= max_t, min_t finite.
   [[nodiscard]] bool is_valid() const noexcept {
     return origin.all_finite() && is_valid_sweep(direction, min_t, max_t);
   }
@@ -39,19 +39,19 @@ struct Ray {
 
 static_assert(sizeof(Ray) == 32 && alignof(Ray) == 4, "layout must not depend on build flags");
 
-/// Rays where the caller keeps them: column pointers and one stride in bytes. Nothing is copied to
-/// make one, and it must not outlive the memory it looks at.
+/// Non-owning view of rays in the caller's memory: column pointers and one stride in bytes. It
+/// copies nothing and must not outlive that memory.
 struct RayBatch {
   std::array<const float*, 3> origin{};     ///< of the first ray: x, y, z
   std::array<const float*, 3> direction{};  ///< of the first ray: x, y, z
-  const float* min_t = nullptr;             ///< null: 0 for all
-  const float* max_t = nullptr;             ///< null: infinity for all
-  std::size_t count = 0;                    ///< rays
+  const float* min_t = nullptr;             ///< null means 0 for all
+  const float* max_t = nullptr;             ///< null means infinity for all
+  std::size_t count = 0;                    ///< number of rays
   std::size_t stride = sizeof(float);       ///< bytes from one ray to the next
 
   RayBatch() = default;
 
-  /// An array of rays.
+  /// Views an array of rays.
   RayBatch(std::span<const Ray> rays) noexcept {  // NOLINT(google-explicit-constructor)
     if (rays.empty()) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -64,7 +64,7 @@ struct RayBatch {
     stride = sizeof(Ray);
   }
 
-  /// Any contiguous container of rays.
+  /// Views any contiguous container of rays.
   template <typename Rays>
   requires(std::convertible_to<const Rays&, std::span<const Ray>> &&
            !std::same_as<Rays, std::span<const Ray>> && !std::same_as<Rays, RayBatch>)
@@ -72,7 +72,7 @@ struct RayBatch {
   noexcept  // NOLINT(google-explicit-constructor)
       : RayBatch(std::span<const Ray>(rays)) {}
 
-  /// Columns of `rays` floats each.
+  /// Views columns of `rays` floats each, `stride_bytes` apart.
   RayBatch(std::array<const float*, 3> origins, std::array<const float*, 3> directions,
            std::size_t rays, const float* min_ts = nullptr, const float* max_ts = nullptr,
            std::size_t stride_bytes = sizeof(float)) noexcept
@@ -83,7 +83,7 @@ struct RayBatch {
         count(rays),
         stride(stride_bytes) {}
 
-  /// Ray i, copied out; i is below `count`.
+  /// Returns a copy of ray i; i must be below `count`.
   [[nodiscard]] Ray operator[](std::size_t i) const noexcept {
     Ray ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {

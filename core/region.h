@@ -13,9 +13,9 @@
 
 namespace winnow {
 
-/// A closed part of space to be asked about; every one of these converts to it. A span of planes is
-/// the set of points inside all of them (empty: all of space); the planes must outlive the call. An
-/// Aabb may reach to infinity.
+/// A closed region of space for queries; each alternative converts to it implicitly. A span of
+/// planes is the set of points inside all of them, which is all of space if the span is empty; the
+/// planes must outlive the call. An Aabb may extend to infinity.
 using Region =
     std::variant<Vec3f, Aabb, OrientedBox, Sphere, Capsule, Frustum, std::span<const Plane>>;
 

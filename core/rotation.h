@@ -8,12 +8,12 @@
 
 namespace winnow {
 
-/// w, x, y, z, as a Pose holds it.
+/// Quaternion w, x, y, z, as in Pose.
 using Quaternion = std::array<double, 4>;
 
 namespace detail {
 
-/// With `scale` 2 / |q|^2.
+/// Returns the rotation matrix of `q`; `scale` must be 2 / |q|^2.
 [[nodiscard]] inline Mat3d scaled_rotation(const Quaternion& q, double scale) noexcept {
   const auto [w, x, y, z] = q;
   return {
@@ -28,8 +28,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// The orientation of a valid pose divided by its largest component, so that no product of two
-/// components leaves double. Exact for the identity.
+/// Returns the orientation of a valid pose divided by its largest component, so that products of
+/// two components stay in the range of double. Exact for the identity.
 [[nodiscard]] inline Quaternion tame(const double (&orientation)[4]) noexcept {
   double largest = 0.0;
   for (const double q : orientation) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
@@ -37,24 +37,25 @@ namespace detail {
           orientation[3] / largest};
 }
 
-/// Of a tame quaternion: the same rotation, of length 1 to rounding.
+/// Returns a quaternion of length 1, up to rounding, with the same rotation. `q` is a result of
+/// `tame`.
 [[nodiscard]] inline Quaternion normalized(const Quaternion& q) noexcept {
   const double length = std::sqrt(detail::squared_length(q));
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-/// The rotation of a tame quaternion. Exact for the identity and for half and quarter turns about
-/// the axes.
+/// Returns the rotation matrix of a quaternion that `tame` returned. Exact for the identity and for
+/// half and quarter turns about the axes.
 [[nodiscard]] inline Mat3d rotation_of(const Quaternion& q) noexcept {
   return detail::scaled_rotation(q, 2.0 / detail::squared_length(q));
 }
 
-/// That of a quaternion of length 1.
+/// Returns the rotation matrix of a quaternion of length 1.
 [[nodiscard]] inline Mat3d rotation_of_unit(const Quaternion& q) noexcept {
   return detail::scaled_rotation(q, 2.0);
 }
 
-/// First `inner`, then `outer`.
+/// Returns the rotation that applies `inner` first, then `outer`.
 [[nodiscard]] inline Quaternion product(const Quaternion& outer, const Quaternion& inner) noexcept {
   const auto [w, x, y, z] = outer;
   return {w * inner[0] - x * inner[1] - y * inner[2] - z * inner[3],

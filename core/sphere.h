@@ -8,18 +8,19 @@
 
 namespace winnow {
 
-/// Closed ball. A radius of zero is a point.
+/// A closed ball; a ball of radius zero is a point.
 struct Sphere {
-  /// Finite.
+  /// Centre; finite.
   Vec3f center;
   float radius = 0.0F;  ///< finite, >= 0
 
-  /// True if a partition takes this sphere: finite centre, finite radius >= 0.
+  /// Returns true if a partition accepts this sphere: finite centre, finite radius >= 0.
   [[nodiscard]] bool is_valid() const noexcept {
     return center.all_finite() && std::isfinite(radius) && radius >= 0.0F;
   }
 
-  /// Closed overlap test, computed in double; exact for centres and radii of similar size.
+  /// Returns true if the closed balls overlap. Computed in double; exact for centres and radii of
+  /// similar size.
   [[nodiscard]] bool overlaps(const Sphere& other) const noexcept {
     const double reach = to_double(radius) + to_double(other.radius);
     double square = 0.0;
@@ -30,7 +31,7 @@ struct Sphere {
     return square <= reach * reach;
   }
 
-  /// The smallest float box that contains the ball.
+  /// Returns the smallest float box that contains the ball.
   [[nodiscard]] Aabb bounds() const noexcept {
     Aabb box;
     const double r = to_double(radius);
@@ -42,11 +43,11 @@ struct Sphere {
     return box;
   }
 
-  /// A ball that contains a box of finite extents, rounded outward: at most 2 ulp larger than the
-  /// smallest one about the box's rounded centre.
+  /// Returns a ball that contains a box of finite extents, rounded outward: at most 2 ulp larger
+  /// than the smallest ball around the box's rounded centre.
   [[nodiscard]] static Sphere around(const Aabb& box) noexcept {
-    // Scalars on purpose: g++ 12 at -O2 vectorises the same on whole vectors together with the
-    // radius beside the centre, and loses the rounding of the radius.
+    // Scalar code: with whole vectors, g++ 12 -O2 vectorises centre and radius together and loses
+    // the outward rounding of the radius.
     Sphere sphere;
     double square = 0.0;
     for (int axis = 0; axis < 3; ++axis) {

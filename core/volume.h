@@ -9,15 +9,15 @@ namespace winnow {
 
 /// Kind of bounding volume that a partition stores and tests.
 enum class Volume : std::uint8_t {
-  aabb,    ///< a box along the axes: Aabb
-  sphere,  ///< a ball: Sphere
+  aabb,    ///< axis-aligned box: Aabb
+  sphere,  ///< ball: Sphere
   kdop14,  ///< Kdop<14>: a box with cut corners
   kdop18,  ///< Kdop<18>: a box with cut edges
-  kdop26,  ///< Kdop<26>: both
+  kdop26,  ///< Kdop<26>: a box with cut corners and edges
 };
 
-/// Float columns a volume takes: the lower and the upper ends of its box, then the lower and the
-/// upper ends of its further slabs; of a sphere its centre and radius.
+/// Returns the number of float columns of a volume: the lower and the upper ends of its box, then
+/// the lower and the upper ends of its other slabs; for a sphere, its centre and radius.
 [[nodiscard]] constexpr std::size_t column_count(Volume volume) noexcept {
   switch (volume) {
     case Volume::aabb:
@@ -34,22 +34,22 @@ enum class Volume : std::uint8_t {
   return 6;
 }
 
-inline constexpr std::size_t kMaxColumns = 26;  ///< The most that any volume takes.
+inline constexpr std::size_t kMaxColumns = 26;  ///< Largest number of columns of a volume.
 
-/// Columns of a sphere's centre and radius: behind those of its box.
+/// First of the three columns of a sphere's centre, behind the columns of its box.
 inline constexpr std::size_t kCenterColumn = 6;
-inline constexpr std::size_t kRadiusColumn = 9;  ///< Of the radius.
+inline constexpr std::size_t kRadiusColumn = 9;  ///< Column of a sphere's radius.
 
-/// Slabs of a volume: a sphere has its box's.
+/// Returns the number of slabs of a volume; a sphere has the three slabs of its box.
 [[nodiscard]] constexpr std::size_t slab_count(Volume volume) noexcept {
   return volume == Volume::sphere ? 3 : column_count(volume) / 2;
 }
 
-/// Columns of the ends of slab `s` of `slabs`: those of the box come first.
+/// Returns the column of the lower end of slab `s` of `slabs`; the columns of the box come first.
 [[nodiscard]] constexpr std::size_t low_column(std::size_t, std::size_t s) noexcept {
   return s < 3 ? s : s + 3;
 }
-/// That of the slab's upper end.
+/// Returns the column of the upper end of slab `s` of `slabs`.
 [[nodiscard]] constexpr std::size_t high_column(std::size_t slabs, std::size_t s) noexcept {
   return s < 3 ? s + 3 : slabs + s;
 }

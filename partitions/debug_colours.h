@@ -7,19 +7,18 @@
 
 namespace winnow {
 
-// What partitions draw in. Each kind of thing has a colour of its own, so that a DebugDraw can tell
-// them apart. All can be told apart by people of any colour vision, on light and dark ground:
-// single colours are from Okabe and Ito, "Color Universal Design", 2008; the depth of a node goes
-// through the viridis map (van der Walt and Smith, 2015), whose lightness falls steadily.
+// Colours of the debug drawing, one for each kind of element, so that a DebugDraw can tell elements
+// apart. All are distinct for people of any colour vision, on light and dark backgrounds: single
+// colours are from Okabe and Ito, "Color Universal Design", 2008; node depth uses the viridis map
+// (van der Walt and Smith, 2015), whose lightness falls steadily.
 
 inline constexpr Colour kObjectColour{160, 168, 178, 255};  ///< the volume of an object
 inline constexpr Colour kLabelColour{232, 232, 232, 255};   ///< text
 inline constexpr Colour kCellColour{86, 180, 233, 255};     ///< a cell or strip that holds objects
-inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< the box around what it holds
+inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< box around the contents of a cell
 inline constexpr Colour kAxisColour{240, 228, 66, 255};  ///< the axis that is swept or runs fastest
 
-/// By depth: the nodes next to the root first. Even a million objects go four deep: these steps are
-/// wide.
+/// By depth, nearest the root first. A million objects need four levels, so the steps are wide.
 inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
                                                      {94, 201, 98, 255},
                                                      {33, 145, 140, 255},
@@ -29,7 +28,7 @@ inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
                                                      {72, 24, 106, 255},
                                                      {68, 1, 84, 255}}};
 
-/// The colour of nodes at a depth, 0 or more; the last one serves all below it.
+/// Returns the colour of nodes at a depth >= 0; the last colour serves all greater depths.
 [[nodiscard]] constexpr Colour node_colour(std::size_t depth) noexcept {
   return kNodeColours[depth < kNodeColours.size() ? depth : kNodeColours.size() - 1];
 }

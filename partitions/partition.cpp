@@ -1,3 +1,7 @@
+// Public functions of Partition except queries: they set the floating-point environment, log errors
+// and call PartitionState. Pair queries are in pairs/self_pairs.cpp, casts, regions and nearest
+// queries in queries/, snapshots in snapshot/snapshot.cpp.
+
 #include <winnow/partitions/partition.h>
 
 #include "core/hooks/log.h"
@@ -9,8 +13,8 @@
 namespace winnow {
 namespace {
 
-/// Calls change(rows) for a mutation of so many objects by a call of this name, and has the
-/// structure follow.
+/// Calls change(rows) for a mutation of `count` objects, notes the changes for the structure, and
+/// logs the status under the name `call`.
 template <typename Change>
 Status mutate(const char* call, PartitionState* state, Status otherwise, std::size_t count,
               Change&& change) {

@@ -1,5 +1,8 @@
 #pragma once
 
+// The public interface of a spatial partition. Results go to a PairBuffer, PairEvents, HitBuffer or
+// OverlapBuffer of the caller (core/).
+
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>
 #include <winnow/core/cast.h>
@@ -33,102 +36,105 @@
 
 namespace winnow {
 
-/// What every partition is made with.
+/// Options of a partition, fixed at construction.
 struct PartitionOptions {
-  /// Every allocation comes from here. It must outlive the partition. Where a parallel partition
-  /// runs, only the calling thread allocates.
+  /// Source of every allocation. It must outlive the partition. With parallel execution, only the
+  /// calling thread allocates.
   std::pmr::memory_resource* memory = default_memory();
-  /// On whose threads builds, refits and queries run; results are the same on all.
+  /// How builds, refits and queries are run in parallel; results do not depend on it.
   Execution execution = Execution::parallel();
-  /// What bounds an object. Every partition prunes by boxes; of spheres and k-DOPs it drops the
-  /// pairs whose boxes overlap though they themselves do not.
+  /// Bounding volume of the objects. Every partition prunes by boxes. With spheres and k-DOPs it
+  /// also drops pairs whose boxes overlap but whose volumes do not.
   Volume volume = Volume::aabb;
-  /// Makes what rests or moves little cost nothing; every query sees the larger volumes.
+  /// Stores volumes enlarged by this margin (fat AABBs), so that small motions need no update of
+  /// the structure. Every query tests the enlarged volumes.
   Margin margin{};
-  /// A build that can be seen coming, because objects near the edges of their cells or queries cost
-  /// ever more, is planned over the refreshes before it, and so is the exchange of a structure by
-  /// the automatic choice. This is how many rows' worth of that work a refresh does: a build takes
-  /// two to five of each row. 0: as much as it takes for a plan to be done within two fifths of the
-  /// refreshes that the last order was good for. The largest number: builds are done at once when
-  /// they are due. Counts, never time: results are the same on every machine.
+  /// Number of rows that one refresh may process for a planned rebuild. A rebuild is planned if it
+  /// is foreseeable: objects are about to leave their cells, or queries become steadily slower. The
+  /// work is then spread over the refreshes before the rebuild is due; the same holds for a change
+  /// of structure by `automatic()`. A build processes each row two to five times. 0: the partition
+  /// chooses the number so that planning takes two fifths of the refreshes that the last order
+  /// lasted. The largest number: no planning, a build runs at once when it is due. The budget
+  /// counts rows, never time, so that results are the same on every machine.
   std::size_t build_budget = 0;
 };
 
-/// The order in which a query writes its results. Both are the same on any thread count and any
-/// instruction set.
+/// Order in which a query writes its results. Both orders are the same for any number of threads
+/// and any instruction set.
 enum class Order : std::uint8_t {
-  fast,       ///< as they were found; depends on the partition and on what happened before
+  fast,       ///< order in which results are found; depends on the structure and on earlier calls
   canonical,  ///< sorted by (first, second): every exact partition gives identical bytes
 };
 
-/// How pairs are asked for.
+/// Options of a pair query.
 struct PairOptions {
-  Order order = Order::fast;  ///< in which order they are written
-  /// Update the caller's buffer by what moved since it was last filled, where that is cheaper.
-  /// False asks for every pair anew.
+  Order order = Order::fast;  ///< order of the written pairs
+  /// Updates the pairs that the buffer already holds from the objects that moved since, if that is
+  /// cheaper. False: finds all pairs again.
   bool incremental = true;
-  /// Asked about every pair that the objects' own filters let pass. An incremental query keeps what
-  /// it answered about pairs that did not move.
+  /// Called for every pair that the objects' filters let pass. An incremental query does not call
+  /// it again for pairs of objects that did not move.
   PairPredicate predicate{};
 };
 
-/// How a partition stands and what it did; counters, never timings, so they repeat exactly.
+/// State of a partition and counters of its work. It holds no timings, so that values repeat
+/// exactly.
 struct Statistics {
-  std::size_t objects = 0;    ///< live ones
-  std::size_t regular = 0;    ///< objects in the cells, strips or leaves made by the last build
-  std::size_t irregular = 0;  ///< objects kept apart: oversize, new, or moved away
-  std::size_t cells = 0;      ///< cells, strips or leaf blocks
-  std::size_t depth = 0;      ///< levels of the node tree; 0 if there is none
-  std::size_t levels = 0;     ///< of sizes: grids laid over each other, or depths of an octree
-  std::uint64_t builds = 0;   ///< since construction
-  std::uint64_t planned_builds = 0;       ///< of these, how many were planned before they were due
-  std::uint64_t refits = 0;               ///< refreshes that did not need a build
-  std::uint64_t full_queries = 0;         ///< pair queries that asked about every object
-  std::uint64_t incremental_queries = 0;  ///< pair queries that redid only the pairs of what moved
+  std::size_t objects = 0;           ///< live objects
+  std::size_t regular = 0;           ///< objects in the cells, strips or leaves of the last build
+  std::size_t irregular = 0;         ///< objects apart from these: too large, new, or moved away
+  std::size_t cells = 0;             ///< cells, strips or leaf blocks
+  std::size_t depth = 0;             ///< levels of the node tree; 0 if there is none
+  std::size_t levels = 0;            ///< grids of a hierarchical grid, depths of an octree
+  std::uint64_t builds = 0;          ///< builds since construction
+  std::uint64_t planned_builds = 0;  ///< builds that were planned before they were due
+  std::uint64_t refits = 0;          ///< refreshes that did not need a build
+  std::uint64_t full_queries = 0;    ///< pair queries that tested every object
+  std::uint64_t incremental_queries = 0;  ///< pair queries that tested only objects that moved
   std::uint64_t last_tests = 0;           ///< tests of 16 volumes at once, in the last pair query
-  std::uint64_t last_pairs = 0;           ///< pairs reported by the last pair query
+  std::uint64_t last_pairs = 0;           ///< pairs that the last pair query returned
 };
 
 class PartitionState;
 struct VolumeInput;
 
-/// What the automatic choice holds, and why.
+/// The structure that `automatic()` has chosen, and the reason.
 struct StructureChoice {
-  StructureKind structure;    ///< that prunes the objects now
-  std::string_view reason;    ///< in a few words
-  std::uint64_t changes = 0;  ///< of the structure, after the first choice
-  SceneFeatures features;     ///< what is known of the scene
+  StructureKind structure;    ///< the structure in use
+  std::string_view reason;    ///< a few words
+  std::uint64_t changes = 0;  ///< changes of structure after the first choice
+  SceneFeatures features;     ///< features of the scene that the choice is based on
 };
 
-/// Takes bounding volumes with 64 bits of client data, hands out keys, and answers which of them
-/// may touch. It never misses a pair; `is_exact` says whether it reports pairs whose boxes do not
-/// touch. What differs between partitions is the structure that prunes: it can be exchanged while
-/// the objects stay, with their keys, filters, tracked pairs and events.
+/// A set of bounding volumes, each with 64 bits of client data and a key, that finds the pairs that
+/// may touch. It never misses a pair; `is_exact` is false if it may also report pairs whose boxes
+/// do not touch. Partitions differ in the structure that prunes. The structure can be exchanged at
+/// any time; objects, keys, filters, tracked pairs and events stay.
 ///
 ///     winnow::Partition partition(winnow::linear_bvh());
 ///     partition.insert(boxes, data, keys);
 ///     partition.self_pairs(pairs);
 ///
-/// Boxes are of floats, which are coarse far from 0: in a world far away measure them, and whatever
-/// is asked with, from a point among the objects (`Aabb::outward` with an origin). A Scene, which
-/// has doubles, does so by itself.
+/// Boxes have float coordinates, which are coarse far from 0. In a world far from the origin, give
+/// boxes and query shapes relative to a point among the objects (`Aabb::outward` with an origin). A
+/// Scene has double coordinates and does this itself.
 ///
-/// Mutation costs O(1) per object; the structure follows at the next query (or `refresh`). Queries
-/// that are const may run at the same time from several threads; everything else wants the
-/// partition to itself. A refused call (any Status but ok) changed nothing: of a span, either all
-/// entries are taken or none. Nothing throws.
+/// Insert, update and remove cost O(1) per object; the structure is brought up to date by the next
+/// query or by `refresh`. Const queries may run concurrently on several threads; any other call
+/// needs exclusive access. A call that returns any Status but ok has changed nothing: either all
+/// entries of a span are taken or none. No call throws.
 class WINNOW_API Partition final {
  public:
-  /// An empty partition of boxes, with the options that there are by default. It takes memory for
-  /// its state at once; see `status`.
+  /// Makes an empty partition of boxes with default options. Allocates its state at once; see
+  /// `status`.
   explicit Partition(StructureKind structure) noexcept;
-  /// The same with other options. Links what all volumes and margins need.
+  /// As above, with options. Links the code of all volumes and margins.
   Partition(StructureKind structure, const PartitionOptions& options) noexcept;
-  /// Takes over the objects; `other` answers every call with `invalid_argument` from then on.
+  /// Moves the objects here; afterwards every call on `other` returns `invalid_argument`.
   Partition(Partition&& other) noexcept
       : state_(std::exchange(other.state_, nullptr)),
         status_(std::exchange(other.status_, Status::invalid_argument)) {}
-  /// Exchanges the two partitions, objects, keys and all.
+  /// Swaps the two partitions, including objects and keys.
   Partition& operator=(Partition&& other) noexcept {
     std::swap(state_, other.state_);
     std::swap(status_, other.status_);
@@ -136,181 +142,192 @@ class WINNOW_API Partition final {
   }
   ~Partition();
 
-  /// `ok`, or what every call that has a status answers: `out_of_memory` if memory for its state
-  /// was refused, `invalid_argument` if the structure or the options' volume names none, or if it
-  /// has been moved from.
+  /// Returns `ok`, or the status that every call returns: `out_of_memory` if memory for the state
+  /// was refused; `invalid_argument` if the structure or the volume of the options is not a valid
+  /// one, or if the partition has been moved from.
   [[nodiscard]] Status status() const noexcept { return status_; }
 
-  /// What it was made with, or given last.
+  /// Returns the structure given at construction or by `set_structure`.
   [[nodiscard]] StructureKind structure() const noexcept;
-  /// That structure's name, e.g. "LinearBvh".
+  /// Returns the name of that structure, e.g. "LinearBvh".
   [[nodiscard]] std::string_view name() const noexcept { return structure().name(); }
-  /// Exchanges the structure; the next refresh builds it. `automatic()` starts choosing anew.
+  /// Exchanges the structure; the next refresh builds the new one. `automatic()` starts its choice
+  /// anew. `invalid_argument` for a kind without a structure.
   Status set_structure(StructureKind structure);
-  /// What `automatic()` has chosen; of any other structure that one itself.
+  /// Returns the structure that `automatic()` has chosen; for any other structure, that structure.
   [[nodiscard]] StructureChoice choice() const noexcept;
 
-  /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: where the structure
-  /// tests bounds, and these are boxes without a margin.
+  /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: the structure tests
+  /// bounds, and they are boxes without a margin.
   [[nodiscard]] bool is_exact() const noexcept;
-  /// What objects are bounded by: that of the options it was made with.
+  /// Returns the bounding volume of the options.
   [[nodiscard]] Volume volume() const noexcept;
-  /// By how much stored boxes are larger than given ones: that of the options it was made with.
+  /// Returns the margin of the options.
   [[nodiscard]] Margin margin() const noexcept;
 
-  /// Adds one object per box. `keys` receives a key for each; `data` may be empty (all zero).
+  /// Adds one object per box and writes its key to `keys`. `data` may be empty: client data are 0
+  /// then. `size_mismatch` if the lengths differ, `invalid_bounds` for a box with NaN, min > max or
+  /// wholly at infinity.
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   /// Adds one object.
   Status insert(const Aabb& box, ClientData data, Key& key);
-  /// Gives each object a new box. If a key occurs twice its last box counts. With a margin, a box
-  /// within the stored one leaves that as it is, unless it is larger by more than twice the margin;
-  /// the object then counts as not moved.
+  /// Gives each object a new box. If a key occurs twice, its last box counts. `size_mismatch`,
+  /// `invalid_key` and `invalid_bounds` change nothing. With a margin, an object counts as not
+  /// moved and its stored box stays, if the new box lies within the stored one and the stored one
+  /// is at most four margins longer on each axis (two per side).
   Status update(std::span<const Key> keys, const BoxView& boxes);
-  /// The same for one object.
+  /// Gives one object a new box.
   Status update(Key key, const Aabb& box);
-  /// The same for some entries of keys and boxes alone, of which a caller keeps all: those that a
-  /// list names, or of which a mask has the bits set, need not be copied together. A number that is
-  /// none of an entry is an `invalid_argument`, a mask of another length a `size_mismatch`.
+  /// Gives new boxes only to the listed or masked entries of `keys` and `boxes`, so that a caller
+  /// that has arrays of all its objects need not copy the entries together. `invalid_argument` for
+  /// an index out of range, `size_mismatch` for a mask of another length.
   Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
 
-  /// Spheres, where `volume()` is Volume::sphere; else `unsupported_volume`. Given boxes, a
-  /// partition of spheres or k-DOPs stores the tightest volume around each (a sphere wants finite
-  /// boxes). Spheres that miss each other by less than 1e-6 of their distance may be reported, and
-  /// any that are smaller than some 1e-18 or larger than 1e18.
+  /// Adds one object per sphere. `unsupported_volume` unless `volume()` is Volume::sphere. A
+  /// partition of spheres or k-DOPs that is given boxes stores the tightest volume around each; for
+  /// spheres the boxes must be finite. A pair of spheres may be reported although they miss each
+  /// other, if the gap is below 1e-6 of their distance, or if one is smaller than about 1e-18 or
+  /// larger than about 1e18.
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
-  /// The same for spheres. Values that are not finite or a negative radius are `invalid_bounds`.
+  /// Gives each object a new sphere. `invalid_bounds` for values that are not finite or a negative
+  /// radius.
   Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
-  /// k-DOPs, where `volume()` is that of the same K (14, 18 or 26); else `unsupported_volume`.
+  /// Adds one object per k-DOP. `unsupported_volume` unless `volume()` is the one with this K (14,
+  /// 18 or 26).
   template <int K>
   Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                 std::span<Key> keys);
   template <int K>
-  /// The same for k-DOPs.
+  /// Gives each object a new k-DOP.
   Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
 
-  /// Removes the objects. A key that occurs twice makes the whole call `invalid_key`.
+  /// Removes the objects. `invalid_key` if a key occurs twice.
   Status remove(std::span<const Key> keys);
-  /// Removes one object; `invalid_key` if there is none of this key.
+  /// Removes one object. `invalid_key` if no live object has this key.
   Status remove(Key key);
-  /// Removes every object. Memory is kept; `release_memory` gives it back.
+  /// Removes all objects. Memory is kept; `release_memory` frees it.
   void clear() noexcept;
-  /// Gives back all memory that an empty partition, or scratch, holds.
+  /// Frees scratch memory, and all memory of an empty partition.
   void release_memory() noexcept;
-  /// Makes ready all that the first frame of up to `objects` objects needs, wherever these lie: to
-  /// insert them, to `refresh`, and to ask for all pairs asks the memory resource for nothing then
-  /// (for the array of pairs itself see `reserve_pairs`). Cells and nodes are reserved for as many
-  /// as the structure may make of so many objects, which is more than most scenes have; for
-  /// `automatic()` each of those that it may choose gets its own. Filters are not counted in. What
-  /// was reserved stays until `release_memory`. `too_many_objects` or `out_of_memory` change
-  /// nothing. O(objects) if pages are touched, else O(size()).
+  /// Reserves all memory that the first frame of up to `objects` objects needs, wherever they lie:
+  /// inserting them, `refresh` and a query for all pairs then allocate nothing (for the array of
+  /// pairs see `reserve_pairs`). Reserves the largest number of cells and nodes that the structure
+  /// may make of them, which is more than most scenes need; `automatic()` reserves for each
+  /// structure that it may choose. Filters are not included. The memory stays until
+  /// `release_memory`. `too_many_objects` and `out_of_memory` change nothing. O(objects) if pages
+  /// are touched, else O(size()).
   Status reserve(std::size_t objects, Pages pages = Pages::untouched);
-  /// Makes room in a buffer for up to `pairs` pairs of `self_pairs`, as long as there are no more
-  /// objects than was reserved for: on several threads twice that, since they write side by side
-  /// first. `out_of_memory` changes nothing.
+  /// Reserves memory in a buffer for up to `pairs` pairs of `self_pairs`, valid for as many objects
+  /// as `reserve` was called for. With several threads it takes twice the memory, because threads
+  /// write to pages of their own first. `out_of_memory` changes nothing.
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
-  /// Makes room for what events tell of up to so many pairs, as long as there are no more objects
-  /// than was reserved for, and with `alone`, for `self_pairs(events)`, for those pairs themselves.
-  /// `out_of_memory` changes nothing that is told.
+  /// Reserves memory for the events of up to `pairs` pairs, valid for as many objects as `reserve`
+  /// was called for. With `alone`, for `self_pairs(events)`, also reserves memory for the pairs
+  /// themselves. `out_of_memory` leaves the reported events unchanged.
   Status reserve_events(PairEvents& out, std::size_t pairs, bool alone = false,
                         Pages pages = Pages::untouched) const;
 
-  /// Live objects.
+  /// Returns the number of live objects.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// True for keys of live objects of this partition. O(1).
+  /// True if the key belongs to a live object of this partition. O(1).
   [[nodiscard]] bool contains(Key key) const noexcept;
-  /// The box as it is tested: float, larger than given by the margin, the box around other volumes;
-  /// an infinite extent is given back as infinite.
+  /// Returns the box that queries test: float, enlarged by the margin; for other volumes the box
+  /// around them. An infinite extent is returned as infinite.
   Status bounds(Key key, Aabb& box) const noexcept;
-  /// The same of many objects, one box for each key. `size_mismatch` and `invalid_key` leave all
-  /// boxes alone. O(keys).
+  /// As above, one box per key. `size_mismatch` and `invalid_key` write nothing. O(keys).
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
-  /// What the object was inserted with; `invalid_key` leaves `data` alone.
+  /// Returns the client data of an object; `invalid_key` writes nothing.
   Status client_data(Key key, ClientData& data) const noexcept;
-  /// Key of a live object; the null key for any other id.
+  /// Returns the key of a live object; the null key for any other id.
   [[nodiscard]] Key key_of(ObjectId id) const noexcept;
-  /// Client data of a live object; 0 for any other id.
+  /// Returns the client data of a live object; 0 for any other id.
   [[nodiscard]] ClientData client_data_of(ObjectId id) const noexcept;
 
-  /// Sets what the objects let themselves be paired with. Every object starts with ObjectFilter{};
-  /// a partition in which no other was ever set stores none.
+  /// Sets the filters that restrict which objects pair. Every object starts with ObjectFilter{}; a
+  /// partition stores no filters until another one is set.
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
-  /// The same for one object.
+  /// Sets the filter of one object.
   Status set_filter(Key key, const ObjectFilter& filter);
-  /// What was set last, or ObjectFilter{}; `invalid_key` leaves `filter` alone.
+  /// Returns the filter of an object; `invalid_key` writes nothing.
   Status filter(Key key, ObjectFilter& filter) const noexcept;
 
-  /// Brings the structure up to date now rather than in the next query. A tree that is made here,
-  /// or for a ray or a region, at first, is cut with more care than one that is made for pairs.
+  /// Brings the structure up to date now instead of in the next query. If the first build is made
+  /// here or by a cast, region or nearest query, its tree is split with more care than for a pair
+  /// query.
   Status refresh() const;
 
-  /// All pairs of objects whose volumes overlap, each once, first < second. `out_of_memory` leaves
-  /// `out` empty.
+  /// Writes all pairs of objects whose volumes overlap, each once, first < second. `out_of_memory`
+  /// leaves `out` empty.
   Status self_pairs(PairBuffer& out, const PairOptions& options = {}) const;
-  /// All pairs (object of this, object of other) whose boxes overlap, each once.
+  /// Writes all pairs (object of this, object of other) whose boxes overlap, each once.
+  /// `out_of_memory` leaves `out` empty.
   Status pairs_with(const Partition& other, PairBuffer& out, const PairOptions& options = {}) const;
 
-  /// The same, and what changed since the frame that `out` holds. The cost follows what moved.
-  /// `out_of_memory` reports no change and leaves that frame in `out`.
+  /// Writes all pairs like `self_pairs(out)`, and reports the pairs that began and ended since the
+  /// frame that `out` holds. The cost grows with the number of moved objects. `out_of_memory`
+  /// reports no change and leaves the pairs of that frame in `out`.
   Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
-  /// What changed alone. Where little moves it costs what moved and how many pairs that has; the
-  /// order is of no effect.
+  /// Reports only the pairs that began and ended. If few objects move, O(moved objects and their
+  /// pairs). `options.order` is ignored.
   Status self_pairs(PairEvents& events, const PairOptions& options = {}) const;
 
-  // Casts: rays and swept volumes against the objects' boxes (of spheres and k-DOPs: the box around
-  // them). A start inside a box, or touching it, is a hit at min_t. Never a miss; a false hit only
-  // where the gap is below 1e-14 of the coordinates' size (1e-6 for capsules). Equal t are ordered
-  // by id.
+  // Casts: rays and swept volumes against the objects' boxes (for spheres and k-DOPs, the boxes
+  // around them). A cast that starts inside a box, or touching it, hits it at min_t. No hit is
+  // missed; a false hit is possible only if the gap is below 1e-14 of the coordinates (1e-6 for
+  // capsules). Hits of equal t are ordered by id. `invalid_argument` for an invalid cast.
 
-  /// The hit with the least t; a null hit if there is none. About O(log n).
+  /// Finds the hit of least t; a null hit if there is none. About O(log n).
   Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
-  /// Any one hit, whichever is found first; a null hit if there is none.
+  /// Finds any one hit; a null hit if there is none.
   Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
-  /// All hits, sorted by t.
+  /// Finds all hits, sorted by t.
   Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const;
-  /// The same for many rays at once, which share the work where they are alike. One bad ray makes
-  /// the whole batch `invalid_argument`.
+  /// Finds the hit of least t of each ray. Rays of similar direction share work. One invalid ray
+  /// makes any call with a batch return `invalid_argument`.
   Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
-  /// Any one hit of each ray, the same on any number of threads; the same bad rays are refused.
+  /// Finds any one hit of each ray, the same hit for any number of threads.
   Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
-  /// All hits of each ray, sorted by t: `hits.of(i)` are those of ray i.
+  /// Finds all hits of each ray, sorted by t: `hits.of(i)` are the hits of ray i.
   Status all(const RayBatch& rays, HitBuffer& hits, const Filter& filter = {}) const;
 
-  /// Every object whose box meets the region, those that lie wholly inside told from those that
-  /// cross its border. A frustum or set of planes "meets" a box that is not wholly outside of one
-  /// of its planes (or of the frustum's own box). Never a miss; a false hit only within rounding.
-  /// Order::canonical sorts each of the two groups by id.
+  /// Finds every object whose box overlaps the region, and separates boxes inside the region from
+  /// boxes that cross its border. A box overlaps a frustum or a set of planes if it is not wholly
+  /// outside one of the planes (or the box of the frustum). No object is missed; false ones lie
+  /// within rounding of the region. Order::canonical sorts each of the two groups by id.
   Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
                  Order order = Order::fast) const;
-  /// All pairs (index of the box, object) that overlap. Boxes may reach to infinity.
+  /// Finds all overlapping pairs (index of the box, object). Boxes may be infinite.
   Status overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter = {},
                  Order order = Order::fast) const;
 
-  /// The `count` objects whose boxes are nearest to a finite box (a point is one of no extent)
-  /// within a distance of `radius`, which may be infinite; sorted by distance, then by id. Those
-  /// that touch are at distance 0. About O(log n + count).
+  /// Finds the `count` objects whose boxes are nearest to a finite box (or a point: min == max)
+  /// within distance `radius`, which may be infinite; sorted by distance, then by id. Boxes that
+  /// touch have distance 0. `invalid_argument` for a box that is not finite, or a radius that is
+  /// negative or NaN. About O(log n + count).
   Status nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
                  const Filter& filter = {}) const;
 
-  /// Appends all that the objects are to bytes: keys and which come next, stored volumes, client
-  /// data, filters, and which structure with what options; pipeline/CONTRACT.md has the format.
-  /// `out_of_memory` leaves `out` as it was. O(objects).
+  /// Appends a snapshot of the objects: keys and the order in which new ones are given out, stored
+  /// volumes, client data, filters, the structure and its options. pipeline/FORMATS.md has the
+  /// format. `out_of_memory` leaves `out` unchanged. O(objects).
   Status save(Column<std::byte>& out) const;
-  /// Becomes what was saved, with the memory and execution that it has. Keys that were saved are
-  /// those of the same objects again, unless another partition of this process has them by now;
-  /// `key_of` tells. The structure is built by the next question; what is asked from then on is
-  /// answered, to the order of pairs, as by every other partition that loaded the same bytes: to go
-  /// on bit for bit with it, who saved loads, too. Buffers of pairs start anew. `invalid_argument`
-  /// for anything that was not saved so, whoever made it, and `out_of_memory`, change nothing.
+  /// Replaces the objects by a snapshot; memory resource and execution stay. Saved keys belong to
+  /// the same objects again, unless another partition of this process uses them (compare with
+  /// `key_of`). The next query builds the structure. From then on results, including the order of
+  /// pairs, equal the results of every other partition that loaded the same bytes. They need not
+  /// equal the results of the partition that saved: to stay equal bit for bit, load the bytes there
+  /// too. The next query for pairs is a full one for any buffer. `invalid_argument` if the bytes
+  /// are not a valid snapshot (untrusted bytes are safe); it and `out_of_memory` change nothing.
   /// Links all structures. O(objects).
   Status load(std::span<const std::byte> saved);
 
-  /// Draws the objects and the partition's own structure. A picture, not a query: O(n).
+  /// Draws the objects and the cells or nodes of the structure. O(n).
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 
-  /// Every byte that the memory resource was asked for and has not got back.
+  /// Returns every byte that is allocated from the memory resource.
   [[nodiscard]] Footprint footprint() const noexcept;
-  /// Counters as they stand.
+  /// Returns the current counters.
   [[nodiscard]] Statistics statistics() const noexcept;
 
  private:

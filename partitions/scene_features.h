@@ -7,20 +7,21 @@
 
 namespace winnow {
 
-/// What a sample of the boxes tells of a scene: enough to predict what a structure would cost. The
-/// same on every machine.
+/// Features of a scene, estimated from a sample of its boxes: input for the prediction of a
+/// structure's cost. Equal on every machine.
 struct SceneFeatures {
-  std::size_t objects = 0;  ///< that the sample stands for
-  /// By axis: where the middle 96 % of the objects lie, in units of their mean edge on this axis.
-  /// An axis with little room prunes nothing.
+  std::size_t objects = 0;  ///< objects in the scene
+  /// Per axis, the range of the middle 96 % of the objects divided by their mean edge on this axis.
+  /// An axis with a small value prunes nothing.
   std::array<double, 3> room{};
-  /// log2 of a large object's longest edge over a small one's (95th and 5th percentile): 0 where
-  /// all are of one size.
+  /// log2 of the ratio of longest edges between a large and a small object (95th and 5th
+  /// percentile); 0 if all sizes are equal.
   double size_spread = 0.0;
-  /// log2 of how much likelier than in an even scene two objects lie in the same of 64 cells: 0 if
-  /// even, up to 6. Simpson's index of the sample, its own pairs of one left out.
+  /// How strongly objects cluster: log2 of (probability that two sampled objects lie in the same of
+  /// 64 cells) / (the same probability in an even scene). 0 if even, at most 6. The probability is
+  /// Simpson's index without pairs of an object with itself.
   double crowding = 0.0;
-  /// Pairs per object, if the scene were even but for its crowding; at most 16.
+  /// Estimated pairs per object: an even distribution times the clustering; at most 16.
   double pairs = 0.0;
 };
 

@@ -9,25 +9,25 @@ namespace winnow {
 
 struct StructureInfo;
 
-/// Which structure prunes the objects of a partition: a value, made by one of the functions below.
-/// A program gets the code of the structures that it names, and of no other.
+/// The structure that prunes the objects of a partition: a value returned by one of the functions
+/// below. A program links only the code of the structures that it names.
 class WINNOW_API StructureKind {
  public:
-  /// Names no structure; what takes one answers `invalid_argument`.
+  /// No structure; functions that take a StructureKind return `invalid_argument` for it.
   constexpr StructureKind() noexcept = default;
-  /// For a structure's own source file.
+  /// For the source file of a structure.
   constexpr explicit StructureKind(const StructureInfo& info, float parameter = 0.0F) noexcept
       : info_(&info), parameter_(parameter) {}
 
-  /// Stable, e.g. "LinearBvh"; empty if it names none.
+  /// Returns a stable name, e.g. "LinearBvh"; empty if there is no structure.
   [[nodiscard]] std::string_view name() const noexcept;
 
-  /// What the library knows the structure by; null if it names none.
+  /// For the library itself; null if there is no structure.
   [[nodiscard]] constexpr const StructureInfo* info() const noexcept { return info_; }
-  /// That the function was given, as `loose` of an octree; 0 for structures without one.
+  /// Returns the parameter given to the function, e.g. `loose` of an octree; 0 without one.
   [[nodiscard]] constexpr float parameter() const noexcept { return parameter_; }
 
-  /// Same structure, same parameter.
+  /// Compares structure and parameter.
   friend constexpr bool operator==(const StructureKind&, const StructureKind&) noexcept = default;
 
  private:
@@ -35,33 +35,33 @@ class WINNOW_API StructureKind {
   float parameter_ = 0.0F;
 };
 
-/// All structures, in the order in which reports list them: a function, and its parameters. Each
-/// lives in a folder of partitions/structures/ that can be deleted with its line here.
-#define WINNOW_STRUCTURES(X)                                                                   \
-  /** Every pair, untested: n(n-1)/2 of them. The baseline that says what a test is worth. */  \
-  X(n_squared, )                                                                               \
-  /** The bounding volume of every object against every other, 16 at a time: the least memory, \
-     the fastest for some dozens of objects. */                                                \
-  X(bounds_n_squared, )                                                                        \
-  /** Strips that are kept sorted. Much moves, sizes are alike, long thin worlds. */           \
-  X(sweep_and_prune, )                                                                         \
-  /** Cells of one size. Sizes are alike and density is even. */                               \
-  X(flat_grid, )                                                                               \
-  /** A grid for each class of sizes. Much moves, in scenes of one size or many. */            \
-  X(hierarchical_grid, )                                                                       \
-  /** Loose cells of every size; `loose` is the edge of a loose cell in edges of its cell, in  \
-     [1.125, 8], and what lies outside is taken as the nearest end. Larger: objects move       \
-     farther before they leave their node, and nodes overlap more. Measured where sizes are    \
-     mixed: 1.5 and 3 cost 7 to 14 % more tests than 2. */                                     \
-  X(loose_octree, float loose = 2.0F)                                                          \
-  /** The same over the two axes with the most room. Flat worlds. */                           \
-  X(loose_quadtree, float loose = 2.0F)                                                        \
-  /** A tree of boxes that is refitted: take it when you do not know. */                       \
-  X(linear_bvh, )                                                                              \
-  /** The same in an order that takes many times as long to find: for what hardly moves and    \
-     is asked much. */                                                                         \
-  X(static_bvh, )                                                                              \
-  /** Holds one of the others, goes on picking, and links all that it picks from. */           \
+/// X(function, parameters) for each structure, in the order in which reports list them. The code
+/// is in folders of partitions/structures/; a folder can be deleted together with its lines here.
+#define WINNOW_STRUCTURES(X)                                                                       \
+  /** Every pair, untested: n(n-1)/2 pairs. The baseline that shows what a test is worth. */       \
+  X(n_squared, )                                                                                   \
+  /** Brute force: every volume against every other, 16 at a time. Least memory; fastest for a     \
+     few dozen objects. */                                                                         \
+  X(bounds_n_squared, )                                                                            \
+  /** Sweep and prune in strips that stay sorted. For many moving objects of similar size and      \
+     long thin worlds. */                                                                          \
+  X(sweep_and_prune, )                                                                             \
+  /** Grid with cells of one size. For objects of similar size and even density. */                \
+  X(flat_grid, )                                                                                   \
+  /** A grid for each class of sizes. For many moving objects, of one size or of many. */          \
+  X(hierarchical_grid, )                                                                           \
+  /** Loose octree. `loose` is the edge length of a loose cell divided by that of its cell,        \
+     clamped to [1.125, 8]. With a larger value objects move farther before they leave their node, \
+     but nodes overlap more. */                                                                    \
+  X(loose_octree, float loose = 2.0F)                                                              \
+  /** Loose quadtree over the two axes with the largest extent. For flat worlds. */                \
+  X(loose_quadtree, float loose = 2.0F)                                                            \
+  /** BVH that is refitted. The default choice if nothing is known about the scene. */             \
+  X(linear_bvh, )                                                                                  \
+  /** BVH as above with a build that takes many times as long and a better tree: for objects       \
+     that hardly move and are queried often. */                                                    \
+  X(static_bvh, )                                                                                  \
+  /** Chooses one of the others, again and again. Links all that it may choose. */                 \
   X(automatic, )
 
 #define WINNOW_DECLARE_STRUCTURE(function, ...) \
@@ -69,10 +69,10 @@ class WINNOW_API StructureKind {
 WINNOW_STRUCTURES(WINNOW_DECLARE_STRUCTURE)
 #undef WINNOW_DECLARE_STRUCTURE
 
-/// All of them with their default parameters. Links them all.
+/// Returns all structures with their default parameters. Links them all.
 [[nodiscard]] WINNOW_API std::span<const StructureKind> all_structures() noexcept;
 
-/// The one of this name; one that names none if there is no such name. Links them all.
+/// Returns the structure of this name, or a kind without a structure. Links them all.
 [[nodiscard]] WINNOW_API StructureKind structure_named(std::string_view name) noexcept;
 
 }  // namespace winnow

@@ -1,5 +1,9 @@
 #pragma once
 
+// Boxes distributed over ranks (processes): the broad phase of a cluster. Ranks communicate through
+// a Transport (cluster_transport.h); ClusterScene (cluster_scene.h) adds shapes and contacts. The
+// implementation is in cluster/.
+
 #include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
@@ -16,57 +20,57 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
-#include <span>  // iterator tags, too: <iterator> would read all of streams
+#include <span>  // for iterator tags; <iterator> would include streams
 
 namespace winnow {
 
 struct ClusterState;
 
-/// What a body is called on every rank: yours, and no two bodies of a cluster have the same.
+/// Name of a body on every rank: chosen by the caller, unique within a cluster.
 using BodyName = std::uint64_t;
 
-/// Two bodies whose boxes overlap, first < second.
+/// Names of two bodies whose boxes overlap, first < second.
 struct NamePair {
   BodyName first = 0;   ///< the smaller name
   BodyName second = 0;  ///< the larger name
 
-  /// By the first body, then by the second.
+  /// Orders by the first name, then by the second.
   friend constexpr auto operator<=>(const NamePair&, const NamePair&) noexcept = default;
 };
 
-/// Pairs that a rank reports, read front to back or by place. A rank holds them by its own numbers
-/// of bodies, 8 bytes a pair, and names are looked up as a pair is read: nothing is written for
-/// pairs that nobody looks at.
+/// Pairs that a rank reports; read-only, with iterators and random access. The rank stores a pair
+/// as two local body numbers (8 bytes); names are looked up when a pair is read, so unread pairs
+/// cost nothing.
 class NamePairs {
  public:
-  /// Reads one pair after another.
+  /// Iterates over the pairs.
   class Iterator {
    public:
-    using iterator_category = std::input_iterator_tag;   ///< pairs are made as they are read
-    using iterator_concept = std::forward_iterator_tag;  ///< it may be copied and read again
-    using value_type = NamePair;                         ///< what it reads
-    using difference_type = std::ptrdiff_t;              ///< pairs between two of them
-    using pointer = const NamePair*;                     ///< of no use: pairs lie nowhere
+    using iterator_category = std::input_iterator_tag;   ///< a dereference creates a pair
+    using iterator_concept = std::forward_iterator_tag;  ///< multi-pass
+    using value_type = NamePair;                         ///< type of a pair
+    using difference_type = std::ptrdiff_t;              ///< type of iterator differences
+    using pointer = const NamePair*;                     ///< unused: pairs are not stored
     using reference = NamePair;                          ///< a pair by value
 
-    /// Of no pairs.
+    /// Creates an iterator over no pairs.
     Iterator() noexcept = default;
-    /// At a pair of numbers, and the names of numbers.
+    /// Creates an iterator at a pair of body numbers; `names` maps body numbers to names.
     Iterator(const Pair* at, const BodyName* names) noexcept : at_(at), names_(names) {}
-    /// The pair, its smaller name first.
+    /// Returns the pair, its smaller name first.
     [[nodiscard]] NamePair operator*() const noexcept {
       const BodyName a = names_[at_->first];
       const BodyName b = names_[at_->second];
       return a < b ? NamePair{a, b} : NamePair{b, a};
     }
-    /// Goes on to the next pair.
+    /// Advances to the next pair.
     Iterator& operator++() noexcept {
       ++at_;
       return *this;
     }
-    /// Goes on to the next pair, and gives back where it was.
+    /// Advances to the next pair and returns the previous position.
     Iterator operator++(int) noexcept { return {at_++, names_}; }
-    /// At the same pair.
+    /// True if both are at the same pair.
     friend bool operator==(const Iterator& a, const Iterator& b) noexcept { return a.at_ == b.at_; }
 
    private:
@@ -74,20 +78,20 @@ class NamePairs {
     const BodyName* names_ = nullptr;
   };
 
-  /// No pairs.
+  /// Creates an empty range.
   NamePairs() noexcept = default;
-  /// Pairs of numbers, and the names of numbers.
+  /// Creates a range of pairs of body numbers; `names` maps body numbers to names.
   NamePairs(std::span<const Pair> pairs, const BodyName* names) noexcept
       : pairs_(pairs), names_(names) {}
-  /// How many there are.
+  /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
-  /// True if there are none.
+  /// True if there are no pairs.
   [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
-  /// At the first pair.
+  /// Returns an iterator at the first pair.
   [[nodiscard]] Iterator begin() const noexcept { return {pairs_.data(), names_}; }
-  /// Behind the last pair.
+  /// Returns an iterator past the last pair.
   [[nodiscard]] Iterator end() const noexcept { return {pairs_.data() + size(), names_}; }
-  /// Pair i, below `size()`; nothing is checked.
+  /// Returns pair i; i must be below `size()` (not checked).
   [[nodiscard]] NamePair operator[](std::size_t i) const noexcept {
     return *Iterator(pairs_.data() + i, names_);
   }
@@ -97,57 +101,59 @@ class NamePairs {
   const BodyName* names_ = nullptr;
 };
 
-/// A body where it belongs.
+/// A body on the rank that owns it.
 struct ClusterBody {
-  BodyName name = 0;  ///< everywhere
-  Key key;            ///< on the rank that it belongs to, for as long as it does
+  BodyName name = 0;  ///< name on all ranks
+  Key key;            ///< key on the owning rank, valid while it owns the body
 };
 
-/// Bodies that one rank adds.
+/// Bodies to be added by one rank.
 struct ClusterBatch {
-  std::span<const BodyName> names;  ///< new ones
-  BoxView boxes;                    ///< one of each
+  std::span<const BodyName> names;  ///< names not in use
+  BoxView boxes;                    ///< one box per name
 };
 
-/// 128 bits that tell sets of pairs apart.
+/// 128-bit digest of a set of pairs.
 struct ClusterDigest {
-  std::uint64_t high = 0;  ///< one sum of hashes over all pairs
-  std::uint64_t low = 0;   ///< and another
+  std::uint64_t high = 0;  ///< sum of a hash over all pairs
+  std::uint64_t low = 0;   ///< sum of a second hash
 
-  /// The same pairs.
+  /// True if both halves are equal: the sets of pairs are the same.
   friend constexpr bool operator==(const ClusterDigest&, const ClusterDigest&) noexcept = default;
 };
 
-/// What a cluster is made with.
+/// Options of a cluster, fixed at construction.
 struct ClusterOptions {
-  /// Partitions and bodies of hosted ranks are allocated here. It must outlive the cluster.
+  /// Source of the memory for partitions and bodies of hosted ranks. It must outlive the cluster.
   std::pmr::memory_resource* memory = default_memory();
-  /// On whose threads each rank's partition works.
+  /// How the partition of each rank runs work in parallel.
   Execution execution = Execution::parallel();
-  /// Of each rank's partition.
+  /// Structure of the partition of each rank.
   StructureKind structure = linear_bvh();
-  /// Space is cut anew after a frame in which the rank with most work had more than this times the
-  /// mean, unless the last cut did no better. At least 1.
+  /// Largest accepted load imbalance. After a frame in which the work of the busiest rank exceeds
+  /// this multiple of the mean, space is partitioned again, unless the last repartitioning did not
+  /// reduce the imbalance. At least 1.
   double imbalance = 1.1;
 };
 
-/// Counters of all ranks, the same on every one; never timings. Those of messages are of the last
-/// `self_pairs`, and of what was added since the one before.
+/// Counters of all ranks, equal on every rank. They contain no timings. Messages are counted from
+/// the previous `self_pairs` to the end of the last one, including messages of `add`.
 struct ClusterStatistics {
-  std::uint64_t bodies = 0;    ///< each once
-  std::uint64_t ghosts = 0;    ///< copies of bodies on ranks that they do not belong to
-  std::uint64_t pairs = 0;     ///< each once
-  std::uint64_t bytes = 0;     ///< sent from one rank to another
-  std::uint64_t messages = 0;  ///< from one rank to another
-  std::uint64_t migrated = 0;  ///< bodies that belong to another rank since
-  std::uint64_t cuts = 0;      ///< how often space was cut so far
-  /// Work of the rank that has most, over the mean. A rank's work is the boxes that it holds and
-  /// the pairs that it finds.
+  std::uint64_t bodies = 0;    ///< bodies, each counted once
+  std::uint64_t ghosts = 0;    ///< copies of bodies on ranks that do not own them
+  std::uint64_t pairs = 0;     ///< pairs, each counted once
+  std::uint64_t bytes = 0;     ///< bytes sent between ranks
+  std::uint64_t messages = 0;  ///< messages sent between ranks
+  std::uint64_t migrated = 0;  ///< bodies whose owning rank changed
+  std::uint64_t cuts = 0;      ///< number of repartitionings so far
+  /// Work of the busiest rank divided by the mean. The work of a rank is the number of boxes it
+  /// holds plus the number of pairs it finds.
   double imbalance = 1.0;
 };
 
-/// Boxes on any number of ranks, and which of them overlap: the pairs of one Partition of all of
-/// them, each once, whatever the number of ranks and wherever space is cut.
+/// Boxes distributed over any number of ranks, and the overlaps between them. The pairs are the
+/// same as in a single Partition of all boxes, each reported once, for any number of ranks and any
+/// partitioning of space.
 ///
 ///     winnow::LoopbackTransport transport(64);  // or make_mpi_transport: one rank in each process
 ///     winnow::Cluster cluster(transport);
@@ -155,81 +161,85 @@ struct ClusterStatistics {
 ///     cluster.self_pairs();
 ///     for (const winnow::NamePair pair : cluster.pairs(rank)) ...
 ///
-/// A body belongs to the rank in whose region its centre lies, and is told of there: it is moved
-/// and removed on that rank alone. It is copied to every rank whose region its box meets, so there
-/// is no width of halo to choose, and a box may be of any size; a copy is sent again only when the
-/// box moved. Two boxes that overlap do so at the point that on each axis is the larger of their
-/// low corners: the rank in whose region this lies holds both, and it alone reports them.
+/// The rank whose region contains the centre of a body owns the body; only this rank moves and
+/// removes it. A body is copied (as a ghost) to every rank whose region its box overlaps, so there
+/// is no halo width to choose, and boxes may be of any size. A copy is sent again only if the box
+/// moved. Two overlapping boxes share the point whose coordinates are the larger of their low
+/// corners on each axis; the rank whose region contains this point holds both boxes, and only this
+/// rank reports the pair (reference point method, Dittrich and Seeger 2000).
 ///
-/// Calls that are collective are made by every process, in the same order; others are a rank's own.
-/// A refused call changed nothing on any rank. Where a collective call answers
-/// `communication_failed`, or `out_of_memory` on any rank, all ranks get an error, and the cluster
-/// answers every later call with it. Nothing throws.
+/// Collective calls must be made by every process, in the same order; other calls concern one rank.
+/// A failed call changes nothing on any rank. If a collective call returns `communication_failed`,
+/// or `out_of_memory` on any rank, all ranks get an error, and every later call on the cluster
+/// returns this error. Nothing throws.
 class WINNOW_API Cluster {
  public:
-  /// An empty cluster of the ranks of `transport`, which must outlive it. Collective.
+  /// Creates an empty cluster on the ranks of `transport`, which must outlive it. Collective.
   explicit Cluster(Transport& transport, const ClusterOptions& options = {}) noexcept;
   ~Cluster();
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
 
-  /// `ok`; `invalid_argument` for options out of range; or what ended the cluster.
+  /// Returns `ok`; `invalid_argument` for options out of range; or the error that ended the
+  /// cluster.
   [[nodiscard]] Status status() const noexcept;
-  /// Of all processes.
+  /// Returns the number of ranks of all processes.
   [[nodiscard]] std::uint32_t ranks() const noexcept;
-  /// The first that this process hosts.
+  /// Returns the first rank that this process hosts.
   [[nodiscard]] std::uint32_t first_hosted() const noexcept;
-  /// How many it hosts.
+  /// Returns the number of ranks that this process hosts.
   [[nodiscard]] std::uint32_t hosted() const noexcept;
 
-  /// Adds a batch on each hosted rank, which may be empty, and answers each: `invalid_bounds`,
-  /// `size_mismatch`, or `invalid_key` where a name is there already, on whatever rank, or another
-  /// rank adds it in this call (then both are refused). A batch that is refused adds nothing;
-  /// others do. Bodies belong to the rank that added them until the next `self_pairs`. Collective;
-  /// O(bodies added), in four exchanges.
+  /// Adds a batch, possibly empty, on each hosted rank, and returns a status for each:
+  /// `invalid_bounds`; `size_mismatch`; `invalid_key` if a name is in use on any rank, or is added
+  /// by two ranks in this call (both batches are then refused). A refused batch adds nothing; the
+  /// other batches are added. The rank that added a body owns it until the next `self_pairs`.
+  /// Collective; O(bodies added), in four exchanges.
   Status add(std::span<const ClusterBatch> batches, std::span<Status> answers);
 
-  /// Gives bodies that belong to `rank` new boxes, all or none: `invalid_key` for any other, and
-  /// where one is named twice; `invalid_bounds`; `size_mismatch`. Takes effect with the next
+  /// Sets the boxes of bodies that `rank` owns, all or none: `invalid_key` for any other name, or a
+  /// name that occurs twice; `invalid_bounds`; `size_mismatch`. Takes effect with the next
   /// `self_pairs`.
   Status move(std::uint32_t rank, std::span<const BodyName> names, const BoxView& boxes);
-  /// The same by keys, which saves looking for names, and is fastest where ids ascend. Of one that
-  /// is there twice the last box counts.
+  /// As above, by keys. This avoids the lookup of names and is fastest if ids ascend. If a key
+  /// occurs twice, its last box is used.
   Status move(std::uint32_t rank, std::span<const Key> keys, const BoxView& boxes);
-  /// Removes bodies that belong to `rank`, all or none; `invalid_key` as above.
+  /// Removes bodies that `rank` owns, all or none; `invalid_key` as above.
   Status remove(std::uint32_t rank, std::span<const BodyName> names);
 
-  /// Finds all pairs. Before, bodies go where they belong, and copies to where they are met; after
-  /// a frame that was out of balance space is cut anew first. Collective.
+  /// Finds all pairs. First moves bodies to the ranks that own them and copies to the ranks that
+  /// they overlap; after an unbalanced frame, space is partitioned again before that. Collective.
   Status self_pairs(Order order = Order::fast);
-  /// Those that a hosted rank reports, each oriented by name; together, the ranks' are all. With
-  /// Order::canonical each rank's are sorted. To be read before the next `add`, from when on there
-  /// are none, or `self_pairs`.
+  /// Returns the pairs that a hosted rank reports, each with the smaller name first. All ranks
+  /// together report all pairs. With Order::canonical, the pairs of each rank are sorted. Valid
+  /// until the next `add` (after which there are none) or `self_pairs`.
   [[nodiscard]] NamePairs pairs(std::uint32_t rank) const noexcept;
-  /// Of all that `pairs` gives: the same on 1 to N ranks, wherever space is cut.
-  /// Collective; O(pairs).
+  /// Computes a digest of all pairs, which is the same for any number of ranks and any partitioning
+  /// of space. Collective; O(pairs).
   Status digest(ClusterDigest& digest);
 
-  /// How many bodies belong to a hosted rank.
+  /// Returns the number of bodies that a hosted rank owns.
   [[nodiscard]] std::size_t size(std::uint32_t rank) const noexcept;
-  /// The bodies of a hosted rank, in no order, with their boxes: what a checkpoint keeps. Added to
-  /// a cluster of any number of ranks they have the same pairs. `size_mismatch` unless both spans
-  /// have `size(rank)` entries. O(size).
+  /// Writes the bodies that a hosted rank owns, in no particular order, with their boxes: the
+  /// contents of a checkpoint. If they are added to a cluster of any number of ranks, its pairs are
+  /// the same. `size_mismatch` unless both spans have `size(rank)` entries. O(size).
   Status bodies(std::uint32_t rank, std::span<ClusterBody> bodies, std::span<Aabb> boxes) const;
-  /// The key of a body that belongs to `rank`; `invalid_key` if none of this name does. O(1).
+  /// Returns the key of a body that `rank` owns; `invalid_key` if it owns no body of this name.
+  /// O(1).
   Status key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept;
-  /// Bodies that the last `self_pairs` made a hosted rank's: new ones, and those of other ranks.
+  /// Returns the bodies that a hosted rank owns since the last `self_pairs`: new ones, and bodies
+  /// from other ranks.
   [[nodiscard]] std::span<const ClusterBody> arrived(std::uint32_t rank) const noexcept;
-  /// Names of those that the last `self_pairs` made another rank's.
+  /// Returns the names of the bodies that moved to other ranks in the last `self_pairs`.
   [[nodiscard]] std::span<const BodyName> departed(std::uint32_t rank) const noexcept;
 
-  /// Counters as they stand.
+  /// Returns the current counters.
   [[nodiscard]] ClusterStatistics statistics() const noexcept;
-  /// Bytes that the partitions and bodies of hosted ranks take.
+  /// Returns the bytes of partitions and bodies of the hosted ranks.
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   ClusterState* state_ = nullptr;
 };
 

@@ -8,25 +8,26 @@
 
 namespace winnow {
 
-/// How a cluster uses MPI.
+/// Options of the MPI transport.
 struct MpiOptions {
-  /// Seconds that a collective call waits for other ranks before it answers `communication_failed`:
-  /// longer than any rank computes between two of them. Positive.
+  /// Timeout in seconds after which a collective call returns `communication_failed` if another
+  /// rank does not respond. It must exceed the time that any rank computes between two collective
+  /// calls. Positive.
   double time_limit = 30.0;
 };
 
-/// Ranks that are the processes of an MPI communicator, one each; space is cut by Zoltan's
-/// recursive coordinate bisection. Part of the component `cluster` (`winnow::cluster`), which is
-/// there where winnow was built with MPI and Zoltan.
+/// Creates a transport with one rank per process of an MPI communicator; space is partitioned by
+/// the recursive coordinate bisection of Zoltan. It is in the component `cluster`
+/// (`winnow::cluster`), which exists if winnow was built with MPI and Zoltan.
 ///
-/// `communicator` is what MPI_Comm_c2f makes of one; it is duplicated. MPI has been initialized by
-/// then, and is finalized after `transport` is gone. Each step of a collective call begins with the
-/// ranks comparing which call they make. If a rank died, stays away longer than the limit or makes
-/// another call, the others get `communication_failed` within the limit, and the cluster ends on
-/// them: a program writes what it keeps and leaves by MPI_Abort, the only way out of MPI from
-/// there. If a rank stands still in the middle of a cut of space, that takes MPI_THREAD_SERIALIZED;
-/// under less, the others wait for it. Collective; `invalid_argument`, `out_of_memory` or
-/// `communication_failed` leave `transport` unchanged.
+/// `communicator` is the result of MPI_Comm_c2f; it is duplicated. Call MPI_Init before, and
+/// MPI_Finalize after `transport` is destroyed. In each step of a collective call the ranks first
+/// check that all of them make the same call. If a rank died, does not respond within the time
+/// limit, or makes another call, the others get `communication_failed` within the limit, and the
+/// cluster ends on them. The program should then save its data and call MPI_Abort, the only way to
+/// leave MPI in this state. If a rank hangs while space is partitioned, the time limit works only
+/// with MPI_THREAD_SERIALIZED; with a lower thread level the other ranks block. Collective;
+/// `invalid_argument`, `out_of_memory` and `communication_failed` leave `transport` unchanged.
 Status make_mpi_transport(int communicator, std::unique_ptr<Transport>& transport,
                           const MpiOptions& options = {});
 

@@ -18,101 +18,100 @@ namespace winnow {
 
 struct ClusterQueryState;
 
-/// Where a ray meets a body: as SceneHit, of a body of any rank.
+/// Hit of a ray on a body of any rank; see SceneHit.
 struct ClusterHit {
   BodyName name = 0;                   ///< the body
-  double t = 0.0;                      ///< in units of the direction
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit, of its surface, against the ray
-  double point[3] = {0.0, 0.0, 0.0};   ///< where they meet, in the world
-  std::uint32_t part = kWholeShape;    ///< triangle or child
+  double t = 0.0;                      ///< parameter of the hit, in units of the direction
+  double normal[3] = {0.0, 0.0, 0.0};  ///< unit normal of the surface, against the ray
+  double point[3] = {0.0, 0.0, 0.0};   ///< point of the hit, in the world
+  std::uint32_t part = kWholeShape;    ///< triangle or child; kWholeShape for a convex body
 };
 
-/// A body that a shape overlaps: as SceneOverlap.
+/// A body that overlaps a query shape; see SceneOverlap.
 struct ClusterOverlap {
   BodyName name = 0;                 ///< the body
-  std::uint32_t part = kWholeShape;  ///< a part of it that does
+  std::uint32_t part = kWholeShape;  ///< one of its parts that overlap
 };
 
-/// A body near a point: as SceneDistance.
+/// Distance from a point to a body; see SceneDistance.
 struct ClusterDistance {
   BodyName name = 0;                   ///< the body
-  double distance = 0.0;               ///< negative within a solid
+  double distance = 0.0;               ///< negative inside a solid
   double error_bound = 0.0;            ///< the true distance is within distance +- it
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit, from the point to the body
-  double point[3] = {0.0, 0.0, 0.0};   ///< of the body, in the world
-  std::uint32_t part = kWholeShape;    ///< the closest of its parts
+  double normal[3] = {0.0, 0.0, 0.0};  ///< unit vector from the point to the body
+  double point[3] = {0.0, 0.0, 0.0};   ///< closest point of the body, in the world
+  std::uint32_t part = kWholeShape;    ///< closest part
 };
 
-/// A shape at a pose, which bodies may overlap.
+/// A shape at a pose, for overlap queries.
 struct ShapeProbe {
   ShapeId shape;  ///< convex or composite
-  Pose pose;      ///< where it is
+  Pose pose;      ///< pose in the world
 };
 
-/// A point that bodies may be near.
+/// A point, for nearest-body queries.
 struct NearestProbe {
   double point[3] = {0.0, 0.0, 0.0};                        ///< finite
-  std::size_t count = 1;                                    ///< at most so many
-  double radius = std::numeric_limits<double>::infinity();  ///< no farther than this; >= 0
+  std::size_t count = 1;                                    ///< largest number of bodies
+  double radius = std::numeric_limits<double>::infinity();  ///< largest distance; >= 0
 };
 
-/// What one rank asks: questions, and whom they are about. The filter has no predicate
-/// (`unsupported`).
+/// Queries of one rank. The filter must not have a predicate (`unsupported`).
 template <typename Question>
 struct ClusterQuestions {
-  std::span<const Question> questions;  ///< of that rank
-  Filter filter{};                      ///< of all of them
+  std::span<const Question> questions;  ///< queries of that rank
+  Filter filter{};                      ///< filter of all of them
 };
 
-/// What one rank is answered: to question i, answers[first[i]] to answers[first[i + 1]], that
-/// excluded.
+/// Results of one rank: answers [first[i], first[i + 1]) belong to query i.
 template <typename Answer>
 struct ClusterAnswers {
-  std::span<const Answer> answers;     ///< to all questions, one after the other
-  std::span<const std::size_t> first;  ///< one more than there are questions
+  std::span<const Answer> answers;     ///< results of all queries, in the order of the queries
+  std::span<const std::size_t> first;  ///< number of queries + 1 entries
 };
 
-/// Questions to the exact shapes of all ranks of a ClusterScene, answered as SceneQueries would
-/// answer them of one Scene to which the bodies were added in the order of their names, bit for
-/// bit. Each hosted rank asks a batch, which may be empty, and gets its own answers; those who have
-/// nothing to ask take part. Bodies are where they were moved to last: they go where they belong
-/// first, as in `collide`.
+/// Queries against the exact shapes of all ranks of a ClusterScene. Results equal, bit for bit, the
+/// results of SceneQueries on one Scene to which the bodies were added in the order of their names.
+/// Each hosted rank passes a batch of queries, possibly empty, and gets its own results. A rank
+/// without queries must take part too. Queries use the last poses given: as in `collide`, bodies
+/// first move to the ranks that own them.
 ///
-/// All questions are collective. A batch with a bad question is refused as SceneQueries refuses it;
-/// others are answered. Answers are valid until the next question of their kind.
+/// All queries are collective. A batch with an invalid query is refused as by SceneQueries; the
+/// other batches are computed. Results are valid until the next query of the same kind.
 class WINNOW_API ClusterQueries {
  public:
-  /// Asks `cluster`, which must outlive this.
+  /// Creates queries on `cluster`, which must outlive this object.
   explicit ClusterQueries(ClusterScene& cluster) noexcept;
   ~ClusterQueries();
   ClusterQueries(const ClusterQueries&) = delete;
   ClusterQueries& operator=(const ClusterQueries&) = delete;
 
-  /// The hit of each ray with the least t, of equal ones that with the least name. A ray is sent to
-  /// the ranks whose regions it meets.
+  /// Finds the hit of least t of each ray; among equal t, the least name. A ray is sent to the
+  /// ranks whose regions it crosses.
   Status closest(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
-  /// The first hit of every body that each ray meets, sorted by t and then by name.
+  /// Finds the first hit on every body that each ray hits, sorted by t, then by name.
   Status all(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
-  /// Whether each ray hits anything.
+  /// Finds out for each ray whether it hits anything.
   Status any(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
-  /// Every body that each shape shares a point with, sorted by name. A shape is sent to the ranks
-  /// whose regions its box meets.
+  /// Finds every body that shares a point with each shape, sorted by name. A shape is sent to the
+  /// ranks whose regions its box overlaps.
   Status overlap(std::span<const ClusterQuestions<ShapeProbe>> shapes, std::span<Status> answers);
-  /// The bodies nearest to each point, sorted by distance and then by name. A point is sent to all
-  /// ranks.
+  /// Finds the bodies nearest to each point, sorted by distance, then by name. A point is sent to
+  /// all ranks.
   Status nearest(std::span<const ClusterQuestions<NearestProbe>> points, std::span<Status> answers);
 
-  /// Of the last `closest` or `all` of a hosted rank.
+  /// Returns the results of the last `closest` or `all` of a hosted rank.
   [[nodiscard]] ClusterAnswers<ClusterHit> hits(std::uint32_t rank) const noexcept;
-  /// Of the last `any` of a hosted rank: not 0 for each ray that hits something.
+  /// Returns the results of the last `any` of a hosted rank: nonzero for each ray that hits
+  /// something.
   [[nodiscard]] std::span<const std::uint8_t> blocked(std::uint32_t rank) const noexcept;
-  /// Of the last `overlap` of a hosted rank.
+  /// Returns the results of the last `overlap` of a hosted rank.
   [[nodiscard]] ClusterAnswers<ClusterOverlap> overlaps(std::uint32_t rank) const noexcept;
-  /// Of the last `nearest` of a hosted rank.
+  /// Returns the results of the last `nearest` of a hosted rank.
   [[nodiscard]] ClusterAnswers<ClusterDistance> neighbours(std::uint32_t rank) const noexcept;
 
  private:
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   ClusterQueryState* state_ = nullptr;
 };
 

@@ -12,29 +12,30 @@
 
 namespace winnow {
 
-/// A plane that cuts a region of space in two. The cuts of a cluster are a binary tree, the root
-/// first; its leaves are ranks.
+/// A plane that divides a region of space. The cuts of a cluster form a binary tree, root first;
+/// its leaves are ranks.
 struct RegionCut {
-  float at = 0.0F;         ///< finite; coordinates less than it lie below
+  float at = 0.0F;         ///< finite; smaller coordinates are below the plane
   std::uint32_t axis = 0;  ///< 0, 1 or 2
-  /// What lies below and at or above: the number of another cut, or `~rank`, which is negative.
+  /// Children: below the plane, and at or above it. Each is the index of another cut, or `~rank`,
+  /// which is negative.
   std::array<std::int32_t, 2> sides{~0, ~0};
 };
 
-/// What a rank has to do, for cuts to share out: a column of boxes, and of each how much work it
-/// made, in counts.
+/// Work of a rank, input of a partitioning of space: a column of boxes, and the amount of work that
+/// each box caused.
 struct CutWork {
   std::span<const Aabb> boxes;           ///< finite or not
-  std::span<const std::uint32_t> works;  ///< one of each box, at least 1
+  std::span<const std::uint32_t> works;  ///< one count per box, at least 1
 };
 
-/// What one rank sends another: columns, which are sent from where they lie.
+/// A message from one rank to another: columns, sent from where they are stored.
 struct Parcel {
-  std::uint32_t from = 0;                               ///< rank
-  std::uint32_t to = 0;                                 ///< rank
-  std::array<std::span<const std::byte>, 4> columns{};  ///< each of a type of its own
+  std::uint32_t from = 0;                               ///< sending rank
+  std::uint32_t to = 0;                                 ///< receiving rank
+  std::array<std::span<const std::byte>, 4> columns{};  ///< each of its own type
 
-  /// Of all columns.
+  /// Returns the bytes of all columns.
   [[nodiscard]] std::size_t bytes() const noexcept {
     std::size_t sum = 0;
     for (const auto& column : columns) sum += column.size();
@@ -42,63 +43,64 @@ struct Parcel {
   }
 };
 
-/// What a process has to do while parcels are on their way.
+/// A function that a process runs while messages are in transit.
 struct Meanwhile {
   void (*work)(void* context) noexcept = nullptr;  ///< null: nothing
-  void* context = nullptr;                         ///< handed to `work`
+  void* context = nullptr;                         ///< passed to `work`
 
-  /// Does it.
+  /// Runs the function.
   void operator()() const noexcept {
     if (work != nullptr) work(context);
   }
 };
 
-/// How the ranks of a cluster talk to each other. Each process hosts some of them, which follow
-/// each other: over MPI one, within one process all. All calls are collective: every process makes
-/// the same ones in the same order. One that fails (`communication_failed`) fails on every process
-/// within the transport's limit of time, and so does every later one.
+/// Communication between the ranks of a cluster. Each process hosts a consecutive range of ranks:
+/// one with MPI, all within one process. All calls are collective: every process makes the same
+/// calls in the same order. A call that fails (`communication_failed`) fails on every process
+/// within the time limit of the transport, and so does every later call.
 class WINNOW_API Transport {
  public:
   virtual ~Transport() = default;
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
-  /// Of all processes; at least 1.
+  /// Returns the number of ranks of all processes; at least 1.
   [[nodiscard]] virtual std::uint32_t ranks() const noexcept = 0;
-  /// The first that this process hosts.
+  /// Returns the first rank that this process hosts.
   [[nodiscard]] virtual std::uint32_t first_hosted() const noexcept = 0;
-  /// How many it hosts; at least 1.
+  /// Returns the number of ranks that this process hosts; at least 1.
   [[nodiscard]] virtual std::uint32_t hosted() const noexcept = 0;
 
-  /// Names the collective call of a cluster that what follows is part of, for a transport that
-  /// compares what processes do. Nothing otherwise.
+  /// Called at the start of each collective call of a cluster, with its number, for transports that
+  /// check that all processes make the same call. Does nothing by default.
   virtual void begin(std::uint32_t call) noexcept { static_cast<void>(call); }
 
-  /// Sends parcels of hosted ranks, at most one from each rank to each, and gives those that are
-  /// for hosted ranks, sorted by `to` and then by `from`. They are valid until the next exchange,
-  /// and as long as what was sent by this process stays where it was. Calls `meanwhile` once, if
-  /// nothing has failed: best when everything that can be sent is on its way.
+  /// Sends messages of hosted ranks, at most one from each rank to each other rank, and returns the
+  /// messages to hosted ranks, sorted by `to`, then by `from`. They are valid until the next
+  /// exchange, as long as the sent data of this process are not moved. Calls `meanwhile` once
+  /// unless an error occurred, preferably when all sends are under way.
   virtual Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
                           const Meanwhile& meanwhile) = 0;
 
-  /// Replaces each number by the sum over all processes, and by the greatest, respectively.
+  /// Replaces each number of `sums` by its sum, and each number of `greatest` by its maximum, over
+  /// all processes.
   virtual Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) = 0;
 
-  /// Cuts space so that ranks get about as much work each: `ranks() - 1` cuts, the same on every
-  /// process. One entry of `work` for each hosted rank. Where the planes lie decides on no answer.
+  /// Partitions space so that the ranks get about equal work: `ranks() - 1` cuts, the same on every
+  /// process. `work` has one entry per hosted rank. The position of the planes affects no result.
   virtual Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) = 0;
 
  protected:
   Transport() = default;
 };
 
-/// All ranks in this process: for tests, and to count what a number of ranks would send and hold.
-/// It cuts by recursive bisection (Berger and Bokhari 1987: "A Partitioning Strategy for Nonuniform
-/// Problems on Multiprocessors"), across the axis on which fewest boxes are cut in two. Parcels are
-/// not copied.
+/// A transport with all ranks in this process, for tests, and to measure how much data a number of
+/// ranks would send and store. It partitions space by recursive bisection (Berger and Bokhari 1987:
+/// "A Partitioning Strategy for Nonuniform Problems on Multiprocessors"), across the axis on which
+/// the fewest boxes are cut. Messages are not copied.
 class WINNOW_API LoopbackTransport final : public Transport {
  public:
-  /// 1 to 65,536 ranks; other numbers are taken for the nearest of these.
+  /// Creates 1 to 65,536 ranks; other numbers are clamped.
   explicit LoopbackTransport(std::uint32_t ranks) noexcept;
 
   [[nodiscard]] std::uint32_t ranks() const noexcept override { return ranks_; }

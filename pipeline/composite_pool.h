@@ -1,5 +1,8 @@
 #pragma once
 
+// Storage of meshes, height fields and compounds. A Scene uses it through the interface MidPhase,
+// which it implements in composites/; the trees of meshes are in mesh/.
+
 #include <winnow/core/export.h>
 #include <winnow/core/large_pages.h>
 #include <winnow/core/point_view.h>
@@ -20,117 +23,127 @@ class IdSet;
 struct Composites;
 }  // namespace mid
 
-/// A shape and where it stands in its compound.
+/// A shape and its pose in a compound.
 struct CompoundChild {
-  ShapeId shape;  ///< convex, of the ShapePool; or a mesh or height field of the CompositePool
+  ShapeId shape;  ///< convex, from the ShapePool; or a mesh or height field of the CompositePool
   Pose pose;      ///< in the frame of the compound
 };
 
-/// A part of a compound, as its child knows it.
+/// A part of a compound: a child, and a part of that child.
 struct CompoundPart {
-  std::uint32_t child =
-      kWholeShape;                   ///< in the order of the children; kWholeShape if there is none
-  std::uint32_t part = kWholeShape;  ///< the triangle of a surface; kWholeShape of a convex child
+  std::uint32_t child = kWholeShape;  ///< index of the child; kWholeShape if there is no such part
+  std::uint32_t part = kWholeShape;   ///< triangle of a surface; kWholeShape for a convex child
 };
 
-/// Shapes made of many: triangle meshes, height fields, compounds of convex shapes and of these.
-/// Bodies refer to them by id and may share them; one mesh may stand at many poses and in many
-/// scales. Queries are taken into the shape's own frame: what moves a mesh costs nothing of its
-/// tree.
+/// Shapes made of many primitives: triangle meshes, height fields, and compounds of convex shapes
+/// and of these surfaces. Bodies refer to shapes by id and may share them; one mesh may be used at
+/// many poses and scales. Queries are transformed into the frame of the shape, so moving a mesh
+/// does not change its tree.
 class WINNOW_API CompositePool final : public MidPhase {
  public:
-  /// `shapes` holds the convex children of compounds and must outlive this.
+  /// Creates an empty pool. `shapes` contains the convex children of compounds and must outlive the
+  /// pool.
   explicit CompositePool(const ShapePool& shapes,
                          std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~CompositePool() override;
 
-  /// See TriangleMesh::build.
+  /// Adds a mesh; see TriangleMesh::build for parameters and errors.
   Status add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
                   const MeshOptions& options = {},
                   const Execution& execution = Execution::parallel());
-  /// The same triangles, multiplied by `scale` along the axes of the mesh: an id of its own that
-  /// shares them. Finite factors, none zero; negative ones mirror. Scales of scales multiply. The
-  /// triangles live until the last id is removed. `invalid_argument` for factors that, multiplied,
-  /// are not between 1e-100 and 1e100.
+  /// Adds a scaled instance of a mesh: a new id that shares the triangles, multiplied by `scale`
+  /// along the axes of the mesh. Factors are finite and not zero; negative ones mirror. Scaling a
+  /// scaled instance multiplies the factors. The triangles live until the last id is removed.
+  /// `invalid_argument` if a factor, or a product, is not between 1e-100 and 1e100.
   Status add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id);
-  /// A mesh that was saved (TriangleMesh::save), with a scale: see `load` and `add_scaled` for the
-  /// errors. O(bytes).
+  /// Adds a mesh from a snapshot (TriangleMesh::save), with a scale. Errors as for `load` and
+  /// `add_scaled`. O(bytes).
   Status add_saved_mesh(std::span<const std::byte> saved, const std::array<double, 3>& scale,
                         ShapeId& id, const Execution& execution = Execution::parallel());
-  /// A height field that was saved (HeightField::save). O(bytes).
+  /// Adds a height field from a snapshot (HeightField::save). O(bytes).
   Status add_saved_height_field(std::span<const std::byte> saved, ShapeId& id);
-  /// New places for the vertices of a mesh, seen by all its scaled ids. See TriangleMesh::refit.
+  /// Moves the vertices of a mesh, for all its scaled instances; see TriangleMesh::refit.
   Status refit_mesh(ShapeId mesh, const PointView& vertices,
                     const Execution& execution = Execution::parallel());
-  /// See HeightField::build.
+  /// Adds a height field; see HeightField::build for errors.
   Status add_height_field(const HeightSamples& samples, ShapeId& id);
-  /// New heights for some samples of a field; see HeightField::update. `invalid_key` for an id that
-  /// is none of a field.
+  /// Replaces some heights of a height field; see HeightField::update. `invalid_key` if the id is
+  /// not of a height field.
   Status update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
                              const HeightSamples& samples);
-  /// A tree of children: convex shapes, meshes (of any scale, one-sided or not) and height fields;
-  /// one shape may be several of them. Parts are numbered child by child, in their order: a convex
-  /// child is one, of a surface each triangle is one (of a field those of holes too), so that
-  /// `part` tells what is meant. `invalid_shape` if there are no children, `invalid_key` for one
-  /// that neither pool has or that is a compound itself, `invalid_pose`, `too_many_objects` beyond
-  /// 2^31 parts. Convex children must stay in the ShapePool while the compound lives; surfaces
-  /// cannot be removed. Where one of these is changed in place, the compound follows.
+  /// Adds a compound, a tree of children: convex shapes, meshes (of any scale, one-sided or not)
+  /// and height fields. One shape may occur several times. Parts are numbered child by child: a
+  /// convex child is one part, each triangle of a surface is one (for height fields, triangles of
+  /// holes too). `part` in results is this number. `invalid_shape` if there are no children;
+  /// `invalid_key` for a child that neither pool contains or that is a compound; `invalid_pose`;
+  /// `too_many_objects` beyond 2^31 parts. While the compound exists, its convex children must stay
+  /// in the ShapePool, and its surfaces cannot be removed. If a surface is changed in place, the
+  /// compound changes too.
   Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
 
-  /// Gives the triangles of a mesh or a height field a front, or two sides again. Of a mesh it is
-  /// where corners run counter-clockwise in the mesh's own frame, whatever its scale mirrors; of a
-  /// field it is up. A triangle does not meet what stands behind it, that is, of which the middle
-  /// (of its box in the axes of the world, each convex part by itself, of casts and rays where they
-  /// start) is behind the triangle's plane: neither contacts nor overlaps, distances, rays or
-  /// casts. What stands in front is met as ever, however deep it is, and pushed out to the front:
-  /// where the shortest way out leads to the back, normals are that of the face, and a shape that
-  /// does not touch is no contact. A half-space has no middle and meets both sides. The id's own:
-  /// that of the same mesh by another scale (which may be 1) has its own. Two-sided at first.
-  /// `invalid_key` for an id that is none of a mesh or field.
+  /// Makes the triangles of a mesh or height field one-sided, or two-sided again (the default). The
+  /// front of a mesh triangle is the side from which its vertices run counter-clockwise in the
+  /// unscaled mesh, even if the scale mirrors; the front of a height field is up.
+  ///
+  /// A triangle does not collide with an object behind it: one whose centre is behind the plane of
+  /// the triangle. The centre is the centre of the object's box in world axes; for composite
+  /// objects, of the box of each convex part; for casts and rays, of the box at the start. Such
+  /// pairs have no contacts, overlaps, distances or hits. Objects in front collide as usual,
+  /// however deep they are, and are pushed to the front: if the shortest way out leads to the back,
+  /// the normal of the face is used, and a shape that does not touch is no contact. A half-space
+  /// has no centre and collides with both sides.
+  ///
+  /// The flag belongs to the id: scaled instances of the same mesh (also of scale 1) have their
+  /// own. `invalid_key` if the id is not of a mesh or height field.
   Status set_one_sided(ShapeId surface, bool one_sided = true);
-  /// True for ids of surfaces that were told so.
+  /// True if the triangles of this surface are one-sided.
   [[nodiscard]] bool is_one_sided(ShapeId surface) const noexcept;
 
-  /// Gives a mesh an inside, or takes it away again. Questions that ask for distances and overlaps
-  /// (SceneQueries::overlap, overlaps, distance, least_distance and nearest) then take what lies
-  /// within for a part of the solid: of a point or a shape that is held without meeting the surface
-  /// the distance is that from the surface, negative. Contacts, sensors, rays and casts are those
-  /// of the surface, as of any mesh. The id's own, as what `set_one_sided` says; children of
-  /// compounds have it, too. `invalid_key` for an id that is none of a mesh; `invalid_shape` unless
-  /// every edge is that of two triangles, which run along it in opposite ways (vertices at the same
-  /// place count as one), and corners run counter-clockwise seen from outside, whatever a scale
-  /// mirrors. What is refitted stays a solid: it is to stay closed. O(n log n).
+  /// Makes a closed mesh solid, or hollow again. Queries for distances and overlaps
+  /// (SceneQueries::overlap, overlaps, distance, least_distance and nearest) then count its
+  /// interior as part of the shape: for a point or shape inside that does not touch the surface,
+  /// the distance is minus the distance to the surface. Contacts, sensors, rays and casts still use
+  /// only the surface.
+  ///
+  /// The flag belongs to the id, as for `set_one_sided`; it also applies if the mesh is a child of
+  /// a compound. `invalid_key` if the id is not of a mesh. `invalid_shape` unless every edge
+  /// belongs to two triangles that run along it in opposite directions (vertices at the same
+  /// position count as one), and vertices run counter-clockwise as seen from outside, in the
+  /// unscaled mesh, even if the scale mirrors. A refit keeps the flag; the caller keeps the mesh
+  /// closed. O(n log n).
   Status set_solid(ShapeId mesh, bool solid = true);
-  /// True for ids of meshes that were told so.
+  /// True if this mesh is solid.
   [[nodiscard]] bool is_solid(ShapeId mesh) const noexcept;
 
-  /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
-  /// `out_of_memory` leaves `out` as it was. O(bytes).
+  /// Appends a snapshot of all shapes and free indices. pipeline/FORMATS.md has the format.
+  /// `out_of_memory` leaves `out` unchanged. O(bytes).
   Status save(Column<std::byte>& out) const;
-  /// Becomes the pool that was saved, ids, scales and numbers of parts as they were; the ShapePool
-  /// has to be loaded before. Trees of meshes are read, not built: O(bytes). `invalid_argument` for
-  /// anything that was not saved so, whoever made it, children that the ShapePool does not have
-  /// among it, and `out_of_memory`, leave the pool as it was.
+  /// Replaces the shapes by a snapshot, with their ids, scales and part numbers; load the ShapePool
+  /// first. Trees of meshes are read, not built: O(bytes). `invalid_argument` if the bytes are not
+  /// a valid snapshot (untrusted bytes are safe) or have children that the ShapePool does not
+  /// contain; it and `out_of_memory` change nothing.
   Status load(std::span<const std::byte> saved, const Execution& execution = Execution::parallel());
 
-  /// Bodies must not use the id any more. `invalid_argument` for a surface that is the child of a
-  /// compound.
+  /// Removes a shape. Bodies must not use its id any more. `invalid_argument` for a surface that is
+  /// a child of a compound.
   Status remove(ShapeId id);
-  /// Shapes of a kind; of meshes the scaled ids count as well.
+  /// Returns the number of shapes of a kind; scaled instances of meshes count too.
   [[nodiscard]] std::size_t size(CompositeKind kind) const noexcept;
-  /// Null for ids of other kinds, or that are not there.
+  /// Returns the mesh of an id; null if the id is not of a mesh in the pool.
   [[nodiscard]] const TriangleMesh* mesh(ShapeId id) const noexcept;
-  /// By what a mesh is multiplied along its axes; ones for ids of other kinds.
+  /// Returns the scale of a mesh along its axes; ones if the id is not of a mesh.
   [[nodiscard]] std::array<double, 3> scale(ShapeId mesh) const noexcept;
-  /// Null for ids of other kinds, or that are not there. Valid until the field is removed.
+  /// Returns the height field of an id; null if the id is not of a height field in the pool. Valid
+  /// until the field is removed.
   [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;
-  /// In the order in which they were given; empty for ids of other kinds.
+  /// Returns the children of a compound in the order in which they were given; empty for other ids.
   [[nodiscard]] std::span<const CompoundChild> children(ShapeId compound) const noexcept;
-  /// How many parts a shape has, which are numbered from 0 on: triangles of a mesh or height field
-  /// (of the latter also those of holes), parts of a compound as `add_compound` says. 0 for ids
-  /// that are not there.
+  /// Returns the number of parts, which are numbered from 0: triangles of a mesh or height field
+  /// (for height fields, including triangles of holes), or parts of a compound as in
+  /// `add_compound`. 0 for ids that are not in the pool.
   [[nodiscard]] std::uint32_t parts(ShapeId id) const noexcept;
-  /// What part number `part` of a compound is (that of contacts, hits and overlaps). O(log n).
+  /// Returns which child, and which part of it, the part number of a contact, hit or overlap refers
+  /// to. O(log n).
   [[nodiscard]] CompoundPart part(ShapeId compound, std::uint32_t part) const noexcept;
 
   [[nodiscard]] bool contains(ShapeId id) const noexcept override;
@@ -161,15 +174,15 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] bool holds(ShapeId id, const Pose& pose, const double point[3]) const override;
   [[nodiscard]] bool holds(ShapeId id, const Pose& pose, ShapeId other,
                            const Pose& other_pose) const override;
-  /// Meshes, fields, compounds and what the pool itself holds, all under the resource it was given.
+  /// Returns the bytes of meshes, height fields, compounds and the pool itself.
   [[nodiscard]] Footprint footprint() const noexcept override;
 
  private:
   [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
   [[nodiscard]] bool has_solids() const noexcept;
   [[nodiscard]] Status tell(mid::IdSet& set, ShapeId surface, bool now) noexcept;
-  /// Null if memory is refused. Made by the first shape, so that a pool without any takes no
-  /// memory.
+  /// Returns the state, which is created for the first shape: a pool without shapes takes no
+  /// memory. Null if memory is refused.
   [[nodiscard]] mid::Composites* state() noexcept;
 
   const ShapePool& shapes_;

@@ -12,36 +12,36 @@
 
 namespace winnow {
 
-/// At most so many groups are made by Scene::colours, the last of them the rest.
+/// Largest number of groups made by Scene::colours; the last one is kRestColour.
 inline constexpr std::uint32_t kContactColours = 64;
-/// The group of pairs that found no colour: bodies of theirs have more contacts than there are
-/// colours. They share bodies and are to be solved one after the other, after all others.
+/// The group of pairs that no other colour could hold, because a body has more contacts than there
+/// are colours. Its pairs share bodies: solve them one by one, after all other groups.
 inline constexpr std::uint32_t kRestColour = kContactColours - 1;
 
-/// Pairs of Contacts in groups, as columns of indices beside them: Scene::islands and
-/// Scene::colours. The caller's, reused from frame to frame; void once the Contacts are filled
-/// anew.
+/// Groups of the pairs of Contacts, as columns of indices; the result of Scene::islands and
+/// Scene::colours. The caller keeps the object from frame to frame. It is invalid once the Contacts
+/// are filled again.
 class WINNOW_API ContactGroups {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// use.
+  /// Creates an empty grouping. Every allocation comes from `memory`, which must outlive the
+  /// object; there are none before the first use.
   explicit ContactGroups(std::pmr::memory_resource* memory = default_memory()) noexcept
       : group_(memory), first_(memory), order_(memory), of_body_(memory), colours_(memory) {}
 
-  /// Groups, none of them empty.
+  /// Returns the number of groups; none of them is empty.
   [[nodiscard]] std::size_t size() const noexcept { return first_.empty() ? 0 : first_.size() - 1; }
-  /// By pair of the contacts.
+  /// Returns the group of each pair of the contacts.
   [[nodiscard]] std::span<const std::uint32_t> group() const noexcept {
     return {group_.data(), group_.size()};
   }
-  /// The pairs of a group, ascending.
+  /// Returns the pairs of a group, ascending.
   [[nodiscard]] std::span<const std::uint32_t> pairs(std::size_t group) const noexcept {
     return {order_.data() + first_[group], first_[group + 1] - first_[group]};
   }
 
-  /// Forgets everything; memory is kept.
+  /// Removes all groups; memory is kept.
   void clear() noexcept;
-  /// What can be read under `results`, the rest under `scratch`.
+  /// Returns the bytes of readable columns under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -51,7 +51,7 @@ class WINNOW_API ContactGroups {
   Column<std::uint32_t> group_;
   Column<std::uint32_t> first_;
   Column<std::uint32_t> order_;
-  /// By id of a body: the one of its island that it was joined to; which colours it has.
+  /// By body id: the parent body in its island (union-find), and the set of colours in use.
   Column<std::uint32_t> of_body_;
   Column<std::uint64_t> colours_;
 };

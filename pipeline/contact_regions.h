@@ -12,54 +12,56 @@
 
 namespace winnow {
 
-/// Manifolds of one pair of bodies whose normals are within 5 degrees of that of the deepest of
-/// them are one region: the angle by which Jolt tells its manifolds apart. The cosine.
+/// Cosine of 5 degrees. Manifolds of a pair of bodies whose normals are within this angle of the
+/// normal of the deepest one form a region. Jolt uses the same angle.
 inline constexpr double kRegionCosine = 0.99619469809174555;
 
-/// What is left of the manifolds of one region.
+/// The merged manifold of one contact region.
 struct ContactRegion {
-  /// Of the deepest manifold: unit, from a to b, in the axes of the world.
+  /// Normal of the deepest manifold: a unit vector from a to b, in world axes.
   double normal[3];
-  double distance;     ///< the smallest of the region
-  double error_bound;  ///< the largest of the region
-  /// The parts of the deepest manifold.
+  double distance;     ///< smallest distance of the region
+  double error_bound;  ///< largest error bound of the region
+  /// Parts of the deepest manifold.
   std::uint32_t part[2];
-  /// The deepest point of all, which comes first, and those that span the widest area: each of
-  /// them a corner of what two parts share, with the position and depth that it has there. Relative
-  /// to the position of body a of the pair of bodies. Features tell the points of a region apart
-  /// and are the same from frame to frame, but name nothing; a vertex keeps its own while it slides
-  /// over faces of other parts.
+  /// Number of points: the deepest point of the region, which is first, and points that span the
+  /// largest area. Each is a vertex of the contact polygon of two parts, with its own position and
+  /// depth. Positions are relative to the position of body a of the pair of bodies. Features
+  /// distinguish the points of a region and persist from frame to frame, but do not identify a
+  /// geometric feature; a vertex keeps its feature while it slides over faces of other parts.
   std::uint32_t count;
-  ContactPoint point[kManifoldPoints];  ///< of which the first `count` are set
+  ContactPoint point[kManifoldPoints];  ///< only the first `count` are set
 };
 
-/// Regions of contact of pairs of bodies: what MidPhase::reduce makes of the manifolds of their
-/// parts. The caller's, reused from frame to frame.
+/// Contact regions of pairs of bodies, computed by MidPhase::reduce from the manifolds of their
+/// parts. The caller keeps the object from frame to frame.
 class WINNOW_API ContactRegions {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// use.
+  /// Creates an empty list. Every allocation comes from `memory`, which must outlive the object;
+  /// there are none before the first use.
   explicit ContactRegions(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// Pairs of bodies.
+  /// Returns the number of pairs of bodies.
   [[nodiscard]] std::size_t size() const noexcept { return count.size(); }
-  /// Regions of pair i, that of the deepest manifold first; none if it does not touch.
+  /// Returns the regions of a pair, the one with the deepest manifold first; empty if the pair does
+  /// not touch.
   [[nodiscard]] std::span<const ContactRegion> of(std::size_t pair) const noexcept {
     return {regions.data() + first[pair], count[pair]};
   }
 
-  /// Forgets all regions; memory is kept.
+  /// Removes all regions; memory is kept.
   void clear() noexcept;
-  /// Regions under `results`, the rest under `scratch`.
+  /// Returns the bytes of regions under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
-  /// Places for as many regions as manifolds touch: those of pair i are [first[i], first[i + 1]),
-  /// of which the first count[i] are taken.
+  /// Regions, with room for one per manifold that touches. The room of pair i is [first[i], first[i
+  /// + 1]); only the first count[i] elements are set.
   Column<ContactRegion> regions;
-  /// Where the places of each pair begin, and where the last ones end.
+  /// Start of each pair's room, and the end of the last.
   Column<std::uint32_t> first;
-  Column<std::uint32_t> count;  ///< regions of each pair
-  /// Of each pair of parts: where its answer is, which answers touch, and their regions.
+  Column<std::uint32_t> count;  ///< number of regions of each pair
+  /// For each pair of parts: the position of its answer; then answers that touch, and their
+  /// regions.
   Column<std::uint32_t> scratch;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What is asked about pairs of bodies and what a contact is. Plain structs on purpose: kernel files
-// include this.
+// Levels of detail of contacts, and contact points. Plain structs, because kernel files include
+// this.
 
 #include <winnow/core/export.h>
 
@@ -9,15 +9,15 @@
 
 namespace winnow {
 
-/// How much is asked about pairs. A lower level does not pay for a higher one.
+/// How much is computed about pairs. A lower level does not pay for a higher one.
 enum class ContactLevel : std::uint8_t {
-  /// Of a scene alone: pairs of bodies whose boxes, grown by half of the margin, meet.
+  /// Pairs of bodies whose boxes, enlarged by half of the margin, overlap. Only for scenes.
   pairs,
-  /// Those that share a point, and which of their parts do.
+  /// Pairs that share a point, and the parts that do.
   boolean,
-  /// Those no farther apart than the margin: distance or depth, normal, closest points.
+  /// Pairs whose gap is at most the margin: distance or depth, normal, closest points.
   distance,
-  /// The same with contact points.
+  /// As `distance`, with contact points instead of closest points.
   manifold,
 };
 
@@ -27,38 +27,38 @@ struct BodyPair {
   std::uint32_t b = 0;  ///< index of the second
 };
 
-/// The part of a shape that has no parts: all of a convex one.
+/// Part number of a convex shape, which has no parts.
 inline constexpr std::uint32_t kWholeShape = ~0U;
 
-/// One point of a manifold: halfway between the two surfaces, in the axes of the world, relative to
-/// the position of body a. Depth is positive where the bodies overlap. The feature says which
-/// vertex, edge or face of a (upper half) and of b (lower half) made the point, and is the same
-/// from frame to frame as long as they do.
+/// One point of a manifold: halfway between the two surfaces, in world axes, relative to the
+/// position of body a. The feature identifies the vertex, edge or face of a (upper half) and of b
+/// (lower half) that generated the point; it is the same in each frame in which they do.
 struct ContactPoint {
   float position[3];      ///< x, y, z
-  float depth;            ///< negative where the bodies are apart, within the margin
-  std::uint64_t feature;  ///< equal features of two frames are the same point
+  float depth;            ///< positive if the bodies overlap there, negative if they are apart
+  std::uint64_t feature;  ///< equal features in two frames are the same point
 };
 
-/// No pair or point: of contacts that were not there in the last frame.
+/// Index of no pair or point: the contact did not exist in the previous frame.
 inline constexpr std::uint32_t kNoContact = ~0U;
 
-/// At most so many points per manifold.
+/// Largest number of points per manifold.
 inline constexpr std::uint32_t kManifoldPoints = 4;
 
-/// What is known about one pair of shapes.
+/// Result for one pair of shapes.
 struct PairAnswer {
-  /// Negative by the penetration depth: the length of the shortest translation that parts them.
+  /// Signed distance: minus the penetration depth (the length of the shortest translation that
+  /// separates the shapes) if they overlap.
   double distance = 0.0;
   /// The true distance is within distance +- error_bound.
   double error_bound = 0.0;
-  double normal[3] = {1.0, 0.0, 0.0};  ///< unit, from a to b, in the axes of the world
-  /// On a, relative to the position of a, in the axes of the world. The point of b is
-  /// distance * normal farther.
+  double normal[3] = {1.0, 0.0, 0.0};  ///< unit vector from a to b, in world axes
+  /// Closest (or deepest) point of a, relative to the position of a, in world axes. The point of b
+  /// is point + distance * normal.
   double point[3] = {0.0, 0.0, 0.0};
-  bool overlap = false;                         ///< they share a point
-  std::uint32_t contact_count = 0;              ///< of `contacts`
-  ContactPoint contacts[kManifoldPoints] = {};  ///< none where they are apart beyond the margin
+  bool overlap = false;                         ///< true if the shapes share a point
+  std::uint32_t contact_count = 0;              ///< number of contact points
+  ContactPoint contacts[kManifoldPoints] = {};  ///< empty if the gap exceeds the margin
 };
 
 }  // namespace winnow

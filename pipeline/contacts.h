@@ -1,5 +1,8 @@
 #pragma once
 
+// The result of `Scene::collide`: pairs, manifolds and points in columns, and events. It also
+// stores the previous frame, for events, the contact cache and warm starts. See scene/contacts.cpp.
+
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
@@ -17,152 +20,155 @@ namespace winnow {
 struct ContactColumns;
 struct ContactsState;
 
-/// What became of a pair of bodies since these Contacts were last filled.
+/// Whether a pair of bodies was present when these Contacts were last filled.
 enum class ContactEvent : std::uint8_t {
-  begun,      ///< it was not there
-  persisted,  ///< it was
+  begun,      ///< it was not present
+  persisted,  ///< it was present
 };
 
-/// Pairs of bodies whose shapes are of the same two kinds, next to each other. Kinds as in
+/// A run of consecutive pairs whose shapes have the same two kinds. Kinds are numbered as in
 /// ShapeId::kind_index.
 struct ContactRun {
-  std::uint8_t kind_a = 0;  ///< of the shapes of a
-  std::uint8_t kind_b = 0;  ///< of the shapes of b, not below kind_a
-  std::uint32_t first = 0;  ///< pair that the run begins with
-  std::uint32_t count = 0;  ///< pairs in it
+  std::uint8_t kind_a = 0;  ///< kind of the shapes of a
+  std::uint8_t kind_b = 0;  ///< kind of the shapes of b, not below kind_a
+  std::uint32_t first = 0;  ///< first pair of the run
+  std::uint32_t count = 0;  ///< number of pairs
 };
 
-/// A pair that was there when these Contacts were last filled and is not now. A removed body's key
-/// is stale.
+/// A pair that was present when these Contacts were last filled and is not now. The key of a
+/// removed body is stale.
 struct EndedContact {
-  Key a;                  ///< the body that was a
-  Key b;                  ///< the body that was b
-  ClientData data_a = 0;  ///< that a was added with
-  ClientData data_b = 0;  ///< that b was added with
+  Key a;                  ///< first body of the pair
+  Key b;                  ///< second body of the pair
+  ClientData data_a = 0;  ///< client data of a
+  ClientData data_b = 0;  ///< client data of b
 };
 
-/// Client data by body.
+/// Function that returns the client data of a pair's body; see DataColumn.
 struct DataLookup {
-  const Key* bodies;       ///< of each pair
-  const ClientData* data;  ///< by id of a body
+  const Key* bodies;       ///< body of each pair
+  const ClientData* data;  ///< client data, by body id
 
-  /// Of pair i.
+  /// Returns the client data of pair i.
   [[nodiscard]] ClientData operator()(std::size_t i) const noexcept { return data[bodies[i].id]; }
 };
 
-/// Parts of composite shapes.
+/// Function that returns a part of a composite shape; see PartColumn.
 struct PartLookup {
-  const std::uint32_t* parts;  ///< of each manifold; null where all shapes are convex
+  const std::uint32_t* parts;  ///< part of each manifold; null if all shapes are convex
 
-  /// Of manifold m.
+  /// Returns the part of manifold m.
   [[nodiscard]] std::uint32_t operator()(std::size_t m) const noexcept {
     return parts != nullptr ? parts[m] : kWholeShape;
   }
 };
 
-/// Client data of one body of each pair: size(), [i], begin() and end(), as of a span.
+/// Client data of one body of each pair. Used like a span: size(), [i], begin(), end().
 using DataColumn = LookedUp<DataLookup>;
-/// The part of one shape in each manifold, likewise.
+/// Part of one shape in each manifold. Used like a span.
 using PartColumn = LookedUp<PartLookup>;
 
-/// What `Scene::collide` found, as columns: pairs of bodies, sorted by the kinds of their shapes
-/// and then by body; for each pair its manifolds, one for each region of contact, or for each pair
-/// of parts that touch (see SceneOptions::contact_reduction; one alone if both shapes are convex);
-/// for each manifold its points. In a pair, a is the body with the smaller kind of shape, or the
-/// smaller id if they are of one kind.
+/// Result of `Scene::collide`, in columns: pairs of bodies, sorted by the kinds of their shapes,
+/// then by body; for each pair its manifolds; for each manifold its points. A pair of convex shapes
+/// has one manifold. A pair with a composite shape has one per pair of parts that touch, or one per
+/// contact region (see SceneOptions::contact_reduction). In a pair, a is the body with the smaller
+/// kind of shape, or with the smaller id if the kinds are equal.
 ///
-/// The caller's, reused from frame to frame: it remembers what was found, so that events can be
-/// told and manifolds of what rests carried over. Fresh ones, or cleared ones, remember nothing.
-/// Not for use from two threads at once. Where memory for them is refused at once, `collide`
-/// answers `out_of_memory` and they stay empty.
+/// The caller keeps the object from frame to frame: it stores the previous frame, for events and
+/// for contacts that are carried over. A new or cleared object stores no previous frame. It is not
+/// thread-safe. If memory for the object itself is refused, it stays empty and `collide` returns
+/// `out_of_memory`.
 class WINNOW_API Contacts {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object.
+  /// Creates empty contacts. Every allocation comes from `memory`, which must outlive the object.
   explicit Contacts(std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
-  /// What the last `collide` was asked for: columns of higher levels are empty.
+  /// Returns the level of the last `collide`. Columns of higher levels are empty.
   [[nodiscard]] ContactLevel level() const noexcept;
-  /// Pairs of bodies.
+  /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Where pairs of each two kinds of shapes lie; together they are all pairs.
+  /// Returns the runs of pairs with the same two kinds of shapes; together they are all pairs.
   [[nodiscard]] std::span<const ContactRun> runs() const noexcept;
-  /// First body of each pair.
+  /// Returns the first body of each pair.
   [[nodiscard]] std::span<const Key> a() const noexcept;
-  /// Second body of each pair.
+  /// Returns the second body of each pair.
   [[nodiscard]] std::span<const Key> b() const noexcept;
-  /// Client data of the first bodies, as it was when these Contacts were filled. It is looked up by
-  /// body: no column of it is kept.
+  /// Returns the client data of the first bodies, as of the last `collide`. It is looked up by
+  /// body; no column of it is stored.
   [[nodiscard]] DataColumn data_a() const noexcept;
-  /// Client data of the second bodies.
+  /// Returns the client data of the second bodies.
   [[nodiscard]] DataColumn data_b() const noexcept;
-  /// Whether each pair is new since the frame before.
+  /// Returns for each pair whether it is new in this frame.
   [[nodiscard]] std::span<const ContactEvent> event() const noexcept;
-  /// Pairs that came to an end, in the same order on any number of threads.
+  /// Returns the pairs that ended, in the same order for any number of threads.
   [[nodiscard]] std::span<const EndedContact> ended() const noexcept;
 
-  /// Manifolds of pair i: [manifold_first()[i], manifold_first()[i + 1]). None at level pairs.
+  /// Returns the first manifold of each pair: the manifolds of pair i are [manifold_first()[i],
+  /// manifold_first()[i + 1]). Empty at level pairs.
   [[nodiscard]] std::span<const std::uint32_t> manifold_first() const noexcept;
-  /// All manifolds of all pairs.
+  /// Returns the number of manifolds.
   [[nodiscard]] std::size_t manifolds() const noexcept;
-  /// The parts that touch, of a region those of its deepest manifold: numbers of triangles or
-  /// children, kWholeShape of convex shapes. Of scenes in which all are convex no column of them is
-  /// kept.
+  /// Returns the part of a in each manifold (of its deepest manifold, for a contact region): the
+  /// number of the triangle or child; kWholeShape for a convex shape. In scenes with only convex
+  /// shapes no column is stored.
   [[nodiscard]] PartColumn part_a() const noexcept;
-  /// The same of body b.
+  /// Returns the part of b in each manifold.
   [[nodiscard]] PartColumn part_b() const noexcept;
-  /// Levels distance and manifold: negative by the depth of penetration; the true one is within
-  /// distance +- error_bound.
+  /// Returns the signed distance of each manifold, minus the penetration depth if the bodies
+  /// overlap. The true value is within distance +- error_bound. Levels distance and manifold.
   [[nodiscard]] std::span<const double> distance() const noexcept;
-  /// By how much `distance` may be wrong, either way; a length.
+  /// Returns the error bound of each distance, in either direction; a length.
   [[nodiscard]] std::span<const double> error_bound() const noexcept;
-  /// Unit, from a to b, in the axes of the world.
+  /// Returns the unit normals from a to b, in world axes.
   [[nodiscard]] std::span<const double> normal(int axis) const noexcept;
-  /// Level distance: the closest (or deepest) point of a, relative to the position of body a. That
-  /// of b is distance * normal farther.
+  /// Returns, at level distance, the closest (or deepest) point of a, relative to the position of
+  /// body a. The point of b is point + distance * normal.
   [[nodiscard]] std::span<const double> point(int axis) const noexcept;
 
-  /// Level manifold: points of manifold m are [point_first()[m], point_first()[m + 1]). Positions
-  /// are relative to that of body a, in the axes of the world, halfway between the surfaces.
+  /// Returns, at level manifold, the first point of each manifold: the points of manifold m are
+  /// [point_first()[m], point_first()[m + 1]). Point positions are relative to the position of body
+  /// a, in world axes, halfway between the surfaces.
   [[nodiscard]] std::span<const std::uint32_t> point_first() const noexcept;
-  /// All points of all manifolds.
+  /// Returns the number of points.
   [[nodiscard]] std::size_t points() const noexcept;
-  /// One point, below points(). O(1).
+  /// Returns one point; the index is below points(). O(1).
   [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept;
-  /// The same as columns.
+  /// Returns all points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept;
 
-  /// Where a scene with SceneOptions::warm_start was asked, else empty: the index that each pair,
-  /// and at level manifold each point, had when these Contacts were last filled, or kNoContact, so
-  /// that a solver starts from what it found then by one gather:
+  /// Returns the index of each pair in the previous frame (when these Contacts were last filled),
+  /// or kNoContact. A solver warm starts with one gather:
   ///
   ///     impulse[i] = before[i] == kNoContact ? 0 : last_impulse[before[i]]
   ///
-  /// No two have the same. Pairs that begin have none, nor do those that slept. Points of a pair
-  /// that persists are, in this order: that of the same feature, between the same parts; with
-  /// contact reduction that of the same feature; the nearest one left, where it moved by no more
-  /// than 1/50 of the smaller body's radius in the frame of body a or in that of body b (unless
-  /// more than 256 are left of one pair).
+  /// Only for a scene with SceneOptions::warm_start, otherwise empty. No two pairs have the same
+  /// index. New pairs have none, nor have pairs that were asleep.
   [[nodiscard]] std::span<const std::uint32_t> previous_pair() const noexcept;
-  /// The same of each point, into the points of the frame before.
+  /// Returns, at level manifold, the index of each point in the previous frame, or kNoContact, as
+  /// for `previous_pair`. No two points have the same index. Points of a persisting pair are
+  /// matched in this order: the same feature between the same parts; with contact reduction, the
+  /// same feature; then the nearest remaining point, if it moved by at most 1/50 of the smaller
+  /// body's radius in the frame of body a or of body b. The last step is skipped for a pair with
+  /// more than 256 remaining points.
   [[nodiscard]] std::span<const std::uint32_t> previous_point() const noexcept;
 
-  /// How many pairs kept the manifolds they had.
+  /// Returns the number of pairs that kept their previous manifolds; see SceneOptions::carry_over.
   [[nodiscard]] std::size_t carried() const noexcept;
 
-  /// Forgets everything; memory is kept.
+  /// Removes all contents; memory is kept.
   void clear() noexcept;
-  /// Columns that can be read under `results`, what is remembered beside them under `scratch`, and
-  /// what holds both under `structure`.
+  /// Returns the bytes of readable columns under `results`, of the data kept between frames under
+  /// `scratch`, and of the object itself under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend class Scene;
   friend class RankScene;
   friend class RecordedScene;
-  /// That of contacts with nothing in them where memory was refused.
+  /// Returns the state, or an empty one if memory was refused.
   [[nodiscard]] const ContactsState& state() const noexcept;
 
   std::pmr::memory_resource* memory_;

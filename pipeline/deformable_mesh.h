@@ -1,5 +1,9 @@
 #pragma once
 
+// Cloth and soft bodies: self-collisions, collisions with other meshes and with rigid shapes. Pairs
+// of features are tested by `feature_impact`, rigid shapes as in `time_of_impact`. The
+// implementation is in motion/.
+
 #include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
@@ -21,67 +25,70 @@
 
 namespace winnow {
 
-/// What a deformable mesh is made with.
+/// Options of a deformable mesh, fixed at construction.
 struct DeformableMeshOptions {
-  /// Every allocation comes from here. It must outlive the mesh.
+  /// Source of every allocation. It must outlive the mesh.
   std::pmr::memory_resource* memory = default_memory();
-  /// On whose threads boxes are made, and candidates looked at; results are the same on all.
+  /// How boxes are updated and candidates are tested in parallel; results do not depend on it.
   Execution execution = Execution::serial();
-  /// Finite. Boxes are of floats, measured from here: a point near the mesh keeps them tight in a
-  /// world far away. Meshes that are asked about each other have the same.
+  /// Finite. Origin of the float boxes: a point near the mesh keeps them tight in a world far from
+  /// (0, 0, 0). Two meshes that are tested against each other must have the same origin.
   Vec3d origin{};
-  /// Results that are handed over at a time at most, at least 1: with as many candidates (twice
-  /// that on several threads), and an answer for each of these, all the memory that a call takes.
+  /// Largest number of results per callback, at least 1. A call allocates memory for this number of
+  /// results and of candidates (twice as many candidates on several threads), with one answer per
+  /// candidate, and no more.
   std::size_t chunk = 16384;
 };
 
 /// Two features of meshes that touch during the step.
 struct MeshImpact {
-  /// A vertex and a face, or two edges, by number. Of one mesh the first edge has the lower one.
+  /// Numbers of a vertex and a face, or of two edges. For two edges of one mesh, the lower number
+  /// is first.
   Pair features;
-  double time = 0.0;  ///< of the first touch, never later; see FeatureImpact
+  double time = 0.0;  ///< time of the first touch, never late; see FeatureImpact
 };
 
 /// Two features of meshes that are near each other at the end of the step.
 struct MeshProximity {
-  Pair features;               ///< as in MeshImpact
-  double distance = 0.0;       ///< in the units of the vertices, to a few last digits of these
-  std::array<Vec3d, 2> point;  ///< nearest to each other: on the first feature and on the second
-  /// The first point is weight[0] times the vertex; of edges weight[0] and weight[1] times the
-  /// ends. The second is made of the other weights: those of the face's corners, or of the other
-  /// edge's ends, weight[2] and weight[3]. Each is >= 0, and those of a feature add up to 1.
+  Pair features;          ///< see MeshImpact
+  double distance = 0.0;  ///< in the units of the vertices, exact to a few last digits of these
+  std::array<Vec3d, 2> point;  ///< closest points, on the first and the second feature
+  /// Barycentric weights of the points. The first point is weight[0] times the vertex or, for
+  /// edges, weight[0] and weight[1] times the ends. The remaining weights give the second point:
+  /// one per corner of the face, or weight[2] and weight[3] for the ends of the second edge. Each
+  /// is >= 0; the weights of one feature sum to 1.
   std::array<double, 4> weight{};
 };
 
-/// A rigid shape that meshes may run into, of any kind, and how it moves during the step.
+/// A rigid shape of any kind, and its motion during the step, to be tested against meshes.
 struct MeshObstacle {
-  const ShapePool& shapes;  ///< what holds it, or the convex shapes that it is made of
-  ShapeId shape;            ///< which
-  RigidMotion motion;       ///< where it goes
-  /// How near a face has to come to touch it: finite, >= 0, at most half of the distance that the
-  /// mesh was moved with.
+  const ShapePool& shapes;  ///< contains the shape, or its convex parts
+  ShapeId shape;            ///< the shape
+  RigidMotion motion;       ///< its motion during the step
+  /// Gap at which a face touches the shape: finite, >= 0, at most half of the distance given to
+  /// `move`.
   double separation = 0.0;
 };
 
 /// A face of a mesh and a rigid shape that touch during the step.
 struct MeshShapeImpact {
-  std::uint32_t face = 0;  ///< by number
+  std::uint32_t face = 0;  ///< number of the face
   std::uint32_t part =
-      kWholeShape;           ///< triangle or child of the shape; kWholeShape of a convex one
-  double time = 0.0;         ///< in [0, 1], never late: before it the two are apart
+      kWholeShape;           ///< triangle or child of the shape; kWholeShape for a convex shape
+  double time = 0.0;         ///< in [0, 1], never late: the two are apart before it
   double gap = 0.0;          ///< at that time, beyond the separation; see ImpactResult
-  double error_bound = 0.0;  ///< of the gap
-  Vec3d normal;              ///< unit, from the shape to the face, at that time
-  Vec3d point;               ///< of the shape at that time, in the world
+  double error_bound = 0.0;  ///< the true gap is within gap +- error_bound
+  Vec3d normal;              ///< unit vector from the shape to the face, at that time
+  Vec3d point;               ///< contact point on the shape at that time, in the world
 };
 
-/// A function of the caller that takes chunks of results.
+/// Callback of the caller that receives chunks of results.
 template <typename Result>
 struct ResultChunks {
-  void* context;                                               ///< the function
+  void* context;                                               ///< the function object
   void (*take)(void* context, std::span<const Result> chunk);  ///< calls it
 
-  /// `function` must outlive this.
+  /// Refers to `function`, which must outlive this object.
   template <typename Take>
   explicit ResultChunks(Take& function) noexcept
       : context(const_cast<void*>(static_cast<const void*>(&function))),
@@ -90,9 +97,9 @@ struct ResultChunks {
         }) {}
 };
 
-/// A mesh whose vertices move in every step, for cloth and soft bodies: which of its vertices and
-/// faces, and which of its edges, may touch, do touch, or are near each other, among themselves
-/// and those of another mesh. Features that share a vertex are no pair.
+/// A mesh whose vertices move in every step, for cloth and soft bodies. It finds the pairs (vertex,
+/// face) and (edge, edge), within the mesh or with another mesh, that may touch, that touch, or
+/// that are near each other. Features that share a vertex are not paired.
 ///
 ///     winnow::DeformableMesh cloth;
 ///     cloth.build(rest, triangles);
@@ -100,54 +107,54 @@ struct ResultChunks {
 ///     cloth.self_impacts(winnow::FeaturePair::vertex_face, {},
 ///                        [](std::span<const winnow::MeshImpact> impacts) { ... });
 ///
-/// Vertices stay where the caller keeps them, and are read again by every call until the next
-/// `move`. Faces and edges are sorted in space once, by where vertices are at rest, and blocks of
-/// 16 of them stand below a tree whose boxes a step refits: about 114 bytes per triangle of a
-/// closed mesh, and no allocation after the first step but for results, of which as many as a chunk
-/// holds are handed over at a time, in an order that neither threads nor the instruction set
-/// change. Const calls may run at the same time. Nothing throws; what is called with results must
-/// not either.
+/// Vertices stay in the caller's memory and are read by every call until the next `move`. Faces and
+/// edges are sorted in space once, by the rest positions. Blocks of 16 of them are the leaves of a
+/// tree whose boxes are refitted in every step. A closed mesh takes about 114 bytes per triangle.
+/// After the first step only results are allocated, at most one chunk at a time. Their order is the
+/// same for any number of threads and any instruction set. Const calls may run concurrently.
+/// Nothing throws; the callbacks must not throw either.
 class WINNOW_API DeformableMesh {
  public:
-  /// A mesh without triangles.
+  /// Creates a mesh without triangles.
   explicit DeformableMesh(const DeformableMeshOptions& options = {}) noexcept;
-  /// Takes over everything; `other` is left without triangles.
+  /// Takes the contents of `other`, which is then without triangles.
   DeformableMesh(DeformableMesh&& other) noexcept;
   ~DeformableMesh();
   DeformableMesh(const DeformableMesh&) = delete;
   DeformableMesh& operator=(const DeformableMesh&) = delete;
 
-  /// Takes copies of the triangles and sorts them by where vertices are at rest. O(n log n). The
-  /// mesh has to be moved before it is asked. Again where triangles or vertices were added or taken
-  /// away: it is a new mesh then; a call that is refused changes nothing. `invalid_shape` if there
-  /// is no triangle or a corner is not a vertex, `invalid_bounds` if a coordinate or the origin is
-  /// not finite or beyond 2^1020, `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices,
-  /// `invalid_argument` for views without columns or a chunk of 0.
+  /// Copies the triangles and sorts them by the rest positions of their vertices. Call `move`
+  /// before any query. Calling `build` again replaces the mesh, for example after triangles or
+  /// vertices were added or removed. A failed call changes nothing. `invalid_shape` if there is no
+  /// triangle or a corner is not a vertex; `invalid_bounds` if a coordinate or the origin is not
+  /// finite or exceeds 2^1020; `too_many_objects` beyond 2^28 triangles or 2^31 - 1 vertices;
+  /// `invalid_argument` for views without columns or a chunk of 0. O(n log n).
   Status build(const PointView& rest, const IndexView& triangles) noexcept;
 
-  /// The step: every vertex moves linearly from its place in `start` to that in `end`, which may be
-  /// the same view. Boxes hold all of it and reach half of `distance` farther: what comes within a
-  /// distance of two features, be it their separation or a thickness, is among the candidates.
-  /// `size_mismatch` for another number of vertices, `invalid_bounds` if a coordinate is not finite
-  /// or beyond 2^1020, `invalid_argument` if `distance` is negative or not finite, or before
-  /// `build`. O(n).
+  /// Sets the step: every vertex moves linearly from its position in `start` to its position in
+  /// `end`, which may be the same view. Boxes contain the whole motion and are enlarged by half of
+  /// `distance`: candidates are all features that come within `distance` of each other, such as a
+  /// separation or a thickness. `size_mismatch` for another number of vertices; `invalid_bounds` if
+  /// a coordinate is not finite or exceeds 2^1020; `invalid_argument` if `distance` is negative or
+  /// not finite, or before `build`. O(n).
   Status move(const PointView& start, const PointView& end, double distance = 0.0) noexcept;
 
   [[nodiscard]] std::size_t triangles() const noexcept;  ///< 0 before `build`
   [[nodiscard]] std::size_t vertices() const noexcept;   ///< 0 before `build`
   [[nodiscard]] std::size_t edges() const noexcept;      ///< each counted once
-  /// The vertices of an edge below `edges()`, the lower one first. Edges are sorted by them.
+  /// Returns the vertices of an edge below `edges()`, the lower one first. Edges are sorted by
+  /// their vertices.
   [[nodiscard]] std::array<std::uint32_t, 2> edge(std::size_t i) const noexcept;
 
   /// Calls `take(std::span<const Pair>)` with chunks of all pairs of features whose boxes overlap,
   /// each once: (vertex, face), or (edge, edge) with the lower one first. `invalid_argument` before
-  /// the first `move`, `out_of_memory` if there is none for a chunk.
+  /// the first `move`; `out_of_memory` if a chunk cannot be allocated.
   template <typename Take>
   Status self_candidates(FeaturePair kind, Take&& take) const noexcept {
     return find_self(kind, ResultChunks<Pair>(take));
   }
-  /// The same of features of this mesh, first, and of another: its vertices with the other's
-  /// faces, or edges. `invalid_argument` also if the two have different origins.
+  /// As above, for pairs of a feature of this mesh (first) and one of another mesh: vertices of
+  /// this mesh with faces of the other, or edges. `invalid_argument` also if the origins differ.
   template <typename Take>
   Status candidates_with(const DeformableMesh& other, FeaturePair kind,
                          Take&& take) const noexcept {
@@ -155,47 +162,50 @@ class WINNOW_API DeformableMesh {
   }
 
   /// Calls `take(std::span<const MeshImpact>)` with chunks of all candidates that touch during the
-  /// step: see `feature_impact`. `invalid_argument` also for bad options, or for a separation
-  /// larger than the distance that the mesh was moved with.
+  /// step; see `feature_impact`. Errors as for `self_candidates`; `invalid_argument` also for
+  /// invalid options or a separation that exceeds the distance given to `move`.
   template <typename Take>
   Status self_impacts(FeaturePair kind, const FeatureImpactOptions& options,
                       Take&& take) const noexcept {
     return find_impacts(nullptr, kind, options, ResultChunks<MeshImpact>(take));
   }
-  /// The same with another mesh, where the separation is at most half of both distances.
+  /// As above, with another mesh. The separation is at most half the sum of the distances given to
+  /// `move` of the two meshes.
   template <typename Take>
   Status impacts_with(const DeformableMesh& other, FeaturePair kind,
                       const FeatureImpactOptions& options, Take&& take) const noexcept {
     return find_impacts(&other, kind, options, ResultChunks<MeshImpact>(take));
   }
 
-  /// Calls `take(std::span<const MeshShapeImpact>)` with chunks of all faces that meet a rigid
-  /// shape during the step, in the order of space that faces stand in: each with its first impact,
-  /// certified as `time_of_impact` does it, corners moving linearly and the shape turning. Options
-  /// are those of `time_of_impact`; the mesh's own execution counts. `invalid_argument` also for
-  /// bad options or separation, `invalid_key` for a shape that is not there, `unsupported` for a
-  /// composite one where no composites are given, `invalid_pose` for a motion that is not valid.
+  /// Calls `take(std::span<const MeshShapeImpact>)` with chunks of all faces that a rigid shape
+  /// touches during the step, each with its first impact, in the spatial order of the faces.
+  /// Impacts are certified as in `time_of_impact`, with linear motion of the corners and rotation
+  /// of the shape. `options` are used as in `time_of_impact`, but the mesh's own execution is used.
+  /// `invalid_argument` also for invalid options or separation; `invalid_key` if the shape does not
+  /// exist; `unsupported` for a composite shape without a pool of them; `invalid_pose` for an
+  /// invalid motion.
   template <typename Take>
   Status impacts_with(const MeshObstacle& obstacle, const ImpactOptions& options,
                       Take&& take) const noexcept {
     return find_shape_impacts(obstacle, options, ResultChunks<MeshShapeImpact>(take));
   }
 
-  /// Calls `take(std::span<const MeshProximity>)` with chunks of all pairs that are at a distance
-  /// of at most `thickness` at the end of the step. `invalid_argument` also if it is negative, not
-  /// finite or larger than the distance that the mesh was moved with.
+  /// Calls `take(std::span<const MeshProximity>)` with chunks of all pairs whose distance at the
+  /// end of the step is at most `thickness`. `invalid_argument` also if it is negative, not finite,
+  /// or exceeds the distance given to `move`.
   template <typename Take>
   Status self_proximity(FeaturePair kind, double thickness, Take&& take) const noexcept {
     return find_near(nullptr, kind, thickness, ResultChunks<MeshProximity>(take));
   }
-  /// The same with another mesh, where the thickness is at most half of both distances.
+  /// As above, with another mesh. The thickness is at most half the sum of the distances given to
+  /// `move` of the two meshes.
   template <typename Take>
   Status proximity_with(const DeformableMesh& other, FeaturePair kind, double thickness,
                         Take&& take) const noexcept {
     return find_near(&other, kind, thickness, ResultChunks<MeshProximity>(take));
   }
 
-  /// Every byte that the memory resource was asked for and has not got back.
+  /// Returns every byte that is allocated from the memory resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -212,14 +222,14 @@ class WINNOW_API DeformableMesh {
 
   Status find_shape_impacts(const MeshObstacle& obstacle, const ImpactOptions& options,
                             const ResultChunks<MeshShapeImpact>& chunks) const noexcept;
-  /// Hands over the faces whose boxes overlap a box, which is measured from the origin, as second
-  /// ones of pairs.
+  /// Reports the faces whose boxes overlap a box (relative to the origin), as second elements of
+  /// pairs.
   Status find_faces(const Aabb& box, const ResultChunks<Pair>& chunks) const noexcept;
-  /// Where the corners of a face are at the start and at the end of the step.
+  /// Writes the corners of a face at the start and the end of the step.
   void place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
                   std::array<Vec3d, 3>& end) const noexcept;
   [[nodiscard]] bool is_moved() const noexcept;
-  /// The distance that it was moved with.
+  /// Returns the distance given to `move`.
   [[nodiscard]] double reach() const noexcept;
 
   DeformableMeshOptions options_;

@@ -12,64 +12,68 @@
 
 namespace winnow {
 
-/// Which features of meshes meet in a test of four points.
+/// Kinds of feature pairs of meshes, each given by four points.
 enum class FeaturePair : std::uint8_t {
-  vertex_face,  ///< point 0 against the triangle of points 1, 2 and 3
-  edge_edge,    ///< the edge from point 0 to 1 against that from point 2 to 3
+  vertex_face,  ///< point 0 and the triangle of points 1, 2 and 3
+  edge_edge,    ///< the edge from point 0 to 1 and the edge from point 2 to 3
 };
 
-/// When features count as touching, and how much work goes into it.
+/// When features count as touching, and the limit of work.
 struct FeatureImpactOptions {
-  /// Features touch at a distance of at most this: finite, >= 0. In units of the points.
+  /// Distance at which features touch: finite, >= 0, in units of the points.
   double min_separation = 0.0;
-  /// How long before the first touch the time may lie, in (0, 1], where rounding does not ask for
-  /// more. Features that stay apart but come closer than what they move in such a time may count as
-  /// touching.
+  /// How early the returned time may be before the first touch, in (0, 1], apart from rounding.
+  /// Features that stay apart, but come closer than the distance that they move in such a time, may
+  /// be reported as touching.
   double tolerance = 0x1p-40;
-  /// Intervals of time that are looked at, at least 1. If these do not settle the answer, it is an
-  /// impact at the first time that is not settled: early, never late.
+  /// Largest number of time intervals to examine, at least 1. If they do not settle the result, an
+  /// impact at the first unsettled time is returned: early, never late.
   std::uint32_t max_intervals = 2048;
 };
 
-/// The answer about two features.
+/// Result for one pair of features.
 struct FeatureImpact {
   bool hit = false;  ///< false: they do not touch in [0, 1]
-  /// Of the first touch, in [0, 1], never later; infinite without one.
+  /// Time of the first touch, in [0, 1], never late; infinite if there is none.
   double time = std::numeric_limits<double>::infinity();
 };
 
-/// When two features first touch while each of their points moves linearly from `start` at time 0
-/// to `end` at time 1; degenerate features are what is left of them. Certified: rounding included,
-/// no touch is missed and no time is late; the numbers are taken as exact. A hit without a touch
-/// takes a gap of about 1e-14 of what the features extend and move, or of `tolerance`.
+/// Finds the time at which two features first touch, while each of their points moves linearly from
+/// `start` at time 0 to `end` at time 1. Degenerate features count as the segment or point that
+/// they are. The result is certified: no touch is missed and no time is late, rounding included;
+/// coordinates are taken as exact. A hit without a touch is possible only at a gap of about 1e-14
+/// of the size and motion of the features, or of `tolerance`.
 ///
-/// The differences of the points of either feature span a polygon, each of whose corners moves
-/// linearly: the features touch when it meets the origin. Times are dismissed where the volume that
-/// the points span, a cubic polynomial, has no zero (by the hull of its Bernstein coefficients, as
-/// in Bezier clipping: Sederberg and Nishita, "Curve intersection using Bezier clipping", 1990),
-/// and where a fixed plane keeps the polygon from the origin, which is so for a whole interval if
-/// it is at both ends. Compare the inclusion in three dimensions of Wang et al., "A large-scale
-/// benchmark and an inclusion-based algorithm for continuous collision detection", 2021.
+/// The differences of the points of the two features span a polygon whose corners move linearly;
+/// the features touch when it contains the origin. Two tests rule out time intervals. First, the
+/// volume spanned by the points is a cubic polynomial in time, and has no zero in the interval
+/// (shown by the hull of its Bernstein coefficients, as in Bezier clipping: Sederberg and Nishita,
+/// "Curve intersection using Bezier clipping", 1990). Second, a fixed plane separates the polygon
+/// from the origin; it does so for the whole interval if it does at both ends. Compare the
+/// three-dimensional inclusion of Wang et al., "A large-scale benchmark and an inclusion-based
+/// algorithm for continuous collision detection", 2021.
 ///
-/// `invalid_bounds` if a coordinate is not finite or a difference of two overflows,
-/// `invalid_argument` for options outside of their ranges.
+/// `invalid_bounds` if a coordinate is not finite or a difference of two overflows;
+/// `invalid_argument` for options out of range.
 [[nodiscard]] WINNOW_API Status feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
                                                const std::array<Vec3d, 4>& end,
                                                FeatureImpact& impact,
                                                const FeatureImpactOptions& options = {}) noexcept;
 
-/// Many pairs of features in columns: coordinate `axis` of point k of pair i at the start is
-/// start[k][axis][i]. Nothing is copied, and it must not outlive the memory it looks at.
+/// Many pairs of features, in columns in the caller's memory: coordinate `axis` of point k of pair
+/// i at the start is start[k][axis][i]. Nothing is copied, so the object must not outlive the
+/// memory.
 struct FeatureColumns {
   std::array<std::array<const double*, 3>, 4> start{};  ///< at time 0
   std::array<std::array<const double*, 3>, 4> end{};    ///< at time 1
-  std::size_t count = 0;                                ///< pairs
+  std::size_t count = 0;                                ///< number of pairs
 };
 
-/// The same for many pairs, several at a time where a cheap test keeps them apart: times[i] is that
-/// of pair i, infinite where it has no impact, NaN where its numbers are bad. The same bytes as one
-/// by one, on any instruction set. `size_mismatch` if `times` has another length than there are
-/// pairs, `invalid_argument` for bad options or missing columns.
+/// As `feature_impact`, for many pairs: times[i] is the time of pair i, infinite if there is no
+/// impact, NaN if its coordinates are invalid. Results equal single calls bit for bit, on any
+/// instruction set; a cheap test that rules out most pairs runs on several at a time.
+/// `size_mismatch` if `times` and the pairs differ in number; `invalid_argument` for invalid
+/// options or missing columns.
 [[nodiscard]] WINNOW_API Status feature_impacts(FeaturePair kind, const FeatureColumns& pairs,
                                                 std::span<double> times,
                                                 const FeatureImpactOptions& options = {}) noexcept;

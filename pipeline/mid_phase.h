@@ -1,5 +1,8 @@
 #pragma once
 
+// The interface between a Scene and its composite shapes: it splits pairs of bodies into pairs of
+// convex primitives, which the narrow phase computes. CompositePool is its implementation.
+
 #include <winnow/core/aabb.h>
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
@@ -21,235 +24,237 @@
 
 namespace winnow {
 
-/// Up to which distance pairs matter, of bodies or of primitives: one for all, or one for each.
+/// Margins of pairs of bodies or primitives: one for all pairs, or one per pair. Pairs farther
+/// apart than their margin are ignored.
 struct PairMargins {
-  /// The same for all pairs: a number does.
+  /// Uses the same margin for all pairs; implicit, so that a number can be passed.
   PairMargins(double margin) noexcept : largest(margin) {}
-  /// One for each pair; `most` is not below any of them.
+  /// Uses one margin per pair; `most` is not below any of them.
   PairMargins(double most, std::span<const double> margins) noexcept
       : largest(most), each(margins) {}
 
-  double largest;                ///< that of no pair is larger
-  std::span<const double> each;  ///< by pair; empty if all have the largest
+  double largest;                ///< upper bound of all margins
+  std::span<const double> each;  ///< one per pair; empty if all equal `largest`
 
-  /// That of a pair.
+  /// Returns the margin of a pair.
   [[nodiscard]] double of(std::size_t pair) const noexcept {
     return each.empty() ? largest : each[pair];
   }
 };
 
-/// Pairs of convex primitives that may touch: what the narrow phase is given for pairs of bodies of
-/// which one or both are composite. Coordinates are relative to the position of body a of the pair
-/// of bodies, in the axes of the world, so that answers do not depend on where the bodies stand.
+/// Pairs of convex primitives that may touch: the input of the narrow phase for pairs of bodies
+/// with composite shapes. Coordinates are relative to the position of body a of the pair of bodies,
+/// in world axes, so that results do not depend on where the bodies are.
 class WINNOW_API PrimitivePairs {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// use.
+  /// Creates an empty list. Every allocation comes from `memory`, which must outlive the object;
+  /// there are none before the first use.
   explicit PrimitivePairs(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// Forgets all pairs; memory is kept.
+  /// Removes all pairs; memory is kept.
   void clear() noexcept;
-  /// Everything that can be read under `results`, the rest under `scratch`.
+  /// Returns the bytes of readable columns under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
-  /// The primitives, one entry each time one is used: its shape (triangles in `triangles`, all
-  /// others in the ShapePool) and its pose.
+  /// The primitives, one entry per use: shape (triangles are in `triangles`, all others in the
+  /// ShapePool) and pose.
   Column<ShapeId> shapes;
-  Column<Pose> poses;  ///< where each primitive stands
-  /// Which part of its body it is: the number of the triangle or child; kWholeShape.
+  Column<Pose> poses;  ///< pose of each primitive
+  /// Part of the body: the number of the triangle or child; kWholeShape for a convex body.
   Column<std::uint32_t> part;
-  /// All triangles, of meshes, height fields and the ShapePool, each in the frame of its pose; ids
-  /// of that kind in `shapes` lead here.
+  /// All triangles, of meshes, height fields and the ShapePool, each in the frame of its pose.
+  /// Triangle ids in `shapes` are indices of this column.
   Column<TriangleShape> triangles;
-  /// Of `triangles`, one for each: bit k is set where edge k (from corner k to the next) is not one
-  /// that a neighbour continues, bit 3 + k where corner k is on such an edge of any triangle: a
-  /// contact there may have a normal of its own. kAllActive for triangles that are no mesh's. Bit 6
-  /// where the triangle is one-sided, and bit 7 where it is clockwise then, seen from its front.
+  /// Flags of each entry of `triangles`. Bit k is set if edge k (from vertex k to the next) is
+  /// active, that is, not internal to the surface. Bit 3 + k is set if vertex k is on an active
+  /// edge of any triangle. A contact at an active feature may have a normal other than the face
+  /// normal. kAllActive for triangles that belong to no mesh. kOneSided is set if the triangle is
+  /// one-sided, kClockwise if its vertices are then clockwise as seen from its front.
   Column<std::uint8_t> active_edges;
-  static constexpr std::uint8_t kAllActive = 63;   ///< all three edges and all three corners
-  static constexpr std::uint8_t kOneSided = 64;    ///< has a front
-  static constexpr std::uint8_t kClockwise = 128;  ///< has it where its corners run clockwise
-  /// Pairs of primitives, those of one pair of bodies next to each other in the order of the
-  /// bodies' pairs; a is of body a.
+  static constexpr std::uint8_t kAllActive = 63;   ///< all edges and vertices are active
+  static constexpr std::uint8_t kOneSided = 64;    ///< the triangle is one-sided
+  static constexpr std::uint8_t kClockwise = 128;  ///< clockwise vertices as seen from the front
+  /// Pairs of primitives, grouped by pair of bodies, in the order of the pairs of bodies; `a`
+  /// belongs to body a.
   Column<BodyPair> pairs;
-  /// Pairs of primitives of pair i of bodies: [first[i], first[i + 1]).
+  /// The pairs of primitives of body pair i are [first[i], first[i + 1]).
   Column<std::uint32_t> first;
-  /// What tasks write before it is put in order.
+  /// Output of parallel tasks before it is put in order.
   Column<std::uint32_t> scratch;
 
-  /// The pool's tables with `triangles` in the place of its own.
+  /// Returns the tables of the pool with `triangles` in place of the pool's triangles.
   [[nodiscard]] ShapeTables tables(const ShapePool& pool) const noexcept;
 };
 
 /// One primitive of a composite shape.
 struct Primitive {
-  /// Of kind triangle: see `triangle`. All others are in the ShapePool.
+  /// For a triangle see `triangle`; all other shapes are in the ShapePool.
   ShapeId shape;
-  std::uint32_t part = kWholeShape;  ///< which of its body; kWholeShape of a convex one
+  std::uint32_t part = kWholeShape;  ///< part of its body; kWholeShape for a convex body
   Pose pose;                         ///< in the world
-  TriangleShape triangle;            ///< corners in the frame of `pose`
-  /// Of a one-sided triangle: 1 if its corners run counter-clockwise seen from its front, -1 if
-  /// clockwise. Who is shown it leaves out what stands behind it. 0 of all others.
+  TriangleShape triangle;            ///< in the frame of `pose`
+  /// For a one-sided triangle: 1 if its vertices are counter-clockwise as seen from its front, -1
+  /// if clockwise. 0 for all other primitives. A visitor must ignore objects behind a one-sided
+  /// triangle.
   int front = 0;
 };
 
-/// Is shown primitives that may lie within `limit` (a value of t, or a distance) and gives back the
-/// limit to go on with: a smaller one to hear only of what comes before, below zero to end.
+/// Callback for primitives that may be within `limit` (a value of t, or a distance).
 struct PrimitiveVisitor {
-  /// Gives back the limit to go on with. Must not throw.
+  /// Returns the new limit: a smaller one skips primitives beyond it, a negative one ends the
+  /// traversal. Must not throw.
   double (*visit)(void* context, const Primitive& primitive, double limit) = nullptr;
-  void* context = nullptr;  ///< handed to `visit`
+  void* context = nullptr;  ///< passed to `visit`
 };
 
-/// Is told what each of several rays meets by `limit`, and gives back the limit for that ray to go
-/// on with, as above.
+/// Callbacks for the hits of several rays. Each returns the new limit of its ray, as in
+/// PrimitiveVisitor.
 struct RayVisitor {
-  /// Of a triangle that the ray meets for certain.
+  /// Called for a triangle that the ray certainly hits.
   double (*meet)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
                  double limit) = nullptr;
-  /// Of a primitive that it may meet: where that is once the position of the pose is subtracted
-  /// from the ray's origin, rounded to double.
+  /// Called for a primitive that the ray may hit. The primitive is given relative to the position
+  /// of the composite shape's pose, for a ray whose origin is relative to that position too,
+  /// rounded to double.
   double (*look)(void* context, std::size_t ray, const Primitive& primitive,
                  double limit) = nullptr;
-  void* context = nullptr;  ///< handed to both
+  void* context = nullptr;  ///< passed to both
 };
 
 struct MeshView;
 
-/// What every ray needs of a mesh where it stands: see MidPhase::place.
+/// A mesh at a pose, prepared for single rays; see MidPhase::place.
 struct RaySurface {
-  ShapeId shape;                   ///< of no kind: nothing was placed
-  Pose pose;                       ///< where it stands
-  std::uint64_t revision = 0;      ///< MidPhase::revision, as it was
-  const MeshView* mesh = nullptr;  ///< in its own frame
-  SurfaceFrame frame = {};         ///< which lies so in the world
-  int front = 0;                   ///< as Primitive::front
+  ShapeId shape;                   ///< the default id if nothing was placed
+  Pose pose;                       ///< pose of the mesh
+  std::uint64_t revision = 0;      ///< MidPhase::revision at the time of placing
+  const MeshView* mesh = nullptr;  ///< the mesh, in its own frame
+  SurfaceFrame frame = {};         ///< frame of the mesh in the world
+  int front = 0;                   ///< see Primitive::front
 };
 
-/// Is shown pairs of primitives that may share a point, and gives back whether to go on.
+/// Callback for pairs of primitives that may share a point.
 struct PrimitivePairVisitor {
-  /// False ends the visit. Must not throw.
+  /// Returns false to end the traversal. Must not throw.
   bool (*visit)(void* context, const Primitive& a, const Primitive& b) = nullptr;
-  void* context = nullptr;  ///< handed to `visit`
+  void* context = nullptr;  ///< passed to `visit`
 };
 
-/// Is shown pairs of primitives that may lie within `limit` of each other and gives back the limit
-/// to go on with, below zero to end.
+/// Callback for pairs of primitives that may be within `limit` of each other.
 struct NearPairVisitor {
-  /// Gives back the limit to go on with. Must not throw.
+  /// Returns the new limit, negative to end the traversal. Must not throw.
   double (*visit)(void* context, const Primitive& a, const Primitive& b, double limit) = nullptr;
-  void* context = nullptr;  ///< handed to `visit`
-  /// Unit, from a to b, along which the nearest pair so far is apart, or zero. Read again after
-  /// each visit.
+  void* context = nullptr;  ///< passed to `visit`
+  /// Unit vector from a to b that separates the nearest pair so far, or zero. Read again after each
+  /// call of `visit`.
   const double* normal = nullptr;
 };
 
-/// A box that moves by t * direction for t in [0, max_t]; max_t = 0 for one that stands. In double,
-/// in the axes of the world.
+/// A box that moves by t * direction for t in [0, max_t], in double, in world axes. max_t = 0: a
+/// static box.
 struct BoxSweep {
   double min[3];                          ///< at t = 0
   double max[3];                          ///< at t = 0, not below `min`
-  double direction[3] = {0.0, 0.0, 0.0};  ///< finite; zero for a box that stands
+  double direction[3] = {0.0, 0.0, 0.0};  ///< finite; zero for a static box
   double max_t = 0.0;                     ///< finite, >= 0
 };
 
-/// What composite shapes are made of, as the Scene and its queries see it. An interface, so that
-/// who has no composite shapes links and allocates nothing of it. A CompositePool is one.
+/// Interface through which Scene and its queries use composite shapes. Programs without composite
+/// shapes link and allocate none of its implementation, CompositePool.
 class WINNOW_API MidPhase {
  public:
-  /// Links the kernels of triangles, which composite shapes are made of.
+  /// Links the kernels for triangles.
   MidPhase() noexcept;
   MidPhase(const MidPhase&) = delete;
   MidPhase& operator=(const MidPhase&) = delete;
   virtual ~MidPhase() = default;
 
-  /// True for ids of shapes that are there.
+  /// True if the shape exists.
   [[nodiscard]] virtual bool contains(ShapeId id) const noexcept = 0;
-  /// A float box that contains the shape at a valid pose, rounded outward.
+  /// Returns a float box that contains the shape at a valid pose, rounded outward.
   [[nodiscard]] virtual Aabb bounds(ShapeId id, const Pose& pose) const noexcept = 0;
-  /// No point of the shape is farther than this from its own origin.
+  /// Returns an upper bound on the distance of the shape's points from the origin of its frame.
   [[nodiscard]] virtual double radius(ShapeId id) const noexcept = 0;
-  /// Grows each time a shape is changed in place (refit) or removed: what was known about pairs of
-  /// composite shapes is void then.
+  /// Returns a counter that grows when a shape is changed in place (refit) or removed. Cached data
+  /// about pairs of composite shapes are then invalid.
   [[nodiscard]] virtual std::uint64_t revision() const noexcept = 0;
 
-  /// All pairs of primitives that are no farther apart than the margin of their bodies, and some
-  /// more, of pairs of bodies of which one at least is composite. Ids and poses are valid. The
-  /// order is the same on any number of threads and any instruction set.
+  /// Finds all pairs of primitives that are within the margin of their bodies, and some that are
+  /// not. At least one body of each pair is composite. Ids and poses are valid. The order is the
+  /// same for any number of threads and any instruction set.
   virtual Status expand(const ShapePool& shapes, const Bodies& bodies,
                         std::span<const BodyPair> pairs, const PairMargins& margins,
                         const Execution& execution, PrimitivePairs& out) const = 0;
-  /// Gives contacts with internal edges of meshes the normal of the face, after the narrow phase
-  /// has answered `pairs` at level distance or manifold. `margins` are those of pairs of
-  /// primitives that the narrow phase was given.
+  /// Corrects contacts at internal edges of meshes (ghost contacts): gives them the normal of the
+  /// face. To be called after the narrow phase has computed `pairs` at level distance or manifold.
+  /// `margins` are the margins of pairs of primitives that the narrow phase used.
   virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
                       const PairMargins& margins, const Execution& execution,
                       NarrowResult& result) const = 0;
-  /// Merges the manifolds of each pair of bodies no farther apart than its margin into regions of
-  /// contact: the deepest manifold (of equally deep ones the first in the order of `pairs`) and all
-  /// whose normals are within 5 degrees of its own (kRegionCosine) are the first region, the
-  /// deepest of what is left leads the next, and so on. Of a region at most kManifoldPoints points
-  /// stay: the deepest, and those that span the widest area; corners that manifolds of single parts
-  /// had no room for come into question as well. `answers` are those about `pairs` at level
-  /// manifold, else `invalid_argument`. O(manifolds x regions of a pair of bodies). The same on any
-  /// number of threads and any instruction set.
+  /// Merges the manifolds of each pair of bodies within its margin into contact regions. The
+  /// deepest manifold (among equals, the first in `pairs`) and all manifolds whose normals are
+  /// within 5 degrees of its normal (kRegionCosine) form the first region; the deepest remaining
+  /// manifold starts the next region, and so on. Each region keeps at most kManifoldPoints points:
+  /// the deepest one, and points that span the largest area. Candidates include vertices of contact
+  /// polygons that did not fit into the manifold of a single part. `invalid_argument` unless
+  /// `answers` are the results for `pairs` at level manifold. O(manifolds x regions of a pair of
+  /// bodies). The result is the same for any number of threads and any instruction set.
   virtual Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
                         const NarrowResult& answers, const PairMargins& margins,
                         const Execution& execution, ContactRegions& out) const = 0;
 
-  /// Shows `visitor` every primitive whose box the sweep may meet, roughly in the order in which it
-  /// does. O(log n + met).
+  /// Visits every primitive whose box the moving box may hit, roughly in order of time. O(log n +
+  /// hits).
   virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
                      const PrimitiveVisitor& visitor) const = 0;
-  /// Tells it of every primitive that each of the rays, which are valid, meets or may meet at some
-  /// t up to its limit, roughly in the order in which it does. There is one limit per ray, no
-  /// larger than its max_t; where a primitive is met depends on the ray alone. Of different rays in
-  /// any order; one with a limit below zero meets nothing.
+  /// Reports every primitive that a ray hits or may hit at t up to its limit, roughly in order of t
+  /// along each ray; the order between rays is arbitrary. Rays are valid. There is one limit per
+  /// ray, at most its max_t; a ray with a negative limit hits nothing. The hits of a ray do not
+  /// depend on the other rays.
   virtual void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                           const double* limits, const RayVisitor& visitor) const = 0;
-  /// Makes a mesh ready for rays that come one by one. False, and nothing is written, of all other
-  /// shapes.
+  /// Prepares a mesh for `visit_ray`. Returns false and writes nothing for all other shapes.
   [[nodiscard]] virtual bool place(ShapeId id, const Pose& pose, RaySurface& surface) const {
     (void)id, (void)pose, (void)surface;
     return false;
   }
-  /// As `visit_rays`, of one ray, whose number is 0. The surface was placed by this, which has not
-  /// changed since.
+  /// As `visit_rays`, for one ray, whose number is 0. The surface was prepared by `place` of this
+  /// object, which has not changed since.
   virtual void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
                          const RayVisitor& visitor) const {
     (void)surface, (void)ray, (void)limit, (void)visitor;
   }
-  /// Shows it every primitive whose box may be no farther than `limit` from that of `from`, which
-  /// stands, roughly the nearest first.
+  /// Visits every primitive whose box may be within `limit` of the static box `from`, roughly
+  /// nearest first.
   virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
                           const PrimitiveVisitor& visitor) const = 0;
 
-  /// Shows it every pair of primitives of two meshes that may share a point. False, and nothing is
-  /// shown, if these are no two meshes.
+  /// Visits every pair of primitives of two meshes that may share a point. Returns false and visits
+  /// nothing unless both shapes are meshes.
   virtual bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                            const PrimitivePairVisitor& visitor) const = 0;
 
-  /// Shows it pairs of primitives of two meshes, roughly the nearest first. False, and nothing is
-  /// shown, if these are no two meshes, or the first has not one scale along all axes.
+  /// Visits pairs of primitives of two meshes, roughly nearest first. Returns false and visits
+  /// nothing unless both shapes are meshes and the first one has a uniform scale.
   virtual bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                                 double limit, const NearPairVisitor& visitor) const = 0;
 
-  /// True if a solid (see CompositePool::set_solid), or one in a compound, holds a point of the
-  /// world. Ids and poses are valid.
+  /// True if a solid (see CompositePool::set_solid), or a solid child of a compound, contains a
+  /// point of the world. Ids and poses are valid.
   [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, const double point[3]) const {
     (void)id, (void)pose, (void)point;
     return false;
   }
-  /// The same of a point of another shape, convex or not: of one in each child of a compound, and
-  /// of one corner of a surface. Shapes in one piece whose surface does not meet that of the solid
-  /// are held as a whole, or not at all.
+  /// As above, for a point of another shape, convex or not: for a compound, one point of each
+  /// child; for a surface, one vertex. A connected shape whose surface does not intersect the
+  /// surface of the solid is inside entirely or not at all, so one point decides.
   [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, ShapeId other,
                                    const Pose& other_pose) const {
     (void)id, (void)pose, (void)other, (void)other_pose;
     return false;
   }
 
-  /// Everything it holds, to the byte what its resource gave.
+  /// Returns the bytes of all shapes: exactly what is allocated from the resource.
   [[nodiscard]] virtual Footprint footprint() const noexcept = 0;
 };
 

@@ -16,47 +16,50 @@
 
 namespace winnow {
 
-/// How exact an answer must be. All of them carry an error bound that holds.
+/// Precision of results. Every result has a valid error bound.
 enum class NarrowTier : std::uint8_t {
-  /// Errors of at most 4e-7 x (sizes + |distance|), usually 1e-15; the sign is right, also where
-  /// shapes touch. What the lanes cannot certify is solved again, one pair at a time.
+  /// Errors of at most 4e-7 x (sizes + |distance|), usually 1e-15. The sign of the distance is
+  /// exact, even if shapes just touch. Pairs that the SIMD lanes cannot certify are computed again,
+  /// one at a time.
   robust,
-  /// Every pair by the solver.
+  /// Computes every pair with the solver, the scalar reference implementation.
   reference,
 };
 
-/// What is asked about pairs of bodies, and how exactly.
+/// Options of a narrow-phase call.
 struct NarrowOptions {
-  /// Any but `pairs`, which asks nothing of shapes.
+  /// Any level but `pairs`, which uses no shapes.
   ContactLevel level = ContactLevel::manifold;
-  NarrowTier tier = NarrowTier::robust;  ///< how exact answers have to be
-  /// Speculative: pairs no farther apart than this get contacts, with depth <= 0. Finite, >= 0.
+  NarrowTier tier = NarrowTier::robust;  ///< how exact results must be
+  /// Contact margin: pairs whose gap is at most this get contact points (speculative contacts),
+  /// with depth <= 0. Finite, >= 0.
   double margin = 0.0;
-  /// On whose threads; answers are the same on all.
+  /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::serial();
-  /// A margin for each pair in place of `margin`; empty: the same for all. Finite, >= 0.
+  /// A margin for each pair, used instead of `margin` if not empty. Finite, >= 0.
   std::span<const double> margins{};
 };
 
-/// What moves: body i has shape shapes[i] at poses[i].
+/// Bodies: body i has shape shapes[i] at poses[i].
 struct Bodies {
-  std::span<const ShapeId> shapes;  ///< by body
-  std::span<const Pose> poses;      ///< by body; as many
+  std::span<const ShapeId> shapes;  ///< one per body
+  std::span<const Pose> poses;      ///< one per body
 };
 
-/// What a call did; counters, never timings, so that they repeat exactly.
+/// Counters of a call. They contain no timings, so that values repeat exactly.
 struct NarrowStatistics {
-  std::uint64_t pairs = 0;  ///< answered
-  /// Pairs that lanes could not certify and the solver answered.
+  std::uint64_t pairs = 0;  ///< pairs computed
+  /// Pairs that the lanes could not certify and the solver computed.
   std::uint64_t recomputed = 0;
-  /// Pairs that no lanes were tried on: of a kind without them, or of tier `reference`.
+  /// Pairs that were not tried in lanes: their kinds have no SIMD kernel, or the tier is
+  /// `reference`.
   std::uint64_t without_lanes = 0;
-  /// Pairs whose sign double could not tell: decided in exact arithmetic.
+  /// Pairs whose sign double precision could not decide; computed in exact arithmetic.
   std::uint64_t exact = 0;
-  /// Iterations of the solver that met their bound and fell back to enumeration.
+  /// Runs of the solver that reached their iteration limit and fell back to enumeration.
   std::uint64_t bounded = 0;
 
-  /// Adds those of another call.
+  /// Adds the counters of another call.
   NarrowStatistics& operator+=(const NarrowStatistics& other) noexcept {
     pairs += other.pairs;
     recomputed += other.recomputed;
@@ -67,40 +70,40 @@ struct NarrowStatistics {
   }
 };
 
-/// Pairs of bodies to overlaps, distances or contacts. Sorts pairs by the kinds of their shapes and
-/// computes those of one kind many at a time. Keeps scratch memory from call to call: one object
-/// per thread of the caller. What was moved from is as if new.
+/// Computes overlaps, distances or contacts of pairs of bodies. It sorts the pairs by the kinds of
+/// their shapes and computes pairs of the same kinds together in SIMD lanes. It keeps scratch
+/// memory between calls: use one object per calling thread. A moved-from object is as new.
 class WINNOW_API NarrowPhase {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// call.
+  /// Creates a narrow phase. Every allocation comes from `memory`, which must outlive the object;
+  /// there are none before the first call.
   explicit NarrowPhase(std::pmr::memory_resource* memory = default_memory()) noexcept
       : memory_(memory) {}
   ~NarrowPhase();
-  /// `other` is as if new.
+  /// Takes the memory of `other`, which is then as new.
   NarrowPhase(NarrowPhase&& other) noexcept;
   NarrowPhase(const NarrowPhase&) = delete;
   NarrowPhase& operator=(const NarrowPhase&) = delete;
   NarrowPhase& operator=(NarrowPhase&&) = delete;
 
-  /// Answers all pairs. `invalid_argument` for level `pairs`, a bad margin or a body that does not
-  /// exist, `size_mismatch` for spans of different lengths (`margins` may be empty), `invalid_key`
-  /// for an id that the pool does not know, `invalid_pose` if a body of a pair has one (an
-  /// orientation counts where its shape is not a sphere), `out_of_memory`: then `result` is empty
-  /// and `bad_body` tells.
+  /// Computes all pairs. `invalid_argument` for level `pairs`, an invalid margin or a body index
+  /// out of range; `size_mismatch` for spans of different lengths (`margins` may be empty);
+  /// `invalid_key` for an id that the pool does not contain; `invalid_pose` if a body of a pair has
+  /// an invalid pose (the orientation of a sphere is ignored); `out_of_memory`. After an error
+  /// `result` is empty and `bad_body` returns the cause.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
-  /// The same with shapes that lie elsewhere than in a pool.
+  /// As above, for shapes that are not stored in a pool.
   Status collide(const ShapeTables& tables, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
 
-  /// Of the last call.
+  /// Returns the counters of the last call.
   [[nodiscard]] const NarrowStatistics& statistics() const noexcept { return statistics_; }
-  /// Index of the body that made the last call be refused; ~0U if it was for another reason or went
-  /// well.
+  /// Returns the index of the body that made the last call fail; ~0U if the call succeeded or
+  /// failed for another reason.
   [[nodiscard]] std::uint32_t bad_body() const noexcept { return bad_body_; }
 
-  /// Scratch kept from call to call, to the byte what the resource gave.
+  /// Returns the bytes of scratch memory: exactly what is allocated from the resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -112,11 +115,11 @@ class WINNOW_API NarrowPhase {
   std::uint32_t bad_body_ = 0;
 };
 
-/// What NarrowPhase answers about one pair, shape a at pose_a and b at pose_b, for who has no more
-/// than one: keeps nothing and allocates nothing, so any number of threads may ask. Of many pairs
-/// each takes several times as long as in a call of NarrowPhase. Of `answer` level `boolean` tells
-/// `overlap` alone, `distance` all but contacts, `manifold` all but the point. Errors as of
-/// NarrowPhase::collide; then `answer` is as it was.
+/// Computes one pair, shape a at pose_a and shape b at pose_b, like NarrowPhase::collide. It stores
+/// and allocates nothing, so any number of threads may call it. For many pairs use NarrowPhase,
+/// which fills the SIMD lanes. At level `boolean` only `overlap` of the answer is set; at
+/// `distance` all but the contact points; at `manifold` all but `point`. Errors as for
+/// NarrowPhase::collide; they leave `answer` unchanged.
 /// @{
 WINNOW_API Status collide(const ShapePool& shapes, ShapeId a, const Pose& pose_a, ShapeId b,
                           const Pose& pose_b, const NarrowOptions& options,

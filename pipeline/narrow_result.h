@@ -1,5 +1,7 @@
 #pragma once
 
+// The result of NarrowPhase::collide, in columns. Scene::collide copies it to Contacts.
+
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
@@ -13,132 +15,134 @@
 
 namespace winnow {
 
-/// Pairs of one kind, next to each other in a NarrowResult.
+/// A run of consecutive answers in a NarrowResult whose shapes have the same two kinds.
 struct NarrowRun {
   ShapeKind a{};            ///< kind of the first shapes
   ShapeKind b{};            ///< kind of the second shapes, not below a
-  std::uint32_t first = 0;  ///< answer that the run begins with
-  std::uint32_t count = 0;  ///< answers in it
+  std::uint32_t first = 0;  ///< first answer of the run
+  std::uint32_t count = 0;  ///< number of answers
 };
 
-/// Contact points as columns.
+/// Contact points, in columns.
 struct ContactColumns {
-  /// Every allocation comes from `memory`, which must outlive the columns.
+  /// Creates empty columns. Every allocation comes from `memory`, which must outlive them.
   explicit ContactColumns(std::pmr::memory_resource* memory) noexcept;
 
-  /// Room for `count` points. False if memory is refused.
+  /// Reserves memory for `count` points. False if memory is refused.
   [[nodiscard]] bool grow(std::size_t count) noexcept;
-  /// `count` points, of which new ones are not set; there must be room for them (see `grow`).
+  /// Sets the number of points to `count`, within the reserved memory (see `grow`). New points are
+  /// not initialised.
   void set_size(std::size_t count) noexcept;
-  /// Writes to the pages behind the last point.
+  /// Writes to the pages of the reserved memory after the last point, to commit them.
   void touch() noexcept {
     for (Column<float>& column : position) column.touch();
     depth.touch();
     feature.touch();
   }
-  /// Points.
+  /// Returns the number of points.
   [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
-  /// Of all columns.
+  /// Returns the bytes of all columns.
   [[nodiscard]] Bytes bytes() const noexcept;
 
-  Column<float> position[3];      ///< x, y and z; as in ContactPoint
+  Column<float> position[3];      ///< x, y and z; see ContactPoint
   Column<float> depth;            ///< positive where the bodies overlap
-  Column<std::uint64_t> feature;  ///< as in ContactPoint
+  Column<std::uint64_t> feature;  ///< see ContactPoint
 };
 
-/// The columns of a NarrowResult to be written to: see the accessors of the same names. Those that
-/// its level has not are empty.
+/// Writable columns of a NarrowResult; see its accessors of the same names. Columns of higher
+/// levels are empty.
 struct NarrowColumns {
-  std::span<double> distance;              ///< one of each answer
-  std::span<double> error_bound;           ///< one of each answer
+  std::span<double> distance;              ///< one per answer
+  std::span<double> error_bound;           ///< one per answer
   std::span<double> normal[3];             ///< x, y, z
   std::span<double> point[3];              ///< x, y, z
-  std::span<std::uint32_t> contact_first;  ///< into `contacts`
+  std::span<std::uint32_t> contact_first;  ///< index into `contacts`
   std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
   /// May grow.
   ContactColumns& contacts;
 };
 
-/// Answers as columns, grouped by pair kind; within a kind in the order of the input. The caller's,
-/// reused from frame to frame.
+/// Results of the narrow phase in columns, grouped by the kinds of the shapes; within a group in
+/// the order of the input. The caller keeps the object from frame to frame.
 class WINNOW_API NarrowResult {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// use.
+  /// Creates an empty result. Every allocation comes from `memory`, which must outlive the object;
+  /// there are none before the first use.
   explicit NarrowResult(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// Answers, one for each pair that was asked about.
+  /// Returns the number of answers: one for each pair of the input.
   [[nodiscard]] std::size_t size() const noexcept {
     return level_ == ContactLevel::boolean ? overlap_.size() : distance_.size();
   }
-  /// What the last call was asked for: columns of higher levels are empty.
+  /// Returns the level of the last call. Columns of higher levels are empty.
   [[nodiscard]] ContactLevel level() const noexcept { return level_; }
-  /// Which pair of the input answer i is about. Points, normals and features are in its order, not
-  /// that of the kinds.
+  /// Returns the input pair that answer i belongs to. Points, normals and features follow the order
+  /// (a, b) of that pair, not of the kinds.
   [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
-  /// The same of all answers.
+  /// Returns the input pair of every answer.
   [[nodiscard]] std::span<const std::uint32_t> order() const noexcept {
     return {order_.data(), order_.size()};
   }
-  /// Where answers of each two kinds of shapes lie; together they are all answers.
+  /// Returns the runs of answers with the same two kinds of shapes; together they are all answers.
   [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
     return {runs_.data(), runs_.size()};
   }
 
-  /// At every level.
+  /// True if the shapes share a point. Available at every level.
   [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
     return level_ == ContactLevel::boolean ? overlap_[i] != 0 : distance_[i] <= 0.0;
   }
-  /// Level boolean: the same of all answers, not 0 where they do.
+  /// Returns, at level boolean, for each answer whether the shapes share a point; nonzero if they
+  /// do.
   [[nodiscard]] std::span<const std::uint8_t> overlap() const noexcept {
     return {overlap_.data(), overlap_.size()};
   }
-  /// Levels distance and manifold. Negative by the penetration depth, and <= 0 exactly where the
-  /// shapes share a point. At level manifold a pair farther apart than the margin may have any
-  /// lower bound of its distance that is above the margin.
+  /// Returns the signed distances, minus the penetration depth if the shapes overlap; <= 0 exactly
+  /// if they share a point. At level manifold, for a pair whose gap exceeds the margin, it may be
+  /// any lower bound of the distance above the margin. Levels distance and manifold.
   [[nodiscard]] std::span<const double> distance() const noexcept { return span(distance_); }
-  /// The true distance is within distance +- error_bound.
+  /// Returns the error bounds: the true distance is within distance +- error_bound.
   [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
-  /// Unit vectors from a to b, in the axes of the world.
+  /// Returns the unit normals from a to b, in world axes.
   [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
     return span(normal_[axis]);
   }
-  /// Level distance: the point of a, relative to the position of body a, in the axes of the world.
-  /// That of b is distance * normal farther.
+  /// Returns, at level distance, the closest (or deepest) point of a, relative to the position of
+  /// body a, in world axes. The point of b is point + distance * normal.
   [[nodiscard]] std::span<const double> point(int axis) const noexcept {
     return span(point_[axis]);
   }
-  /// Level manifold: points of pair i are [contact_first()[i], + contact_count()[i]) of the columns
-  /// of contacts.
+  /// Returns, at level manifold, the first point of each answer: its points are elements
+  /// [contact_first()[i], contact_first()[i] + contact_count()[i]) of the contact columns.
   [[nodiscard]] std::span<const std::uint32_t> contact_first() const noexcept {
     return {contact_first_.data(), contact_first_.size()};
   }
-  /// Points of each pair, 0 to kManifoldPoints.
+  /// Returns the number of points of each answer, 0 to kManifoldPoints.
   [[nodiscard]] std::span<const std::uint32_t> contact_count() const noexcept {
     return {contact_count_.data(), contact_count_.size()};
   }
-  /// All points of all pairs.
+  /// Returns the number of points of all answers.
   [[nodiscard]] std::size_t contacts() const noexcept { return contacts_.size(); }
-  /// One point, below contacts(). O(1).
+  /// Returns one point; the index is below contacts(). O(1).
   [[nodiscard]] ContactPoint contact(std::size_t point) const noexcept {
     return {
         {contacts_.position[0][point], contacts_.position[1][point], contacts_.position[2][point]},
         contacts_.depth[point],
         contacts_.feature[point]};
   }
-  /// The points as columns.
+  /// Returns the points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
-  /// For who corrects answers where they stand (see MidPhase::smooth): what is written has to keep
-  /// what the accessors say.
+  /// Returns the columns for corrections in place (see MidPhase::smooth). Written values must agree
+  /// with what the accessors guarantee.
   [[nodiscard]] NarrowColumns columns() noexcept;
 
-  /// All columns under `results`, to the byte what the resource gave.
+  /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend class NarrowPhase;
-  /// Room for the columns that a level has, and no others. False if memory is refused.
+  /// Allocates the columns of a level, and no others. False if memory is refused.
   [[nodiscard]] bool resize(std::size_t count, ContactLevel level) noexcept;
   void clear() noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {

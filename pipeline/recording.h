@@ -1,5 +1,9 @@
 #pragma once
 
+// Recording of the calls that a program makes, by wrappers with the same functions as Partition,
+// Scene, SceneQueries, SceneSweep and Sensors. RecordingPlayer (replay.h) replays the result. The
+// implementation is in recording/.
+
 #include <winnow/core/export.h>
 #include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
@@ -23,16 +27,16 @@ struct RecorderState;
 struct PassedPairs;
 enum class RecordedCall : std::uint8_t;
 
-/// Where a recording goes: a function that takes the next bytes and says whether it could. Called
-/// by one thread at a time; it must not throw.
+/// Destination of a recording: a function that takes the next bytes and returns false on failure.
+/// It is called by one thread at a time and must not throw.
 struct RecordingSink {
-  bool (*write)(void* context, std::span<const std::byte> bytes) = nullptr;  ///< null: nowhere
-  void* context = nullptr;                                                   ///< handed to `write`
+  bool (*write)(void* context, std::span<const std::byte> bytes) = nullptr;  ///< null: discards
+  void* context = nullptr;                                                   ///< passed to `write`
 };
 
-/// Writes down what a program does with partitions and scenes, so that it can be played again
-/// elsewhere (RecordingPlayer) and measured (`winnow advise FILE`). What is recorded is declared as
-/// a RecordedPartition or RecordedScene, with the same calls:
+/// Records the calls that a program makes to partitions and scenes, to be replayed elsewhere
+/// (RecordingPlayer) and measured (`winnow advise FILE`). Objects to be recorded are declared as
+/// RecordedPartition or RecordedScene, which have the same functions:
 ///
 ///     winnow::Recorder recorder("run.winnow");
 ///     winnow::RecordedPartition partition(recorder, winnow::linear_bvh());
@@ -40,34 +44,35 @@ struct RecordingSink {
 ///     partition.self_pairs(pairs);
 ///     recorder.end_frame();
 ///
-/// Partitions and scenes that are not declared so pay nothing. pipeline/CONTRACT.md has the format.
-/// Calls that were refused are not recorded. Calls from several threads are recorded in the order
-/// in which they end. Where anything goes wrong the recording ends, and the program goes on.
+/// Other partitions and scenes pay nothing. pipeline/FORMATS.md has the format. Failed calls are
+/// not recorded. Calls from several threads are recorded in the order in which they end. After any
+/// error the recording stops, and the program goes on.
 class WINNOW_API Recorder {
  public:
-  /// Into a file, which is made or overwritten. `memory` must outlive the recorder.
+  /// Records to a file, which is created or overwritten. `memory` must outlive the recorder.
   explicit Recorder(const char* path,
                     std::pmr::memory_resource* memory = default_memory()) noexcept;
-  /// Wherever the sink takes it.
+  /// Records to a sink.
   explicit Recorder(const RecordingSink& sink,
                     std::pmr::memory_resource* memory = default_memory()) noexcept;
-  /// Closes the recording; what it records must be gone by then.
+  /// Closes the recording. Recorded objects must be destroyed first.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Says that a frame of the program is over, and writes out what there is. Where a program tells
-  /// no frames, tools take each question for all pairs or contacts for the end of one.
+  /// Marks the end of a frame and writes buffered data. If a program marks no frames, tools count
+  /// each query for all pairs or contacts as the end of a frame.
   void end_frame() noexcept;
-  /// Writes the end; nothing is recorded from then on. What `status` answers.
+  /// Writes the end of the recording; later calls are not recorded. Returns `status()`.
   Status close() noexcept;
 
-  /// `ok`; `out_of_memory`, also of the sink or the disk; `invalid_argument` for a file that cannot
-  /// be opened; `unsupported` after a call that cannot be recorded, see RecordedScene.
+  /// Returns `ok`; `out_of_memory`, also if the sink fails or the disk is full; `invalid_argument`
+  /// for a file that cannot be opened; `unsupported` after a call that cannot be recorded (see
+  /// RecordedScene).
   [[nodiscard]] Status status() const noexcept;
-  /// Written so far.
+  /// Returns the number of bytes written.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
-  /// Recorded so far.
+  /// Returns the number of calls recorded.
   [[nodiscard]] std::uint64_t calls() const noexcept;
 
  private:
@@ -76,33 +81,33 @@ class WINNOW_API Recorder {
   friend class RecordedScene;
 
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   RecorderState* state_;
 };
 
-/// A Partition whose calls are recorded: see there for what each does. Its answers are those of the
-/// partition; besides the questions a digest of each answer is written. Of a question with a
-/// predicate what was found stands for what the predicate would say. A question whose buffer or
-/// events hold the answer to an earlier one goes on from it where that is one of the last 16.
+/// A Partition whose calls are recorded; see Partition for each function. Results are not changed.
+/// A query is recorded with a digest of its results. For a query with a predicate, the results are
+/// recorded in place of the predicate's answers. An incremental query, whose buffer or events hold
+/// the result of an earlier query, is replayed from that result if it is one of the last 16.
 class WINNOW_API RecordedPartition {
  public:
-  /// The recorder must outlive the partition.
+  /// Creates the partition. The recorder must outlive it.
   explicit RecordedPartition(Recorder& recorder, StructureKind structure,
                              const PartitionOptions& options = {}) noexcept;
   ~RecordedPartition();
   RecordedPartition(const RecordedPartition&) = delete;
   RecordedPartition& operator=(const RecordedPartition&) = delete;
 
-  /// The partition itself, for everything that is not recorded: what it holds, how it stands.
+  /// Returns the partition, for const calls that are not recorded.
   [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
-  /// The same.
+  /// Accesses the partition, for const calls that are not recorded.
   [[nodiscard]] const Partition* operator->() const noexcept { return &partition_; }
-  /// Not recorded: makes no difference to any answer.
+  /// Reserves memory. Not recorded, because it does not change results.
   Status reserve(std::size_t objects, Pages pages = Pages::untouched) {
     return partition_.reserve(objects, pages);
   }
 
-  /// As those of Partition.
+  /// See the functions of Partition.
   /// @{
   Status set_structure(StructureKind structure);
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
@@ -151,55 +156,58 @@ class WINNOW_API RecordedPartition {
   RecorderState* recorder_;
   std::uint32_t world_;
   Partition partition_;
-  /// Number of the recorded question whose answer a buffer holds; 0 if it is none of the last ones.
+  /// Returns the number of the recorded query whose result the buffer holds; 0 if it is none of the
+  /// last ones.
   [[nodiscard]] std::uint64_t asked_as(const PairBuffer& out) const noexcept;
   void note_asked(const PairBuffer& out) const noexcept;
 
-  /// What the last questions for pairs, of which question i stands at i % kAskedPairs, left in
-  /// buffers.
+  /// Buffers' contents after the last pair queries; query i is at i % kAskedPairs.
   static constexpr std::size_t kAskedPairs = 16;
   mutable PairBuffer::Provenance asked_[kAskedPairs];
   mutable std::uint64_t questions_ = 0;
 };
 
-/// A shape that a recording has.
+/// A shape that was recorded.
 struct RecordedShape {
-  ShapeId id;            ///< of the program's pools
-  std::uint32_t number;  ///< by which the recording knows it
-  std::uint64_t digest;  ///< of what it was then
-  std::uint64_t form;    ///< of that part of it which no change in place changes
+  ShapeId id;            ///< id in the program's pools
+  std::uint32_t number;  ///< number in the recording
+  std::uint64_t digest;  ///< digest of the shape when it was recorded
+  std::uint64_t form;    ///< digest of the part of the shape that no in-place change affects
 };
 
-/// A Scene whose calls are recorded, with the shapes of its bodies: see there for what each does.
-/// Composite shapes are recorded where the CompositePool was given that they are of, and what
-/// changes them in place is with the next question. A body of one that is of another MidPhase,
-/// one-sided or a solid, or that has a support function, and SceneOptions::seamless_floors end the
-/// recording with `unsupported`. So does a question with contacts that this scene filled, but not
-/// as its last answer: a scene is asked with one Contacts, which may be cleared, be another scene's
-/// in between, or be loaded by `load_contacts`. Of a predicate it is recorded which pairs it let
-/// pass. See RecordedQueries, RecordedSweep and RecordedSensors for what else a scene is asked.
+/// A Scene whose calls are recorded, with the shapes of its bodies; see Scene for each function.
+/// Composite shapes are recorded if the scene is created with their CompositePool; in-place changes
+/// of them are recorded with the next query. For a predicate, the pairs that it accepts are
+/// recorded.
+///
+/// The recording ends with `unsupported` on: a body whose shape is in another MidPhase, is
+/// one-sided or a solid, or has a support function; SceneOptions::seamless_floors; and a `collide`
+/// into Contacts that this scene filled, but not in its last `collide`. So use one Contacts per
+/// scene; it may be cleared, filled by another scene in between, or loaded by `load_contacts`.
+/// RecordedQueries, RecordedSweep and RecordedSensors record the other queries of a scene.
 class WINNOW_API RecordedScene {
  public:
-  /// The recorder must outlive the scene.
+  /// Creates a scene without composite shapes. The recorder must outlive it.
   explicit RecordedScene(Recorder& recorder, const ShapePool& shapes,
                          const SceneOptions& options = {}) noexcept;
-  /// The same with composite shapes, which take the place of `options.composites`.
+  /// Creates a scene with composite shapes, which replace `options.composites`.
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const CompositePool& composites,
                 const SceneOptions& options = {}) noexcept;
   ~RecordedScene();
   RecordedScene(const RecordedScene&) = delete;
   RecordedScene& operator=(const RecordedScene&) = delete;
 
-  /// The scene itself, for everything that is not recorded: what it holds, its own SceneQueries.
+  /// Returns the scene, for calls that are not recorded, such as const functions and plain
+  /// SceneQueries.
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
-  /// The same.
+  /// Accesses the scene, for const calls that are not recorded.
   [[nodiscard]] const Scene* operator->() const noexcept { return &scene_; }
-  /// Not recorded: makes no difference to any answer.
+  /// Reserves memory. Not recorded, because it does not change results.
   Status reserve(const SceneRoom& room, Pages pages = Pages::untouched) {
     return scene_.reserve(room, pages);
   }
 
-  /// As those of Scene.
+  /// See the functions of Scene.
   /// @{
   Status add(const BodyDefinition& body, Key& key);
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
@@ -230,7 +238,7 @@ class WINNOW_API RecordedScene {
   friend class RecordedSweep;
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
-  /// Which question left what contacts hold, and of which pairs it was.
+  /// Clock of the `collide` that filled contacts, and serial number of its pairs.
   using Asked = std::pair<std::uint32_t, std::uint64_t>;
   [[nodiscard]] static Asked asked_as(const Contacts& contacts) noexcept;
   [[nodiscard]] bool is_filled_by_this(const Contacts& contacts) const noexcept;
@@ -257,32 +265,33 @@ class WINNOW_API RecordedScene {
   const CompositePool* composites_;
   std::uint64_t composites_seen_;
   Scene scene_;
-  /// By id, in the recorder's memory.
+  /// Recorded shapes by id, in the recorder's memory.
   Column<RecordedShape> known_;
   std::uint32_t shapes_recorded_ = 0;
   std::uint32_t sensors_recorded_ = 0;
   Asked asked_;
-  /// Pairs that the predicate let pass, in the recorder's memory; null while there was none.
+  /// Pairs that the predicate accepted, in the recorder's memory; null without a predicate.
   PassedPairs* passed_ = nullptr;
 };
 
-/// SceneQueries whose questions are recorded: see there for what each does. Each with its filter, a
-/// digest of its answer, and which bodies a predicate let pass. Shapes that it asks with are
-/// recorded as those of bodies are.
+/// SceneQueries that are recorded; see SceneQueries for each function. A query is recorded with its
+/// filter, a digest of its results, and the bodies that the predicate accepted. Query shapes are
+/// recorded like the shapes of bodies.
 ///
 ///     winnow::RecordedQueries ask(scene);  // a RecordedScene; one per thread
 ///     ask.closest(ray, hit);
 class WINNOW_API RecordedQueries {
  public:
-  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too,
-  /// but for what is written: that comes from the recorder's, of one thread at a time.
+  /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it, except for the recorded data: they use the recorder's
+  /// memory, by one thread at a time.
   explicit RecordedQueries(RecordedScene& scene,
                            std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// The questions themselves, for everything that is not recorded.
+  /// Returns the queries, for calls that are not recorded.
   [[nodiscard]] SceneQueries& queries() noexcept { return queries_; }
 
-  /// As those of SceneQueries.
+  /// See the functions of SceneQueries.
   /// @{
   Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
   Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
@@ -328,26 +337,26 @@ class WINNOW_API RecordedQueries {
 
   RecordedScene& scene_;
   SceneQueries queries_;
-  /// Bodies that the predicate of the question let pass.
+  /// Bodies that the predicate of the current query accepted.
   Column<ObjectId> passed_;
 };
 
-/// A SceneSweep whose sweeps are recorded: see there for what each does.
+/// A SceneSweep that is recorded; see SceneSweep for each function.
 ///
 ///     winnow::RecordedSweep sweep(scene);  // a RecordedScene
 ///     sweep.sweep(keys, end_poses);
 ///     sweep->impacts();
 class WINNOW_API RecordedSweep {
  public:
-  /// Looks at bodies of `scene`, which must outlive this. Every allocation comes from `memory`,
-  /// which must too, but for what is written.
+  /// Creates a sweep of `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it, except for the recorded data.
   explicit RecordedSweep(RecordedScene& scene,
                          std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// What the last one answered.
+  /// Accesses the results of the last sweep.
   [[nodiscard]] const SceneSweep* operator->() const noexcept { return &sweep_; }
 
-  /// As those of SceneSweep.
+  /// See the functions of SceneSweep.
   /// @{
   Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
   Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
@@ -363,8 +372,8 @@ class WINNOW_API RecordedSweep {
   SceneSweep sweep_;
 };
 
-/// Sensors whose calls are recorded: see there for what each does. Shapes are recorded as those of
-/// bodies are.
+/// Sensors that are recorded; see Sensors for each function. Their shapes are recorded like the
+/// shapes of bodies.
 ///
 ///     winnow::RecordedSensors sensors(scene);  // a RecordedScene
 ///     sensors.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, goal);
@@ -372,20 +381,20 @@ class WINNOW_API RecordedSweep {
 ///     sensors->sensed();
 class WINNOW_API RecordedSensors {
  public:
-  /// Senses bodies of `scene`, which must outlive this. Every allocation comes from `memory`, which
-  /// must too, but for what is written.
+  /// Creates sensors on `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it, except for the recorded data.
   explicit RecordedSensors(RecordedScene& scene,
                            std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~RecordedSensors();
   RecordedSensors(const RecordedSensors&) = delete;
   RecordedSensors& operator=(const RecordedSensors&) = delete;
 
-  /// The sensors themselves, for everything that is not recorded: what is sensed, what they are.
+  /// Returns the sensors, for const calls that are not recorded.
   [[nodiscard]] const Sensors& operator*() const noexcept { return sensors_; }
-  /// The same.
+  /// Accesses the sensors, for const calls that are not recorded.
   [[nodiscard]] const Sensors* operator->() const noexcept { return &sensors_; }
 
-  /// As those of Sensors.
+  /// See the functions of Sensors.
   /// @{
   Status add(const SensorDefinition& sensor, Key& key);
   Status remove(Key key);

@@ -19,77 +19,77 @@ namespace winnow {
 
 struct ReplayState;
 
-/// What a recording is played with.
+/// Options of a replay.
 struct ReplayOptions {
-  /// Every allocation comes from here. Whoever plays what strangers recorded gives one that has a
-  /// limit: a small recording may ask for many pairs.
+  /// Source of every allocation. For untrusted recordings, use a resource with a limit: a small
+  /// recording may generate many pairs.
   std::pmr::memory_resource* memory = default_memory();
-  /// On whose threads; answers are the same on all.
+  /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::parallel();
 };
 
-/// What was played.
+/// Kind of a replayed call.
 enum class Played : std::uint8_t {
-  change,    ///< of a partition or scene
-  question,  ///< whose answer was compared with the recorded one
-  pairs,     ///< the same, a question for all pairs or contacts
-  frame,     ///< the program's frame is over
-  end,       ///< nothing: the recording is over, or `status` is not ok
+  change,    ///< a change of a partition or scene
+  question,  ///< a query; its results were compared with the recorded ones
+  pairs,     ///< as `question`, for all pairs or contacts
+  frame,     ///< the end of a frame of the program
+  end,       ///< nothing: the recording has ended, or `status` is not ok
 };
 
-/// Plays a recording, call by call, and compares the digest of each answer with what was recorded:
-/// answers are the same, bit for bit, on every instruction set and number of threads. Anything may
-/// be given as a recording: what is none is refused, by its checksums and by the calls themselves,
-/// which check what they are given.
+/// Replays a recording, call by call, and compares a digest of the results of each query with the
+/// recorded digest. Results are the same, bit for bit, on every instruction set and for any number
+/// of threads. Untrusted input is safe: invalid data is rejected by checksums and by the argument
+/// checks of the calls.
 ///
 ///     winnow::RecordingPlayer player(bytes);
 ///     player.play_all();
 ///     player.differences();
 class WINNOW_API RecordingPlayer {
  public:
-  /// The recording must outlive the player. Looks at the checksums of all of it: O(bytes).
+  /// Opens a recording, which must outlive the player, and verifies all checksums: O(bytes).
   explicit RecordingPlayer(std::span<const std::byte> recording,
                            const ReplayOptions& options = {}) noexcept;
   ~RecordingPlayer();
   RecordingPlayer(const RecordingPlayer&) = delete;
   RecordingPlayer& operator=(const RecordingPlayer&) = delete;
 
-  /// `invalid_argument` for what is no recording, or of a version that is not known, is damaged, or
-  /// has a call that is refused; `out_of_memory`.
+  /// Returns `invalid_argument` if the bytes are not a recording, have an unknown version, are
+  /// damaged, or contain a call that fails; `out_of_memory`; otherwise `ok`.
   [[nodiscard]] Status status() const noexcept;
-  /// False if it ends before it was closed: the program did.
+  /// False if the recording was not closed, because the program ended first.
   [[nodiscard]] bool is_whole() const noexcept;
 
-  /// Plays the next call.
+  /// Replays the next call.
   Played step() noexcept;
-  /// Plays to the end; what `status` answers.
+  /// Replays to the end. Returns `status()`.
   Status play_all() noexcept;
 
-  /// Played so far.
+  /// Returns the number of calls replayed so far.
   [[nodiscard]] std::uint64_t calls() const noexcept;
-  /// Frames that are over, of a program that told them.
+  /// Returns the number of frames that ended so far, if the program marked frames.
   [[nodiscard]] std::uint64_t frames() const noexcept;
-  /// Questions played so far.
+  /// Returns the number of queries replayed so far.
   [[nodiscard]] std::uint64_t questions() const noexcept;
-  /// Questions whose answer was another than the recorded one.
+  /// Returns the number of queries whose results differ from the recorded ones.
   [[nodiscard]] std::uint64_t differences() const noexcept;
 
-  /// Partitions and scenes that were made so far, those that are gone included.
+  /// Returns the number of partitions and scenes created so far, including destroyed ones.
   [[nodiscard]] std::size_t worlds() const noexcept;
-  /// Null if this one is a scene, or gone. `world` is below `worlds()`.
+  /// Returns a partition; null if `world` is a scene or was destroyed. `world` is below `worlds()`.
   [[nodiscard]] const Partition* partition(std::size_t world) const noexcept;
-  /// Null if this one is a partition, or gone.
+  /// Returns a scene; null if `world` is a partition or was destroyed.
   [[nodiscard]] const Scene* scene(std::size_t world) const noexcept;
-  /// The shapes of a scene; null where there is none.
+  /// Returns the shapes of a scene; null if there is no scene.
   [[nodiscard]] const ShapePool* shapes(std::size_t world) const noexcept;
-  /// Its composite shapes; null where there is none.
+  /// Returns the composite shapes of a scene; null if there is no scene.
   [[nodiscard]] const CompositePool* composites(std::size_t world) const noexcept;
-  /// What the last `collide` of a scene answered; null where there is no scene.
+  /// Returns the contacts of the last `collide` of a scene; null if there is no scene.
   [[nodiscard]] const Contacts* contacts(std::size_t world) const noexcept;
 
  private:
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   ReplayState* state_;
 };
 

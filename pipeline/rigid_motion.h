@@ -5,39 +5,39 @@
 
 namespace winnow {
 
-/// How a body moves while time runs from 0 to 1: its position along a line, its orientation about
-/// an axis that stays, both evenly. At time t it is at start.position + t * travel, turned from its
-/// orientation at the start about the direction of `turn` by t * |turn|.
+/// Motion of a body during the time from 0 to 1: constant velocity along a line, and rotation at a
+/// constant rate about a fixed axis. At time t the position is start.position + t * travel, and the
+/// orientation is start.orientation, rotated about the direction of `turn` by t * |turn|.
 struct RigidMotion {
-  /// More cannot be turned: some 160,000 times around.
+  /// Largest rotation in radians: about 160,000 turns.
   static constexpr double kMostTurn = 1e6;
 
-  Pose start;                          ///< where it is at time 0
-  double travel[3] = {0.0, 0.0, 0.0};  ///< from the first position to the last
-  double turn[3] = {0.0, 0.0, 0.0};    ///< axis times angle in radians, in the axes of the world
+  Pose start;                          ///< pose at time 0
+  double travel[3] = {0.0, 0.0, 0.0};  ///< displacement from time 0 to time 1
+  double turn[3] = {0.0, 0.0, 0.0};    ///< rotation axis times angle in radians, in world axes
 
-  /// A body that does not move.
+  /// Returns the motion of a body at rest.
   [[nodiscard]] static constexpr RigidMotion standing(const Pose& pose) noexcept {
     return {pose, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
   }
-  /// From one pose to another by the shorter way around, which turns by half a turn at most; of two
-  /// that are equally long, that about the vector part of end * conjugate(start). Not valid if one
-  /// of the poses is not, or their positions have no finite difference.
+  /// Returns the motion from one pose to another by the shorter rotation, at most half a turn. For
+  /// exactly half a turn, the axis is the vector part of end * conjugate(start). Not valid if one
+  /// of the poses is not, or if the difference of their positions is not finite.
   [[nodiscard]] WINNOW_API static RigidMotion between(const Pose& start, const Pose& end) noexcept;
-  /// At constant velocities for a duration: length and radians in the unit of time that `duration`
-  /// counts, in the axes of the world. As many turns as that makes.
+  /// Returns the motion at constant velocities for a duration, in world axes. Velocities are in
+  /// lengths and radians per unit of `duration`. The rotation may exceed a full turn.
   [[nodiscard]] WINNOW_API static RigidMotion by_velocities(const Pose& start,
                                                             const double (&linear)[3],
                                                             const double (&angular)[3],
                                                             double duration) noexcept;
 
-  /// True if the start is, all numbers are finite, the last position too, and it does not turn by
-  /// more than kMostTurn.
+  /// True if the start is valid, all numbers and the last position are finite, and the rotation is
+  /// at most kMostTurn.
   [[nodiscard]] WINNOW_API bool is_valid() const noexcept;
 
-  /// Where it is at a time in [0, 1], of a motion that is valid; its quaternion is of length 1 to
-  /// rounding if the body turns, and that of the start if it does not. Angles are right to a few
-  /// 1e-16 of 1 + |turn|, the same on every machine.
+  /// Returns the pose at a time in [0, 1]; the motion must be valid. If the body rotates, the
+  /// quaternion is a unit quaternion to rounding; if not, it is the quaternion of the start. Angles
+  /// are exact to a few 1e-16 of 1 + |turn|, and the same on every machine.
   [[nodiscard]] WINNOW_API Pose at(double time) const noexcept;
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Rays, casts, overlaps, distances and nearest bodies in a Scene. The partitions of the scene find
+// candidates by their boxes; exact shapes decide. The implementation is in scene/queries/.
+
 #include <winnow/core/export.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
@@ -24,218 +27,228 @@ namespace winnow {
 
 struct QueryState;
 
-/// Where a ray or a moving shape meets a body.
+/// Hit of a ray or a moving shape on a body.
 struct SceneHit {
-  Key key;              ///< the body; null if nothing was hit
-  ClientData data = 0;  ///< that the body was added with
-  /// Triangle or child; kWholeShape of a convex body.
+  Key key;              ///< the body; the null key if nothing was hit
+  ClientData data = 0;  ///< client data of the body
+  /// Triangle or child that is hit; kWholeShape for a convex body.
   std::uint32_t part = kWholeShape;
-  /// In units of the direction: of a ray, where it enters the body's shape; of a moving shape, the
-  /// time of impact, never later than the true one.
+  /// Parameter of the hit, in units of the direction. For a ray: where it enters the body's shape.
+  /// For a moving shape: the time of impact, never later than the true one.
   double t = 0.0;
-  /// Unit, of the body's surface, against the motion. Of a shape that overlaps the body at its
-  /// start, the direction in which it leaves it the soonest.
+  /// Unit normal of the body's surface, against the motion. If a moving shape overlaps the body at
+  /// the start: the direction of the shortest way out.
   double normal[3] = {0.0, 0.0, 0.0};
-  /// Where they meet, in the world.
+  /// Point of contact, in the world.
   double point[3] = {0.0, 0.0, 0.0};
 
-  /// True if something was hit.
+  /// True if there is a hit.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
-/// Where a batch of rays that have one answer each writes them: columns of the caller, each null if
-/// not wanted. A ray without an answer gets the null key, 0, kWholeShape, infinity and zeros.
+/// Output columns of a batch of rays with one hit per ray, in the caller's memory. Null columns are
+/// not written. A ray without a hit gets the null key, client data 0, kWholeShape, t = infinity and
+/// zeros.
 struct SceneHitColumns {
   Key* key = nullptr;               ///< bodies
-  ClientData* data = nullptr;       ///< what they were added with
-  std::uint32_t* part = nullptr;    ///< triangles or children
-  double* t = nullptr;              ///< infinity where nothing was hit
+  ClientData* data = nullptr;       ///< client data of the bodies
+  std::uint32_t* part = nullptr;    ///< triangles or children that are hit
+  double* t = nullptr;              ///< infinity if the ray hits nothing
   std::array<double*, 3> normal{};  ///< x, y, z
   std::array<double*, 3> point{};   ///< x, y, z, in the world
 };
 
-/// The hits of ray i of a batch are hits[first[i]] to hits[first[i + 1]], that excluded.
+/// Hits of a batch of rays: hits [first[i], first[i + 1]) are the hits of ray i.
 struct SceneHitLists {
-  std::span<const SceneHit> hits;      ///< of all rays, one after the other
-  std::span<const std::size_t> first;  ///< one more than there are rays
+  std::span<const SceneHit> hits;      ///< hits of all rays, in the order of the rays
+  std::span<const std::size_t> first;  ///< number of rays + 1 entries
 };
 
-/// A body that a shape overlaps.
+/// A body that overlaps the query shape.
 struct SceneOverlap {
   Key key;              ///< the body
-  ClientData data = 0;  ///< that the body was added with
-  /// A part of it that does, the same each time.
+  ClientData data = 0;  ///< client data of the body
+  /// One of its parts that overlap, the same one in each run.
   std::uint32_t part = kWholeShape;
 };
 
-/// Two points, and how far they are apart.
+/// Closest points of two bodies, or of a point and a body, and their distance.
 struct SceneDistance {
-  /// The second body.
+  /// Key of the second body.
   Key key;
-  ClientData data = 0;  ///< that the second body was added with
-  /// The part of the first that is closest; kWholeShape of a point or a convex body.
+  ClientData data = 0;  ///< client data of the second body
+  /// Closest part of the first body; kWholeShape for a point or a convex body.
   std::uint32_t part_a = kWholeShape;
-  std::uint32_t part = kWholeShape;  ///< that of the second
-  /// Negative by the depth of penetration; of composite shapes that of the deepest pair of parts.
+  std::uint32_t part = kWholeShape;  ///< closest part of the second body
+  /// Signed distance: minus the penetration depth if the bodies overlap. For composite shapes, the
+  /// depth of the deepest pair of parts.
   double distance = 0.0;
-  double error_bound = 0.0;  ///< the true distance is within distance +- it
-  /// Unit, from the first (or the point) to the second.
+  double error_bound = 0.0;  ///< the true distance is within distance +- error_bound
+  /// Unit vector from the first body (or the point) to the second body.
   double normal[3] = {0.0, 0.0, 0.0};
-  double point_a[3] = {0.0, 0.0, 0.0};  ///< of the first, in the world
-  double point_b[3] = {0.0, 0.0, 0.0};  ///< of the second, in the world
+  double point_a[3] = {0.0, 0.0, 0.0};  ///< closest point of the first body, in the world
+  double point_b[3] = {0.0, 0.0, 0.0};  ///< closest point of the second body, in the world
 
-  /// True if there is a second body.
+  /// True if a second body was found.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
 };
 
-/// Which pairs of bodies a question about two bodies or about sets of them takes.
+/// Which pairs of bodies a query for two bodies, or for sets of bodies, considers.
 enum class PairRules : std::uint8_t {
-  /// Those of which `Scene::collide` would make a pair if their boxes met: one of the two is
-  /// dynamic, their filters and their layers let them meet, they are not ignored, and the predicate
-  /// accepts them. So two fixed bodies are no pair, nor are two that sleep.
+  /// The pairs that `Scene::collide` would generate if their boxes overlapped: one of the two is
+  /// dynamic, their filters and layers let them collide, they are not ignored, and the predicate
+  /// accepts them. Two fixed or two sleeping bodies are thus never a pair.
   scene,
-  none,  ///< any two bodies
+  none,  ///< all pairs
 };
 
-/// The closest pair of two sets of bodies.
+/// Closest pair of bodies of two sets.
 struct SetDistance {
-  Key a;                  ///< of the first set; null if there is none
-  ClientData data_a = 0;  ///< that it was added with
-  SceneDistance to;       ///< from it to that of the second set
+  Key a;                  ///< body of the first set; the null key if no pair was found
+  ClientData data_a = 0;  ///< client data of `a`
+  SceneDistance to;       ///< distance from `a` to the body of the second set
 
-  /// True if there is such a pair.
+  /// True if a pair was found.
   [[nodiscard]] explicit operator bool() const noexcept { return a.id != kNoObject; }
 };
 
-/// A shape of the scene's pools that moves along a line without turning.
+/// A shape of the scene's pools that moves along a line without rotation (shape cast).
 struct ShapeCast {
-  ShapeId shape;  ///< convex, a mesh, a height field or a compound; no half-space
-  Pose pose;      ///< at t = 0
-  /// By which it moves while t grows by 1; finite, not zero.
+  ShapeId shape;  ///< convex, mesh, height field or compound; not a half-space
+  Pose pose;      ///< pose at t = 0
+  /// Displacement per unit of t; finite, not zero.
   double direction[3] = {1.0, 0.0, 0.0};
   double max_t = 1.0;  ///< finite, >= 0
-  /// The shape meets what it touches at the start at t = 0. False: only if it gets deeper into it
-  /// by more than the tolerance; if it slides along it or leaves it, the hit is with what it runs
-  /// into later, which may be another part of the same body.
+  /// True: a body that touches the shape at the start is hit at t = 0. False: it is hit at t = 0
+  /// only if the motion increases the penetration by more than the tolerance. If the shape slides
+  /// along such a body or leaves it, the hit is with whatever it hits later, possibly another part
+  /// of the same body.
   bool touching = true;
 };
 
-/// A shape of the scene's pools that moves and turns.
+/// A shape of the scene's pools that translates and rotates (motion cast).
 struct MotionCast {
-  ShapeId shape;       ///< convex, a mesh, a height field or a compound; no half-space
-  RigidMotion motion;  ///< between two poses, or at velocities
-  /// As ShapeCast has it.
+  ShapeId shape;       ///< convex, mesh, height field or compound; not a half-space
+  RigidMotion motion;  ///< from one pose to another, or at constant velocities
+  /// See ShapeCast::touching.
   bool touching = true;
 };
 
-/// Questions to the exact shapes of a scene. One object per thread: it keeps scratch memory from
-/// question to question, so that one that resembles an earlier one allocates nothing. Any number of
-/// them may ask a scene at the same time while nothing changes it; call `Scene::refresh` first, and
-/// after every change of bodies or of composite shapes in place, else questions are
-/// `invalid_argument`. A refused question leaves its answer alone, but spans of earlier ones are
-/// void.
+/// Queries against the exact shapes of a scene. Use one object per thread: it keeps scratch memory
+/// between queries, so that a query similar to an earlier one allocates nothing. Any number of
+/// these objects may query a scene at the same time while nothing changes the scene. Call
+/// `Scene::refresh` first, and again after every change of bodies and every in-place change of
+/// composite shapes; otherwise queries return `invalid_argument`. A failed query leaves its output
+/// unchanged, but makes spans of earlier queries invalid.
 class WINNOW_API SceneQueries {
  public:
-  /// Asks `scene`, which must outlive this. Every allocation comes from `memory`, which must too;
-  /// where its state is refused, questions are `out_of_memory`.
+  /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it. If memory for the object itself is refused, queries
+  /// return `out_of_memory`.
   explicit SceneQueries(const Scene& scene,
                         std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~SceneQueries();
   SceneQueries(const SceneQueries&) = delete;
   SceneQueries& operator=(const SceneQueries&) = delete;
 
-  // Rays: closed, errors as `cast_ray`'s. Equal t are ordered by the bodies' ids, then by part.
+  // Rays. Shapes are closed sets; errors are as for `cast_ray`. Hits of equal t are ordered by
+  // body id, then by part.
 
-  /// The hit with the least t; a null hit if there is none.
+  /// Finds the hit of least t; a null hit if there is none.
   Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
-  /// Any one hit.
+  /// Finds any one hit; a null hit if there is none.
   Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
-  /// The first hit of every body that the ray meets, sorted by t. Valid until the next question.
+  /// Finds the first hit on every body that the ray hits, sorted by t. The span is valid until the
+  /// next query.
   Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
-  /// The closest hit of each ray of a batch, answered as if it were alone. One bad ray refuses the
-  /// batch.
+  /// Finds the hit of least t of each ray; results equal the single query. One invalid ray makes
+  /// any call with a batch fail.
   Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
-  /// Any one hit of each ray of a batch; bad rays as above.
+  /// Finds any one hit of each ray.
   Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
-  /// All hits of each ray of a batch, as lists; bad rays as above. Valid until the next question.
+  /// Finds the first hit on every body that each ray hits, as lists. They are valid until the next
+  /// query.
   Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
 
-  /// Every body that the shape at the pose shares a point with, sorted by id. The shape may be
-  /// composite. Exact, as tier robust.
+  /// Finds every body that shares a point with the shape at this pose, sorted by id. The shape may
+  /// be composite. The test is exact, as in NarrowTier::robust.
   Status overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
                  const Filter& filter = {});
 
-  /// Where the moving shape first touches a body, by conservative advancement (Mirtich 1996): t is
-  /// never later than the true time of impact and at most `tolerance` (a length along the path,
-  /// finite, >= 0) earlier, or by what rounding makes of it: about 1e-14 of the sizes over the sine
-  /// of the angle of impact, and 1e-15 of the path. Nothing is too thin to be hit. t = 0 if they
-  /// overlap at the start (but see ShapeCast::touching). Of a composite shape that moves it is the
-  /// first time of all its parts; it is asked part by part, those alone that what stands comes
-  /// near. Half-spaces do not move: `unsupported`.
+  /// Finds the first body that the moving shape touches, by conservative advancement (Mirtich
+  /// 1996). The returned t is never later than the true time of impact, and earlier by at most
+  /// `tolerance` (a length along the path, finite, >= 0) plus rounding: about 1e-14 of the sizes
+  /// divided by the sine of the angle of impact, and 1e-15 of the path. No shape is too thin to be
+  /// hit. t = 0 if the shapes overlap at the start (but see ShapeCast::touching). For a composite
+  /// moving shape, t is the first time over its parts; only parts near another body are tested.
+  /// `unsupported` for a half-space.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
-  /// The first hit of every body.
+  /// Finds the first hit on every body, sorted by t. The span is valid until the next query.
   Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
 
-  /// Where the shape, which turns as it moves, first meets a body; t is the time in [0, 1], never
-  /// later than the true one. The gap then is at most `tolerance`, a share of sizes as that of
-  /// ImpactOptions, which see also for shapes that touch at the start or pass close by. Half-spaces
-  /// do not move: `unsupported`; `invalid_pose` for a motion that is not valid. A way that runs
-  /// across the axes is asked about in up to eight pieces, one after the other.
+  /// Finds the first body that the shape touches while it translates and rotates; t is a time in
+  /// [0, 1], never later than the true one. At that time the gap is at most `tolerance`, relative
+  /// to the size of the shapes as in ImpactOptions; ImpactOptions also covers shapes that touch at
+  /// the start or pass close by. A path that is diagonal to the axes is queried in up to eight
+  /// pieces. `unsupported` for a half-space; `invalid_pose` for an invalid motion.
   Status closest(const MotionCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
-  /// The first hit of every body, sorted by t. Valid until the next question.
+  /// Finds the first hit on every body, sorted by t. The span is valid until the next query.
   Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
              double tolerance = 1e-6);
 
-  // Two bodies, or sets of them. A key that is not of a live body is `invalid_key`; a limit that is
-  // NaN, a margin below 0 or not finite and rules that are none are `invalid_argument`. A body is
-  // not held against itself. Rules are asked about pairs whose boxes are near enough only.
+  // Two bodies, or sets of bodies. `invalid_key` if a key is not of a live body; `invalid_argument`
+  // for a limit that is NaN, a margin that is negative or not finite, or an invalid `rules`. In
+  // sets, a body is never paired with itself. The rules are tested only for pairs whose boxes are
+  // near enough.
 
-  /// The closest (or deepest) points of two bodies; a null answer if the rules do not take them, or
-  /// if they are farther apart than `limit`, which may be below zero, and is found out the sooner
-  /// the less it is.
+  /// Finds the closest (or deepest) points of two bodies. A null answer if the rules exclude the
+  /// pair, or if the distance exceeds `limit`. The limit may be negative; the smaller it is, the
+  /// sooner a pair is rejected.
   Status distance(Key a, Key b, SceneDistance& answer,
                   double limit = std::numeric_limits<double>::infinity(),
                   PairRules rules = PairRules::scene);
-  /// The two bodies of two sets that are the closest (or overlap the deepest), such as the links of
-  /// a robot and what it works among, or these links twice; of equal ones those with the least ids.
-  /// A null answer if the rules take no pair, or if all are farther apart than `limit`. O(a x b)
-  /// gaps between boxes, and the exact distances of hardly more than one pair.
+  /// Finds the two bodies of two sets that are closest (or overlap the deepest), such as the links
+  /// of a robot against its surroundings or against each other (the same set twice). Among equal
+  /// distances, the pair with the least ids is returned. A null answer if the rules exclude all
+  /// pairs, or if all distances exceed `limit`. O(a x b) gaps between boxes, and exact distances
+  /// for little more than one pair.
   Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
                         double limit = std::numeric_limits<double>::infinity(),
                         PairRules rules = PairRules::scene);
-  /// Pairs (body of a, body of b) of two sets that share a point, in the order of the sets; at most
-  /// `most` of them: 1 stops at the first one. O(a x b) gaps between boxes, and an exact test for
-  /// each that is closed. Valid until the next question.
+  /// Finds the pairs (body of a, body of b) that share a point, in the order of the sets, at most
+  /// `most` of them: with 1 the search stops at the first pair. O(a x b) gaps between boxes, and an
+  /// exact test for each gap of 0. The span is valid until the next query.
   Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
                   std::size_t most = std::numeric_limits<std::size_t>::max(),
                   PairRules rules = PairRules::scene);
-  /// Whether any body of one set touches one of another, or is no farther from it than `margin`; a
-  /// null pair if none does. Stops at the first pair in the order of the sets, (body of a, body of
-  /// b), which it answers. A set that is given twice, by one span, is held against itself, each
-  /// pair once. O(a x b) gaps between boxes, and for each that is within the margin an exact test,
-  /// with a margin also a distance.
+  /// Finds out if any body of one set touches a body of the other set, or is within `margin` of
+  /// one; a null pair if not. Returns the first such pair (body of a, body of b) in the order of
+  /// the sets and stops there. If both spans are the same, each pair of the set is tested once. O(a
+  /// x b) gaps between boxes; for each gap within the margin an exact overlap test and, if the
+  /// margin is above 0, a distance.
   Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
                      double margin = 0.0, PairRules rules = PairRules::scene);
-  /// Asks about the whole scene. Answers the body with the least id that has a contact (by the
-  /// rules of the scene: of the dynamic ones), and of those that it touches the one with the least
-  /// id. O(n log n), and a test for each pair of boxes within the margin up to there.
+  /// Finds out if any body of the scene has a contact. Returns the body with the least id that has
+  /// one (under PairRules::scene, among the dynamic bodies) and, of the bodies that it touches, the
+  /// one with the least id. O(n log n), and a test for each pair of boxes within the margin until
+  /// the first contact is found.
   Status any_contact(KeyPair& pair, double margin = 0.0, PairRules rules = PairRules::scene);
-  /// The bodies nearest to a point, at most `count`, no farther than `radius`, sorted by distance;
-  /// inside a solid the distance is negative.
+  /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
+  /// distance. Inside a solid the distance is negative.
   Status nearest(const double point[3], std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
 
-  /// All of it but results and scratch under `structure`.
+  /// Returns the bytes of results and scratch; all others under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend struct SensorsState;
 
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused: questions are `out_of_memory` then.
+  /// Null if memory was refused; queries then return `out_of_memory`.
   QueryState* state_ = nullptr;
 };
 

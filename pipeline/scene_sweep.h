@@ -19,106 +19,110 @@ namespace winnow {
 
 struct SweepState;
 
-/// Which pairs of bodies, of which one moves, are looked at. As in the scene itself one of them is
-/// dynamic.
+/// Which pairs of bodies are tested. At least one body of a pair moves, and one is dynamic, as in
+/// the scene itself.
 enum class SweepPairs : std::uint8_t {
-  all,                ///< all against all
-  fixed,              ///< everything against fixed bodies
-  bullets,            ///< bullets against everything
-  bullets_and_fixed,  ///< both of these
+  all,                ///< all pairs
+  fixed,              ///< all bodies against fixed bodies
+  bullets,            ///< bullets against all bodies
+  bullets_and_fixed,  ///< union of `fixed` and `bullets`
 };
 
-/// How a scene is swept.
+/// Options of a sweep.
 struct SweepOptions {
-  SweepPairs pairs = SweepPairs::all;  ///< which of them
-  /// By moving body, whether it is a bullet: 0 or 1. Empty if none is.
+  SweepPairs pairs = SweepPairs::all;  ///< which pairs are tested
+  /// For each moving body, whether it is a bullet: 0 or 1. Empty if there are none.
   std::span<const std::uint8_t> bullets{};
-  /// As ImpactOptions have it.
+  /// See ImpactOptions::tolerance.
   double tolerance = 1e-6;
-  /// Bodies that share a point at the start meet at time 0. False: they are left out, so that what
-  /// rests on a floor is told what it runs into.
+  /// True: bodies that share a point at the start touch at time 0. False: such pairs are skipped,
+  /// so that a body that rests on a floor reports what it hits.
   bool touching = true;
-  /// Only the first impact of each moving body is looked for, the same to the bit: several times as
-  /// fast where ways are long and much is in them.
+  /// True: finds only the first impact of each moving body, with identical results. Later impacts
+  /// are then not computed.
   bool first_only = false;
 };
 
-/// Two bodies that meet.
+/// An impact of two bodies.
 struct SceneImpact {
-  Key a;                               ///< the body with the smaller id
-  Key b;                               ///< the other
-  ClientData data_a = 0;               ///< that a was added with
-  ClientData data_b = 0;               ///< that b was added with
-  std::uint32_t part_a = kWholeShape;  ///< triangle or child of a; kWholeShape of a convex body
-  std::uint32_t part_b = kWholeShape;  ///< the same of b
-  double time = 0.0;                   ///< in [0, 1], never late: before it the two are apart
-  double gap = 0.0;                    ///< as ImpactResult has it
-  double error_bound = 0.0;            ///< of the gap
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit, from a to b, at that time
-  double point[3] = {0.0, 0.0, 0.0};   ///< of a at that time, in the world
+  Key a;                               ///< body with the smaller id
+  Key b;                               ///< body with the larger id
+  ClientData data_a = 0;               ///< client data of a
+  ClientData data_b = 0;               ///< client data of b
+  std::uint32_t part_a = kWholeShape;  ///< triangle or child of a; kWholeShape for a convex body
+  std::uint32_t part_b = kWholeShape;  ///< triangle or child of b; kWholeShape for a convex body
+  double time = 0.0;                   ///< in [0, 1], never late: the two are apart before it
+  double gap = 0.0;                    ///< see ImpactResult::gap
+  double error_bound = 0.0;            ///< the true gap is within gap +- error_bound
+  double normal[3] = {0.0, 0.0, 0.0};  ///< unit vector from a to b, at that time
+  double point[3] = {0.0, 0.0, 0.0};   ///< contact point of a at that time, in the world
 };
 
-/// No impact: see `SceneSweep::first`.
+/// Index of no impact; see `SceneSweep::first`.
 inline constexpr std::uint32_t kNoImpact = ~0U;
 
-/// What the last sweep looked at; counters, never timings.
+/// Counters of the last sweep; never timings.
 struct SweepStatistics {
-  std::uint64_t boxes = 0;       ///< around ways of bodies, or parts of these
-  std::uint64_t body_pairs = 0;  ///< whose boxes meet at some time
+  std::uint64_t boxes = 0;       ///< boxes around paths of bodies, or around pieces of paths
+  std::uint64_t body_pairs = 0;  ///< pairs whose boxes overlap at some time
 };
 
-/// When bodies of a scene that move between two frames meet each other and what stands: what no
-/// look at single moments finds. Nothing of the scene is moved, and one without a sweep pays
+/// Finds the times at which bodies of a scene touch while they move from one frame to the next
+/// (continuous collision detection). It moves nothing in the scene; a scene that is not swept pays
 /// nothing.
 ///
 ///     winnow::SceneSweep sweep(scene);
 ///     sweep.sweep(keys, end_poses);
 ///     for (const winnow::SceneImpact& impact : sweep.impacts()) { ... }
 ///
-/// Every body goes its whole way, whatever it meets: an impact is one of two bodies that meet
-/// nothing before. Filters, ignored pairs and the predicate of the scene count as in `collide`.
-/// Answers and their order are the same on any number of threads and any instruction set. A refused
-/// call leaves the answers of the one before.
+/// Every body moves along its whole path: an impact does not stop it, and each impact is computed
+/// as if there were no earlier ones. Filters, layers, ignored pairs and the predicate of the scene
+/// apply as in `collide`. Results and their order are the same for any number of threads and any
+/// instruction set. A failed call keeps the previous results.
 class WINNOW_API SceneSweep {
  public:
-  /// Looks at bodies of `scene`, which must outlive this. Every allocation comes from `memory`,
-  /// which must too; where its state is refused, calls are `out_of_memory`.
+  /// Creates a sweep of `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it. If memory for the object itself is refused, calls return
+  /// `out_of_memory`.
   explicit SceneSweep(Scene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~SceneSweep();
   SceneSweep(const SceneSweep&) = delete;
   SceneSweep& operator=(const SceneSweep&) = delete;
 
-  /// The bodies move from where they are in the scene, which this refreshes, to their ends as
-  /// RigidMotion::between has it; without orientations they do not turn. All others stand.
-  /// `size_mismatch`, `invalid_key` (also for a key that occurs twice), `invalid_pose` for an end
-  /// that is none or too far away, `invalid_argument` for bad options; `out_of_memory` leaves no
-  /// impacts. O(n log n) of the moving bodies, about log n of all for each, and `time_of_impact`
-  /// for each pair whose boxes meet. The boxes contain all of the way, turning included; a way that
-  /// runs across the axes is boxed in up to eight pieces. What most of the moving bodies have in
-  /// common of their ways is left out where these are held against each other.
+  /// Sweeps bodies from their poses in the scene, which is refreshed first, to the given ends,
+  /// along RigidMotion::between; without orientations they do not rotate. All other bodies are at
+  /// rest. `size_mismatch`; `invalid_key`, also if a key occurs twice; `invalid_pose` for an end
+  /// that is invalid or too far away; `invalid_argument` for invalid options; `out_of_memory`
+  /// leaves no impacts. O(n log n) for n moving bodies, about log(all bodies) for each, and one
+  /// `time_of_impact` for each pair whose boxes overlap. The boxes contain the whole path, rotation
+  /// included; a path that is diagonal to the axes gets up to eight boxes. If most moving bodies
+  /// travel together, their common displacement is subtracted before they are tested against each
+  /// other.
   Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
-  /// The same of any motions, such as those of given velocities; each starts where it says.
+  /// As above, for any motions, such as from velocities. Each body starts at the start of its
+  /// motion.
   Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
                const SweepOptions& options = {});
 
-  /// The first impact of each pair, or those that are the first one of a moving body, by time, then
-  /// by the ids of a and b.
+  /// Returns the first impact of each pair (with `first_only`, only impacts that are the first of a
+  /// moving body), sorted by time, then by the ids of a and b.
   [[nodiscard]] std::span<const SceneImpact> impacts() const noexcept;
-  /// By moving body, in the order of the keys, the number of its first impact; kNoImpact.
+  /// Returns, for each moving body in the order of the keys, the index of its first impact, or
+  /// kNoImpact.
   [[nodiscard]] std::span<const std::uint32_t> first() const noexcept;
 
-  /// Of the last sweep.
+  /// Returns the counters of the last sweep.
   [[nodiscard]] SweepStatistics statistics() const noexcept;
-  /// Impacts under `results`.
+  /// Returns the bytes of impacts under `results`, the rest under `scratch` and `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  /// Both kinds of sweeps, once `take` has taken over the motions.
+  /// Runs a sweep; `take` reads the motions.
   template <typename Take>
   Status run(std::span<const Key> keys, const SweepOptions& options, Take&& take);
 
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   SweepState* state_;
 };
 

@@ -19,83 +19,88 @@ namespace winnow {
 
 struct SensorsState;
 
-/// A sensor as it is added.
+/// A sensor to be added.
 struct SensorDefinition {
-  ShapeId shape{};        ///< of the scene's pools, convex or composite
-  Pose pose{};            ///< where the shape's own frame stands in the world
+  ShapeId shape{};        ///< from the scene's pools, convex or composite
+  Pose pose{};            ///< pose of the shape's frame in the world
   ObjectFilter filter{};  ///< which bodies it senses
-  Key carrier{};          ///< a body that it does not sense, such as the one it is fixed to
-  ClientData data = 0;    ///< yours, given back with what is sensed; never read
+  Key carrier{};          ///< a body that it does not sense, such as the body it is attached to
+  ClientData data = 0;    ///< the caller's value, returned with sensed bodies; never read
 };
 
 /// A body that shares a point with a sensor.
 struct SensedBody {
-  Key sensor;                                ///< of the Sensors
-  Key body;                                  ///< of the scene
-  ClientData sensor_data = 0;                ///< that the sensor was added with
-  ClientData body_data = 0;                  ///< that the body was added with
-  ContactEvent event = ContactEvent::begun;  ///< whether it was sensed the last time
+  Key sensor;                                ///< key of the sensor
+  Key body;                                  ///< key of the body in the scene
+  ClientData sensor_data = 0;                ///< client data of the sensor
+  ClientData body_data = 0;                  ///< client data of the body
+  ContactEvent event = ContactEvent::begun;  ///< whether the previous `sense` found it too
 };
 
-/// A body that was sensed the last time and is not now. Keys of what was removed are stale.
+/// A body that the previous `sense` found and the last one did not. Keys of removed objects are
+/// stale.
 struct LeftSensor {
-  Key sensor;                  ///< of the Sensors
-  Key body;                    ///< of the scene
-  ClientData sensor_data = 0;  ///< that the sensor was added with
-  ClientData body_data = 0;    ///< that the body was added with
+  Key sensor;                  ///< key of the sensor
+  Key body;                    ///< key of the body in the scene
+  ClientData sensor_data = 0;  ///< client data of the sensor
+  ClientData body_data = 0;    ///< client data of the body
 };
 
-/// Volumes that tell which bodies of a scene are in them, who came and who left, and make no
-/// contacts: goals, triggers, a robot's light curtains. They are no bodies: neither rays nor bodies
-/// meet them, nor do they sense each other, and a scene without them pays nothing.
+/// Volumes that report which bodies of a scene are inside, which entered and which left, without
+/// contacts: goals, triggers, a robot's light curtains. Sensors are not bodies: rays and bodies do
+/// not hit them, and they do not sense each other. A scene without sensors pays nothing.
 ///
 ///     winnow::Sensors sensors(scene);
 ///     sensors.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, goal);
 ///     sensors.sense();
 ///     for (const winnow::SensedBody& in : sensors.sensed()) { ... }
 ///
-/// Fixed, dynamic and sleeping bodies are sensed alike, exactly (as tier robust). A refused call
-/// changed nothing. Calls are made one at a time.
+/// Fixed, dynamic and sleeping bodies are sensed alike. The test is exact, as in
+/// NarrowTier::robust. A failed call changes nothing. The object is not thread-safe: calls must not
+/// overlap.
 class WINNOW_API Sensors {
  public:
-  /// Senses bodies of `scene`, which must outlive this. Every allocation comes from `memory`, which
-  /// must too; where its state is refused, calls are `out_of_memory`.
+  /// Creates sensors on `scene`, which must outlive this object. Every allocation comes from
+  /// `memory`, which must also outlive it. If memory for the object itself is refused, calls return
+  /// `out_of_memory`.
   explicit Sensors(Scene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~Sensors();
   Sensors(const Sensors&) = delete;
   Sensors& operator=(const Sensors&) = delete;
 
-  /// Adds a sensor. `invalid_key` for a shape that the scene's pools do not have, `invalid_pose`;
+  /// Adds a sensor. `invalid_key` if the scene's pools do not contain the shape; `invalid_pose`;
   /// `too_many_objects` beyond 2^28.
   Status add(const SensorDefinition& sensor, Key& key);
-  /// Removes a sensor: what it sensed leaves it by the next `sense`.
+  /// Removes a sensor. The bodies that it sensed leave it in the next `sense`.
   Status remove(Key key);
-  /// Gives a sensor a new pose.
+  /// Sets the pose of a sensor.
   Status move(Key key, const Pose& pose);
-  /// Replaces all that the sensor is; its key stays. Errors are those of `add`.
+  /// Replaces the whole definition of a sensor; its key stays. Errors as for `add`.
   Status set(Key key, const SensorDefinition& sensor);
-  /// The sensor as it stands now.
+  /// Returns the current definition of a sensor.
   Status sensor(Key key, SensorDefinition& sensor) const noexcept;
 
-  /// Looks at the scene as it stands now, which it refreshes, on the threads of the scene; what it
-  /// senses is the same on any number. O(sensors (log n + bodies near each)). `out_of_memory`
-  /// leaves nothing sensed. `invalid_key` if a shape of a sensor has been removed meanwhile.
+  /// Finds the bodies inside each sensor, on the threads of the scene; refreshes the scene first.
+  /// The result is the same for any number of threads. `out_of_memory` leaves no sensed bodies.
+  /// `invalid_key` if the shape of a sensor has been removed from its pool. O(sensors (log n +
+  /// bodies near each)).
   Status sense();
-  /// What was sensed, by the ids of sensors and then of bodies.
+  /// Returns the sensed bodies, sorted by the ids of sensors, then of bodies.
   [[nodiscard]] std::span<const SensedBody> sensed() const noexcept;
-  /// What has left, in the same order.
+  /// Returns the bodies that left, in the same order.
   [[nodiscard]] std::span<const LeftSensor> left() const noexcept;
 
-  /// Sensors that there are.
+  /// Returns the number of sensors.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// True for keys of sensors that there are.
+  /// True if the key belongs to a sensor of this object.
   [[nodiscard]] bool contains(Key key) const noexcept;
-  /// What is sensed and has left under `results`, what was sensed before under `scratch`.
+  /// Returns the bytes of sensed bodies and bodies that left under `results`, of the previously
+  /// sensed bodies and the search under `scratch`, and the rest by part.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   SensorsState* state_;
 };
 

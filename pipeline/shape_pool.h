@@ -17,29 +17,31 @@
 
 namespace winnow {
 
-/// A hull given by its surface: face i is the next `sizes[i]` of `indices` into `points`,
-/// counter-clockwise seen from outside. Faces may be triangles of what is coplanar.
+/// Surface of a hull: face i consists of the next `sizes[i]` entries of `indices`, which refer to
+/// points, counter-clockwise as seen from outside. Coplanar faces may be given as several
+/// triangles.
 struct HullFaces {
-  std::span<const std::uint32_t> indices;  ///< numbers of points, face after face
-  std::span<const std::uint32_t> sizes;    ///< corners of each face, 3 or more
+  std::span<const std::uint32_t> indices;  ///< indices of points, face after face
+  std::span<const std::uint32_t> sizes;    ///< number of vertices of each face, 3 or more
 };
 
-/// The convex shapes of a simulation, each kind in its own table; bodies refer to them by id and
-/// may share them. A kind that is not used takes no memory. Not for use from two threads while one
-/// of them changes it.
+/// The convex shapes of a simulation, each kind in its own table. Bodies refer to shapes by id and
+/// may share them. A kind that is not used takes no memory. A pool must not be used by another
+/// thread while one changes it.
 class WINNOW_API ShapePool {
  public:
-  /// An empty pool. Every allocation comes from `memory`, which must outlive it.
+  /// Creates an empty pool. Every allocation comes from `memory`, which must outlive the pool.
   explicit ShapePool(std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~ShapePool();
-  /// Takes over all shapes, whose ids stay, and the resource; what was moved from is empty.
+  /// Takes the shapes of another pool, with their ids, and its resource. The other pool is then
+  /// empty.
   ShapePool(ShapePool&&) noexcept;
   ShapePool(const ShapePool&) = delete;
   ShapePool& operator=(const ShapePool&) = delete;
   ShapePool& operator=(ShapePool&&) = delete;
 
   /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
-  /// without a normal; `too_many_objects` beyond 2^28 of a kind. O(1).
+  /// without a normal; `too_many_objects` beyond 2^28 shapes of a kind. O(1).
   /// @{
   Status add(const SphereShape& shape, ShapeId& id);
   Status add(const CapsuleShape& shape, ShapeId& id);
@@ -51,60 +53,64 @@ class WINNOW_API ShapePool {
   Status add(const EllipsoidShape& shape, ShapeId& id);
   Status add(const TaperedCapsuleShape& shape, ShapeId& id);
   /// @}
-  /// The same; asks the function along 26 directions. `invalid_shape` also where there is none, or
-  /// what it answers is not finite, beyond the radius or, by more than 1e-9 of that, not convex.
+  /// Adds a user shape; calls its function along 26 directions. `invalid_shape` also if there is no
+  /// function, or a returned point is not finite, beyond the radius, or violates convexity by more
+  /// than 1e-9 of the radius.
   Status add(const SupportShape& shape, ShapeId& id);
 
-  /// The same for who asks the id: the default one, which is no shape and which every call refuses,
-  /// if the shape was refused.
+  /// As above, but returns the id, or an invalid id (which every call refuses) on failure.
   template <typename Shape>
   [[nodiscard]] ShapeId add(const Shape& shape) {
     ShapeId id;
     return add(shape, id) == Status::ok ? id : ShapeId{};
   }
 
-  /// The convex hull of points, computed without rounding: of any that are finite, whatever they
-  /// are like. Faces that are coplanar to 1e-13 of the hull's size are merged; points inside, on
-  /// faces or on edges, to as much, fall away; flat sets make a polygon, a segment or a point.
-  /// `invalid_shape` if there is no point or one is not finite. O(points log points) for most.
+  /// Adds the convex hull of points, computed without rounding; any finite points are valid input.
+  /// Faces that are coplanar to 1e-13 of the hull's size are merged; points inside, on faces or on
+  /// edges (to the same tolerance) are dropped. Flat sets give a polygon, a segment or a point.
+  /// `invalid_shape` if there is no point or one is not finite. O(points log points) for most
+  /// inputs.
   Status add_hull(const PointView& points, double rounding, ShapeId& id);
-  /// The hull that `faces` bound. `invalid_shape` unless they are closed, consistently oriented and
-  /// convex to 1e-9 of the hull's size. Coplanar neighbours are merged.
+  /// Adds the hull bounded by `faces`. `invalid_shape` unless they are closed, consistently
+  /// oriented and convex to 1e-9 of the hull's size. Coplanar adjacent faces are merged.
   Status add_hull(const PointView& points, const HullFaces& faces, double rounding, ShapeId& id);
 
-  /// A hull as a pool has it, given by its vertices and by its faces in their order, which it keeps
-  /// to the bit; without faces a segment or a point. `invalid_shape` for what no pool can have.
+  /// Adds a hull that was read from a pool, given by its vertices and its faces in order; the pool
+  /// stores it bit for bit. Without faces: a segment or a point. `invalid_shape` if no pool can
+  /// contain such a hull.
   Status add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
                         ShapeId& id);
 
-  /// Takes a shape out; its place is given to the next one of its kind. Bodies must not use the id
-  /// any more: until then its place holds a point.
+  /// Removes a shape. Bodies must not use its id any more: a later shape of the same kind gets its
+  /// index. Until then the table holds a point there.
   Status remove(ShapeId id);
 
-  /// True for ids of shapes that are there.
+  /// True if the pool contains the shape.
   [[nodiscard]] bool contains(ShapeId id) const noexcept;
-  /// Shapes of a kind, removed ones excluded.
+  /// Returns the number of shapes of a kind, without removed ones.
   [[nodiscard]] std::size_t size(ShapeKind kind) const noexcept;
 
-  /// A float box that contains the shape at the pose, rounded outward, at most 1e-6 of its size
-  /// larger than the smallest; a half-space's reaches to infinity. `pose` is valid.
+  /// Returns a float box that contains the shape at a valid pose, rounded outward: at most 1e-6 of
+  /// its size larger than the tightest box. The box of a half-space is infinite.
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
 
-  /// Appends all shapes, and which places are free, to bytes; pipeline/CONTRACT.md has the format.
-  /// `unsupported` while it holds support functions; that and `out_of_memory` leave `out` as it
-  /// was. O(bytes).
+  /// Appends a snapshot of all shapes and free indices. pipeline/FORMATS.md has the format.
+  /// `unsupported` if the pool contains user shapes; this and `out_of_memory` leave `out`
+  /// unchanged. O(bytes).
   Status save(Column<std::byte>& out) const;
-  /// Becomes the pool that was saved: shapes have the ids that they had, and answer to the bit.
-  /// Whoever uses the pool and has shapes that were not there has to be loaded, too, before it is
-  /// asked again. `invalid_argument` for anything that was not saved so, whoever made it, and
-  /// `out_of_memory`, leave the pool as it was. Links the kernels of all kinds. O(bytes).
+  /// Replaces the shapes by a snapshot, with the ids that they had; results equal the results of
+  /// the saved pool bit for bit. Users of the pool (scenes, composite pools) whose shapes it no
+  /// longer contains must be loaded too before they are used again. `invalid_argument` if the bytes
+  /// are not a valid snapshot (untrusted bytes are safe); it and `out_of_memory` change nothing.
+  /// Links the kernels of all kinds. O(bytes).
   Status load(std::span<const std::byte> saved);
 
-  /// The shapes themselves, to be read: sphere `id` is tables().spheres[id.index()]. Valid until
-  /// the next change.
+  /// Returns the shapes for reading: sphere `id` is tables().spheres[id.index()]. Valid until the
+  /// next change.
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
 
-  /// Shapes and what is made of them, to the byte what the resource gave.
+  /// Returns the bytes of shapes and data derived from them: exactly what is allocated from the
+  /// resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -126,7 +132,7 @@ class WINNOW_API ShapePool {
   /// Calls `body` with the table of a kind.
   template <typename Pool, typename Body>
   static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);
-  /// Calls visit(table, the same of another pool) for each kind.
+  /// Calls visit(table, table of the same kind in another pool) for each kind.
   template <typename Pool, typename Visit>
   static void for_tables(Pool& pool, Pool& other, Visit&& visit);
   void refresh_tables() noexcept;

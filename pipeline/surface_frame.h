@@ -1,18 +1,18 @@
 #pragma once
 
-// Plain structs: kernel files include this.
+// Plain structs, because kernel files include this.
 
 #include <winnow/core/export.h>
 
 namespace winnow {
 
-/// Where a surface stands.
+/// Frame of a surface (mesh or height field) in the world.
 struct SurfaceFrame {
-  double position[3];   ///< of its own origin, in the world
-  double to_own[3][3];  ///< columns of the matrix that takes the world's vectors into its frame
-  bool is_turned;       ///< false: that changes nothing
-  double reach;         ///< no coordinate of it is larger in its frame
-  double size;          ///< nor in the world's axes, about its origin
+  double position[3];   ///< position of its origin in the world
+  double to_own[3][3];  ///< columns of the matrix from world vectors to the frame
+  bool is_turned;       ///< false if that matrix is the identity
+  double reach;         ///< upper bound of its coordinates in the frame
+  double size;          ///< upper bound of its coordinates in world axes, about its origin
 };
 
 }  // namespace winnow

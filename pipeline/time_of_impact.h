@@ -1,5 +1,8 @@
 #pragma once
 
+// Continuous collision detection of pairs of moving shapes. SceneSweep (scene_sweep.h) finds such
+// pairs in a scene. The implementation is in motion/.
+
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
@@ -18,84 +21,87 @@
 
 namespace winnow {
 
-/// What impacts are found with, which is winnow's own.
+/// Internal types.
 namespace impact {
 struct Impact;
 }  // namespace impact
 class PartTraversal;
 
-/// What moves: body i has shape shapes[i] and moves by motions[i].
+/// Moving bodies: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
-  std::span<const ShapeId> shapes;       ///< by body
-  std::span<const RigidMotion> motions;  ///< by body; as many
+  std::span<const ShapeId> shapes;       ///< one per body
+  std::span<const RigidMotion> motions;  ///< one per body
 };
 
-/// How near shapes must be to have met.
+/// Options of `time_of_impact`.
 struct ImpactOptions {
-  /// The gap at the time of impact is at most this share of the smaller shape's size: its largest
-  /// distance from its middle, the other's if it is a point; of composite shapes, of the parts that
-  /// meet. In (0, 1]. At least what double
-  /// resolves: some 1e-13 of the sizes, of the way between the positions and of what turning
-  /// sweeps; of cylinders and cones beside shapes many times as large some 1e-8 of the larger.
+  /// Largest gap at the time of impact, relative to the size of the smaller shape. The size is the
+  /// greatest distance of a point from the centre; if it is 0, the size of the other shape is used;
+  /// for composite shapes, the sizes of the parts that touch. In (0, 1]. The gap is never smaller
+  /// than double precision resolves: about 1e-13 of the sizes, of the path between the positions
+  /// and of the arcs of rotation; for cylinders and cones against much larger shapes, about 1e-8 of
+  /// the larger size.
   double tolerance = 1e-6;
-  /// On whose threads; answers are the same on all.
+  /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::serial();
-  /// What holds meshes, height fields and compounds; null where there are none.
+  /// Pool of meshes, height fields and compounds; null if there are none.
   const MidPhase* composites = nullptr;
 };
 
-/// When moving shapes first meet: columns, one element for each pair in the order given. The
-/// caller's, reused from call to call.
+/// Results of `time_of_impact`, in columns: one element per pair, in the order of the input. The
+/// caller keeps the object from call to call.
 class WINNOW_API ImpactResult {
  public:
-  /// Every allocation comes from `memory`, which must outlive the object; none before the first
-  /// use.
+  /// Creates an empty result. Every allocation comes from `memory`, which must outlive the object;
+  /// there are none before the first use.
   explicit ImpactResult(std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// Answers, one for each pair that was asked about.
+  /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept { return time_.size(); }
-  /// `ok`; `invalid_key` for a pair with a shape that is not there, `unsupported` for one with a
-  /// composite shape where no composites are given, `invalid_pose` for one with a motion that is
-  /// not valid: the other columns then hold zeros.
+  /// Returns the status of pair i: `ok`; `invalid_key` if a shape does not exist; `unsupported` for
+  /// a composite shape without a pool of them; `invalid_pose` for an invalid motion. If it is not
+  /// `ok`, the other columns hold zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
-  /// The same of all.
+  /// Returns the status of all pairs.
   [[nodiscard]] std::span<const Status> status() const noexcept {
     return {status_.data(), status_.size()};
   }
-  /// True if they meet. False is certain: they are apart all the time.
+  /// True if the shapes of pair i touch. False is certain: they are apart at all times.
   [[nodiscard]] bool hits(std::size_t i) const noexcept { return hit_[i] != 0; }
-  /// The same of all, not 0 where they do.
+  /// Returns for all pairs whether they touch; nonzero if they do.
   [[nodiscard]] std::span<const std::uint8_t> hit() const noexcept {
     return {hit_.data(), hit_.size()};
   }
-  /// In [0, 1], 1 where they do not meet. At every earlier time they are apart.
+  /// Returns the times of impact, in [0, 1]; 1 if the shapes do not touch. At every earlier time
+  /// they are apart.
   [[nodiscard]] std::span<const double> time() const noexcept { return span(time_); }
-  /// Distance at that time, within the tolerance; 0 where they do not meet. Not above 0, and then
-  /// by how deep they overlap, of shapes that share a point at the start: their time is 0.
+  /// Returns the distances at these times, within the tolerance; 0 if the shapes do not touch. For
+  /// shapes that share a point at the start (time 0): minus the penetration depth.
   [[nodiscard]] std::span<const double> gap() const noexcept { return span(gap_); }
-  /// The true distance at that time is within gap +- error_bound.
+  /// Returns the error bounds: the true distance at that time is within gap +- error_bound.
   [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
-  /// Unit vectors from a to b at that time, in the axes of the world; 0 where they do not meet.
+  /// Returns the unit normals from a to b at these times, in world axes; 0 if the shapes do not
+  /// touch.
   [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
     return span(normal_[axis]);
   }
-  /// The point of a at that time, relative to the position of body a then, in the axes of the
-  /// world. That of b is gap * normal farther.
+  /// Returns the contact points of a, relative to the position of body a at that time, in world
+  /// axes. The point of b is point + gap * normal.
   [[nodiscard]] std::span<const double> point(int axis) const noexcept {
     return span(point_[axis]);
   }
 
-  /// Which triangle or child of a it is that meets b, the same each time; kWholeShape of a convex
-  /// shape, and where they do not meet.
+  /// Returns the triangle or child of a that touches b, the same one in each run. kWholeShape for a
+  /// convex shape, or if the shapes do not touch.
   [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept {
     return {part_a_.data(), part_a_.size()};
   }
-  /// The same of b.
+  /// Returns the triangle or child of b.
   [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept {
     return {part_b_.data(), part_b_.size()};
   }
 
-  /// All columns under `results`, to the byte what the resource gave.
+  /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -123,33 +129,36 @@ class WINNOW_API ImpactResult {
   Column<std::uint32_t> part_b_;
 };
 
-/// When the shapes of each pair first meet. Never late: at every time before the answer they are
-/// apart, which planes between them prove, rounding included; and it is early by no more than it
-/// takes to close a gap of the tolerance. Shapes that share a point at the start meet at time 0.
-/// Shapes that pass each other nearer than the tolerance, or part from such a gap only to close it
-/// again, may meet or not; those that stay within it as they slide, rest or part do not meet.
+/// Finds the time at which the shapes of each pair first touch. The time is never late: at every
+/// earlier time the shapes are apart, which is proved by separating planes, rounding included. It
+/// is early by no more than the time to close a gap of the tolerance. Shapes that share a point at
+/// the start touch at time 0. Shapes that pass each other within the tolerance, or leave that range
+/// and come back into it, may or may not be reported as touching. Shapes that stay within it while
+/// they slide, rest or separate are not.
 ///
-/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation of rigid body systems",
-/// 1996) along the normal of the closest points: what a body reaches along a direction is, of each
-/// of its points, a cosine in time, and hence between two times above its chord by no less than a
-/// square of the angle; so that two looks at the shapes prove that they are apart between, with an
-/// error of second order, and few steps are needed. Composite shapes are traversed in their own
-/// frame by a box that sweeps through it with the other shape, turning included, what is met first
-/// first: part by part, and no part after the first time found. Of shapes that share a point at the
-/// start the gap is that of the parts that overlap the deepest.
+/// The method is conservative advancement (Mirtich, "Impulse-based dynamic simulation of rigid body
+/// systems", 1996) along the normal of the closest points. Along a fixed direction, the coordinate
+/// of a point of a rotating body is a cosine in time; between two times it leaves its chord by at
+/// most a term quadratic in the angle. Two closest-point computations thus prove that the shapes
+/// are apart in between, with an error of second order, so that few steps suffice. A composite
+/// shape is traversed in its own frame with the swept box of the other shape, rotation included, in
+/// order of time; parts after the first impact found are skipped. If the shapes share a point at
+/// the start, the gap is the gap of the deepest pair of parts.
 ///
-/// `invalid_argument` for a bad tolerance or a pair of a body that does not exist, `size_mismatch`
-/// for spans of different lengths, `out_of_memory`: then `result` is empty. What is wrong with one
-/// pair is in its status. Usually some three looks for closest points per pair, of fast turns
-/// seven; where shapes whirl around each other without touching, up to |turn| / sqrt(tolerance).
-/// Where neither turns, the looks are steps of one search for closest points (van den Bergen, "Ray
-/// casting against general convex objects with application to continuous collision detection",
-/// 2004): some six, of smooth shapes up to fifteen, among which are guesses by the secant method
-/// where the normal leads from one to the other. Eight pairs of the same kinds look at once, in
-/// double, 256 being sorted by kind at a time; two half-spaces, and what double can hardly tell
-/// apart, do so one by one. What is said of a pair does not depend on the others. Of composite
-/// shapes that for each pair of parts whose boxes meet on the way, and a traversal for each half
-/// radian or so that they turn past each other within reach.
+/// `invalid_argument` for an invalid tolerance or a pair with a body index out of range,
+/// `size_mismatch` for spans of different lengths, `out_of_memory`: then `result` is empty. Errors
+/// of a single pair are in its status.
+///
+/// Usually about three closest-point computations per pair, seven for fast rotations; up to |turn|
+/// / sqrt(tolerance) if the shapes rotate fast around each other without touching. If neither shape
+/// rotates, the computations are steps of one closest-point search (van den Bergen, "Ray casting
+/// against general convex objects with application to continuous collision detection", 2004): about
+/// six, up to fifteen for smooth shapes. For smooth shapes, some steps guess the normal by the
+/// secant method. Pairs are sorted by kind, 256 at a time, and computed in double, eight of the
+/// same kinds at once; pairs of half-spaces, and pairs at the limit of double precision, are
+/// computed one by one. The result of a pair does not depend on other pairs. A pair with a
+/// composite shape takes this for each pair of parts whose boxes overlap on the path, and one
+/// traversal for about each half radian of relative rotation within reach.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);

@@ -1,11 +1,11 @@
 #pragma once
 
 /// @file
-/// The whole public API of winnow, but for <winnow/core/eigen.h>.
+/// The whole public API of winnow, except for <winnow/core/eigen.h>.
 
 /// @namespace winnow
-/// Collision detection: partitions, which find overlapping bounding volumes, a narrow phase, which
-/// computes pairs of shapes, and scenes, which do both.
+/// Collision detection: partitions find overlapping bounding volumes, the narrow phase computes
+/// pairs of shapes, and scenes combine both.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>

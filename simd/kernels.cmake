@@ -1,20 +1,21 @@
-# The rule by which a kernel file is built once per instruction set.
+# Compiles each kernel file once per instruction set.
 
-# WINNOW_ISAS, narrowest first, holds sse42 on x86-64: all of winnow is compiled for that, and
-# kernels for each of them; a program takes the widest that its machine has. Each adds its copy of
-# the kernels to a program, and its time to the build. "native" is the widest that this machine runs,
-# and the baseline, of which nothing but its answers is wanted then.
+# WINNOW_ISAS lists the instruction sets for which kernels are compiled, narrowest first. On x86-64
+# it must contain sse42, for which all other code is compiled. A program uses the widest one that
+# its machine has. Each adds a copy of the kernels to programs, and time to the build. "native" is
+# the widest one that this machine runs, and the baseline, whose kernels then need correct results
+# but no speed.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
   set(WINNOW_ISAS "neon64" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "wasm")
-  # By headers that give its intrinsics; see tests/toolchains/wasm.cmake.
+  # Its headers provide SSE4.2 intrinsics; see tests/toolchains/wasm.cmake.
   set(WINNOW_ISAS "sse42" CACHE STRING "Instruction sets to build kernels for")
 else()
   message(FATAL_ERROR "winnow has no kernels for ${CMAKE_SYSTEM_PROCESSOR}")
 endif()
-# winnow_native_isas(): makes WINNOW_ISAS the list that is meant by "native".
+# winnow_native_isas(): sets WINNOW_ISAS to the list that "native" stands for.
 function(winnow_native_isas)
   if(CMAKE_CROSSCOMPILING)
     message(FATAL_ERROR "WINNOW_ISAS=native asks this machine, and this build is for another")
@@ -46,7 +47,7 @@ set(WINNOW_FLAGS_avx2 -mavx2 -mfma -mbmi -mbmi2 -mpopcnt -mlzcnt)
 set(WINNOW_FLAGS_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi
     -mbmi2 -mpopcnt -mlzcnt -mprefer-vector-width=512)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # The intrinsics of g++ 12 pass a register that they leave uninitialised on purpose.
+  # Intrinsics of g++ 12 pass a register that is uninitialised on purpose.
   list(APPEND WINNOW_FLAGS_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
 endif()
 set(WINNOW_FLAGS_neon64 "")
@@ -70,7 +71,7 @@ foreach(isa ${WINNOW_ISAS})
 endforeach()
 
 set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in every build type")
-# A wide type is two or four registers there, which takes the compiler long.
+# There a wide type takes two or four registers, which makes compilation slow.
 set(WINNOW_NARROWER_OPTIMIZATION "" CACHE STRING
     "Optimization of kernels for all instruction sets but the widest; empty: that of all kernels")
 set(WINNOW_KERNELS_FROM "" CACHE PATH
@@ -81,10 +82,11 @@ endif()
 mark_as_advanced(WINNOW_KERNEL_OPTIMIZATION WINNOW_NARROWER_OPTIMIZATION WINNOW_KERNELS_FROM)
 list(GET WINNOW_ISAS -1 winnow_widest_isa)
 
-# winnow_add_kernels(target file.kernel.cpp ...): each file into an object library per instruction
-# set, linked into the target. The macro xsimd=xsimd_<isa> gives every build its own xsimd
-# namespace, so no inline function is shared between them. Nothing in a kernel depends on how what
-# calls it is built: a build that looks at the rest may link those of another.
+# winnow_add_kernels(target file.kernel.cpp ...): compiles each file into an object library per
+# instruction set, and links these into the target. The macro xsimd=xsimd_<isa> gives every build
+# its own xsimd namespace, so no inline function is shared between them. Kernels do not depend on
+# how the rest is compiled: builds with other options for the rest may link the kernels of another
+# build (WINNOW_KERNELS_FROM).
 function(winnow_add_kernels target)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   foreach(isa ${WINNOW_ISAS})

@@ -1,11 +1,11 @@
 # shellcheck shell=bash
-# Sourced by tests/coverage/run and tests/mutants/run: tests that are built already, linked with another
-# build of the library.
+# Sourced by tests/coverage/run and tests/mutants/run: links tests that are already compiled with
+# another build of the library.
 
-# winnow_link_tests BUILD LIBRARY OUT PROGRAM...: programs of a build folder, as tests/winnow_core_tests,
-# by their own commands to link but with the archives of the build folder LIBRARY in place of theirs, into
-# the folder OUT. WINNOW_LINKER names another compiler to link with, and WINNOW_LINK_FIRST what comes
-# before everything else.
+# winnow_link_tests BUILD LIBRARY OUT PROGRAM...: links programs of a build folder, such as
+# tests/winnow_core_tests, into the folder OUT, with their own link commands but with the archives
+# of the build folder LIBRARY. WINNOW_LINKER names another compiler for linking, and
+# WINNOW_LINK_FIRST contains arguments that come first.
 winnow_link_tests() {
   local tests=$1 library=$2 out=$3 program name command
   shift 3

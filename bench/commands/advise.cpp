@@ -28,7 +28,7 @@ class Advise final : public RowsCommand {
   void measure() override;
 
   Target target_;
-  std::size_t frames_ = 0;  // 0: as many as suit
+  std::size_t frames_ = 0;  // 0: chosen by `measure`
   int threads_ = 1;
   std::vector<std::string> partitions_{"all"};
 };
@@ -39,7 +39,7 @@ void print_choice(const Advice& advice) {
             << short_number(100.0 * advice.moving) << " % of the objects move in a frame; "
             << short_number(advice.pairs / static_cast<double>(advice.objects))
             << " pairs an object";
-  // Known where AutoPartition took part.
+  // Features are set only if AutoPartition was among the contenders.
   if (!advice.chosen.empty()) {
     std::cout << "; the large ones have " << short_number(std::exp2(f.size_spread))
               << " times the edges of the small ones; room for " << short_number(f.room[0]) << " x "
@@ -75,8 +75,8 @@ void Advise::measure() {
 Command add_advise(CLI::App& app) {
   return command<Advise>(
       app, "advise",
-      "Races the partitions on a recording or scene, frame by frame interleaved, and says which to "
-      "take, why, and how. Medians leave out the first six frames.");
+      "Measures all partitions on a recording or scene, in turns, and recommends one, with the "
+      "reason and the line of C++ that creates it. Medians exclude the first six frames.");
 }
 
 }  // namespace winnow::bench

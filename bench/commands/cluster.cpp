@@ -1,3 +1,7 @@
+// The command `winnow cluster`: runs a recording or scene on several ranks, which are processes
+// (MPI) or virtual ranks in this process, and prints times, traffic and a digest. The run itself is
+// in measure/cluster_run.
+
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
 #include "bench/common/arena.h"
@@ -23,7 +27,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kClusterFrames = 30;
-/// By ContactLevel.
+/// Names of the values of ContactLevel.
 constexpr std::array<const char*, 4> kContactLevelNames{"pairs", "boolean", "distance", "manifold"};
 
 struct ClusterCommand {
@@ -31,7 +35,7 @@ struct ClusterCommand {
   std::uint32_t ranks = 2;
   std::uint32_t virtual_ranks = 0;  // 0: processes
   std::size_t frames = 0;           // 0: all of a recording, kClusterFrames of a scene
-  std::string level;                // empty: boxes alone
+  std::string level;                // empty: pairs of boxes only
   std::string json;
   std::string isa;
   int threads = 1;
@@ -39,16 +43,17 @@ struct ClusterCommand {
 
   void add_options(CLI::App& app) {
     target.add_to(app);
-    number(app, "--ranks", ranks, 1, 4096, "Processes; as many as mpirun has started, if it has");
-    number(app, "--virtual-ranks", virtual_ranks, 0, 65536, "So many ranks in this process alone");
+    number(app, "--ranks", ranks, 1, 4096,
+           "Number of processes; if mpirun started this one, its number of processes");
+    number(app, "--virtual-ranks", virtual_ranks, 0, 65536,
+           "Number of virtual ranks in this process, instead of processes");
     one_of(app, "--level", level, {kContactLevelNames.begin(), kContactLevelNames.end()},
-           "Contacts of bodies, as large as the boxes that they come with, in place of pairs of "
-           "boxes");
+           "Find contacts of bodies at this level, instead of pairs of boxes; each body is as "
+           "large as its box");
     add_threads_option(app, threads, "Number of threads of each process");
     add_isa_option(app, isa);
     add_frames_option(app, frames);
-    number(app, "--time-limit", time_limit, 0.1, 1e6,
-           "Seconds that a process waits for the others");
+    number(app, "--time-limit", time_limit, 0.1, 1e6, "Time limit for other processes, in seconds");
     add_json_option(app, json);
   }
   int run();
@@ -65,7 +70,7 @@ std::string digits_of(const ClusterDigest& digest) {
   return to_hex(digest.high) + to_hex(digest.low);
 }
 
-/// The row of `replay` for a cluster, and what else there is to count.
+/// The columns that `replay` writes, for a cluster, and the traffic and balance of the ranks.
 Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects, int threads,
                   bool is_virtual, const std::string& level) {
   using Frame = const ClusterFrame&;
@@ -115,8 +120,8 @@ int ClusterCommand::run() {
   }
   if (!MpiSession::is_there()) {
     throw ArgumentError(
-        "--ranks needs MPI and Zoltan, which this tool was built without (Debian: "
-        "libopenmpi-dev, libtrilinos-zoltan-dev); --virtual-ranks does not");
+        "--ranks needs MPI and Zoltan, but this tool was built without them (Debian: "
+        "libopenmpi-dev, libtrilinos-zoltan-dev); --virtual-ranks needs neither");
   }
   if (!MpiSession::is_started()) start_ranks();
   run_over_mpi();
@@ -128,13 +133,13 @@ void ClusterCommand::run_over_mpi() const {
   try {
     run_over(session.transport(), false);
   } catch (const std::exception& error) {
-    // The others cannot be told otherwise, and MPI cannot be left without them.
+    // The other ranks wait for this one and cannot be notified, so abort them as well.
     std::cerr << "winnow: " << error.what() << '\n';
     MpiSession::abort();
   }
 }
 
-/// This command once more, in as many processes.
+/// Replaces this process by mpirun, which starts this command in `ranks` processes.
 void ClusterCommand::start_ranks() const {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   std::vector<std::string> words{"mpirun",
@@ -205,9 +210,8 @@ void ClusterCommand::print(const ClusterRun& run, const std::string& scene,
 Command add_cluster(CLI::App& app) {
   return command<ClusterCommand>(
       app, "cluster",
-      "Finds all pairs in every frame of a recording or scene on many ranks: processes that it "
-      "starts by mpirun, or that mpirun has started, or virtual ones in one process. Frames are "
-      "those of the slowest process.");
+      "Finds all pairs in every frame of a recording or scene on many ranks: processes started by "
+      "mpirun, or virtual ranks in one process. Times are the times of the slowest process.");
 }
 
 }  // namespace winnow::bench

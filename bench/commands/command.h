@@ -9,17 +9,18 @@
 
 namespace winnow::bench {
 
-/// A subcommand: how it is called, and what it does, which gives the exit status.
+/// A subcommand. `run` returns the exit status.
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;
 };
 
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;  ///< something did not hold
+inline constexpr int kFailed = 1;  ///< a check or comparison failed
 inline constexpr int kBadArgument = 2;
 
-/// A subcommand that `Asked` adds the options of, which are its members, and runs.
+/// Makes a subcommand from a class whose members are the options: `Asked` has `add_options(app)`
+/// and `run()`.
 template <typename Asked>
 Command command(CLI::App& app, const char* name, const char* what) {
   auto asked = std::make_shared<Asked>();
@@ -28,7 +29,7 @@ Command command(CLI::App& app, const char* name, const char* what) {
   return {sub, [asked] { return asked->run(); }};
 }
 
-// One file each.
+// Each of these is defined in a file of its own, named after the command.
 Command add_scenes(CLI::App& app);
 Command add_record(CLI::App& app);
 Command add_replay(CLI::App& app);
@@ -44,7 +45,7 @@ Command add_results(CLI::App& app);
 Command add_fit(CLI::App& app);
 Command add_trust(CLI::App& app);
 
-/// Those that only measure rows.
+/// Commands that only measure rows.
 std::vector<Command> add_measurements(CLI::App& app);
 
 }  // namespace winnow::bench

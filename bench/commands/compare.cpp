@@ -1,3 +1,6 @@
+// The command `winnow compare`: compares two reports (results.json) value by value and prints a
+// summary for each table. The comparison itself is in report/compare.
+
 #include "bench/report/compare.h"
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
@@ -27,13 +30,13 @@ struct Compare {
                                 std::vector<std::string>& remarks) const;
 };
 
-/// Of one value of one table.
+/// Changes of one value of one table.
 struct CompareSummary {
   std::string table;
   std::string value;
   std::vector<const Change*> changes;
 
-  /// Over the ratios that are neither zero nor infinite.
+  /// Geometric mean of the ratios that are neither zero nor infinite.
   [[nodiscard]] double geometric_mean() const {
     double sum = 0.0;
     std::size_t count = 0;
@@ -54,7 +57,7 @@ struct CompareSummary {
   }
 };
 
-/// Of what counts, or of what does not.
+/// Summarizes either the changes that count or all others.
 std::vector<CompareSummary> compare_summaries(const ReportComparison& found, bool counting) {
   std::vector<CompareSummary> all;
   for (const Change& change : found.changes) {
@@ -106,7 +109,8 @@ const char* word_of(const Change& change) {
   return "";
 }
 
-/// All of them, or those that count, from the worst to the best.
+/// Returns all changes in their order, or only the
+/// changes that count and got worse or better, from the worst to the best.
 std::vector<const Change*> chosen_changes(const ReportComparison& found, bool all) {
   std::vector<const Change*> chosen;
   for (const Change& change : found.changes) {
@@ -193,7 +197,8 @@ Json to_json(const ReportComparison& found, const CompareOptions& options) {
           {"changes", std::move(changes)}};
 }
 
-/// Also says what it did, or why it might be wanted.
+/// Returns the factor by which times are scaled, and appends a remark that explains the factor or
+/// suggests `--scale on`.
 double Compare::scale_of(const Results& before, const Results& after,
                          std::vector<std::string>& remarks) const {
   const double ratio = machine_ratio(before, after);
@@ -208,7 +213,7 @@ double Compare::scale_of(const Results& before, const Results& after,
   if (other) {
     remarks.emplace_back("the machines differ, and times are not scaled");
   } else if (std::abs(std::log(ratio)) > std::log(1.05)) {
-    remarks.push_back(text + ": the machine was busy, or slowed down (--scale on makes up for it)");
+    remarks.push_back(text + ": the machine was busy or slower (--scale on corrects for it)");
   }
   return 1.0;
 }
@@ -217,11 +222,10 @@ void Compare::add_options(CLI::App& app) {
   app.add_option("old", old_path, "results.json of the older report")->required();
   app.add_option("new", new_path, "results.json of the newer report")->required();
   number(app, "--threshold", threshold, 1.0, 1e9,
-         "From how many times worse on it counts, if the samples bear it out");
-  app.add_flag("--all", all, "Every value, not only those beyond the threshold");
+         "Smallest factor that counts as worse, if the samples confirm it");
+  app.add_flag("--all", all, "List every value, not only values beyond the threshold");
   one_of(app, "--scale", scale, {"auto", "on", "off"},
-         "Whether times are scaled by the machines' reference sweeps; auto: if processor or cores "
-         "differ");
+         "Scale times by the reference sweeps of the machines; auto: if processor or cores differ");
   add_json_option(app, json);
 }
 
@@ -233,7 +237,7 @@ int Compare::run() const {
   ReportComparison found = compare(old_report, new_report, options);
   found.remarks.insert(found.remarks.begin(), remarks.begin(), remarks.end());
 
-  std::cout << "ratios are new to old (of rates old to new): above 1 is worse\n";
+  std::cout << "ratios are new / old, for rates old / new: above 1 is worse\n";
   for (const std::string& remark : found.remarks) std::cout << remark << '\n';
   std::cout << '\n';
   print_summaries(compare_summaries(found, true), "table and value");
@@ -249,8 +253,8 @@ int Compare::run() const {
 Command add_compare(CLI::App& app) {
   return command<Compare>(
       app, "compare",
-      "Two reports (results.json): how many times better or worse each value of each row has got. "
-      "Ends with 1 if one has got worse or other pairs were found, with 2 if a file is no report.");
+      "Compares two reports (results.json): the ratio of each value of each row. Exit status 1 if "
+      "a value got worse or different pairs were found, 2 if a file is not a report.");
 }
 
 }  // namespace winnow::bench

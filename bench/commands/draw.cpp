@@ -34,25 +34,29 @@ struct Draw {
 
 void Draw::add_options(CLI::App& app) {
   target.add_to(app);
-  number(app, "--frame", frame, 0, 1e6, "Which frame; the first one is 0");
+  number(app, "--frame", frame, 0, 1e6, "Number of the frame, from 0");
   number(app, "--frames", frames, 0, 1e6,
-         "How many frames from that one on, with a slider to play them; 0: all of a recording, "
-         "1,000 of a scene");
-  one_of(app, "--partition", partition, all_partitions(), "Which partition");
-  app.add_option("--ray", rays, "ox,oy,oz,dx,dy,dz: its closest hit and all hits; repeatable")
+         "Number of frames from that one on, with a slider to play them; 0: all frames of a "
+         "recording, 1,000 of a scene");
+  one_of(app, "--partition", partition, all_partitions(), "Partition");
+  app.add_option("--ray", rays,
+                 "Ray as ox,oy,oz,dx,dy,dz: draw its closest hit and all hits; repeatable")
       ->allow_extra_args(false);
-  app.add_option("--box", boxes, "x0,y0,z0,x1,y1,z1: what overlaps it; repeatable")
+  app.add_option("--box", boxes,
+                 "Box as x0,y0,z0,x1,y1,z1: draw the objects that overlap it; repeatable")
       ->allow_extra_args(false);
   number(app, "--max-objects", options.most_objects, 1, 1e8,
-         "Objects drawn, evenly chosen; those hit by a ray or box besides");
-  number(app, "--max-depth", options.max_depth, 0, 64, "Levels of nodes drawn, from the root");
-  app.add_flag("--labels", options.labels, "Client data beside the first 500 objects");
-  app.add_option("--out", out, "The page to write")->required();
+         "Largest number of drawn objects, evenly chosen; objects hit by a ray or box are drawn in "
+         "addition");
+  number(app, "--max-depth", options.max_depth, 0, 64,
+         "Levels of nodes that are drawn, from the root");
+  app.add_flag("--labels", options.labels, "Draw the client data of the first 500 objects");
+  app.add_option("--out", out, "HTML page to write")->required();
   add_json_option(app, json);
 }
 
 Json Draw::draw_frames(const NamedScene& scene, FrameSource& source) const {
-  constexpr std::size_t kOfEndless = 1000;  // built-in scenes go on for ever
+  constexpr std::size_t kOfEndless = 1000;  // built-in scenes have no last frame
   Stage stage(partition, source);
   while (stage.frame() < frame) {
     if (stage.advance()) continue;
@@ -101,11 +105,10 @@ int Draw::run() {
 }  // namespace
 
 Command add_draw(CLI::App& app) {
-  return command<Draw>(
-      app, "draw",
-      "Writes frames as an HTML page that can be turned, moved and zoomed: objects, the "
-      "partition's structure, overlapping pairs, what rays and boxes hit, and the contacts of a "
-      "scene that a program recorded.");
+  return command<Draw>(app, "draw",
+                       "Writes frames as an HTML page with a view that can be rotated, moved and "
+                       "zoomed: objects, the partition's structure, overlapping pairs, hits of "
+                       "rays and boxes, and the contacts of a scene that a program recorded.");
 }
 
 }  // namespace winnow::bench

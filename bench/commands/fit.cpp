@@ -1,3 +1,6 @@
+// The command `winnow fit`: fits the cost constants of AutoPartition to times measured on this
+// machine, and prints how far its choices are from the best. The fit itself is in measure/cost_fit.
+
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
 #include "bench/common/table.h"
@@ -67,7 +70,7 @@ void print_costs(const FittedCosts& fitted) {
   }
 }
 
-/// Median and worst of what the choice takes over the best, by number of objects.
+/// Median and worst ratio of the time of the chosen partition to the best, by number of objects.
 class Regrets {
  public:
   void add(std::size_t objects, double regret, const std::string& where) {
@@ -112,7 +115,7 @@ void print_check(const std::string& figures, std::size_t frames) {
   for (const FigureCheck& one : check_figures(figures, frames != 0 ? frames : kFrames)) {
     regrets.add(one.objects, one.times_best, one.scene + ": " + one.chosen + " for " + one.best);
   }
-  regrets.print("what is chosen over the best, by " + figures);
+  regrets.print("chosen structure / best structure, by " + figures);
 }
 
 int Fit::run() {
@@ -122,10 +125,10 @@ int Fit::run() {
     return kDone;
   }
   const std::vector<CostSample> samples = measured();
-  print_regret(samples, present_costs(), "what is chosen over the best, constants as they are");
+  print_regret(samples, present_costs(), "chosen structure / best structure, present constants");
   if (checks_alone) return kDone;
   const FittedCosts fitted = fit_costs(samples);
-  print_regret(samples, fitted.costs, "what is chosen over the best, constants fitted anew");
+  print_regret(samples, fitted.costs, "chosen structure / best structure, fitted constants");
   print_costs(fitted);
   return kDone;
 }
@@ -136,17 +139,19 @@ Command add_fit(CLI::App& app) {
   auto fit = std::make_shared<Fit>();
   CLI::App* sub = app.add_subcommand(
       "fit",
-      "Fits the constants by which the automatic choice predicts what structures cost to times "
-      "measured here, and tells how much slower than the best one is what it takes");
+      "Fits the constants of the cost model of the automatic structure to times measured here, and "
+      "prints how much slower its choice is than the best structure.");
   one_of(*sub, "--scene", fit->scenes, scene_names(), "Scenes");
   add_objects_option(*sub, fit->objects, "Numbers of objects");
-  number(*sub, "--moving", fit->moving, 1e-6, 1.0, "Shares of the objects that move in a frame");
-  number(*sub, "--frames", fit->frames, 0, 1e6, "Frames of each; 0: what suits the size");
+  number(*sub, "--moving", fit->moving, 1e-6, 1.0, "Shares of objects that move in a frame");
+  number(*sub, "--frames", fit->frames, 0, 1e6,
+         "Number of frames; 0: chosen by the number of objects");
   add_isa_option(*sub, fit->isa);
-  sub->add_flag("--check", fit->checks_alone, "Judge the constants that there are, and fit none");
+  sub->add_flag("--check", fit->checks_alone,
+                "Evaluate the present constants instead of fitting new ones");
   sub->add_option("--figures", fit->figures,
-                  "Judge what is chosen by times taken elsewhere: a table of comma-separated "
-                  "values with columns scene, objects, threads, kind, median_ms")
+                  "Evaluate the choice by times measured elsewhere: a CSV file with the columns "
+                  "scene, objects, threads, kind, median_ms")
       ->check(CLI::ExistingFile);
   return {sub, [fit] { return fit->run(); }};
 }

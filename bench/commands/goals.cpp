@@ -19,7 +19,8 @@ struct Goals {
 
   void add_options(CLI::App& app) {
     one_of(app, "--topic", topic, {kTopics.begin(), kTopics.end()}, "Only this topic");
-    number(app, "--worst-of", worst_of, 1, 1e6, "Frames of which the worst is asked about");
+    number(app, "--worst-of", worst_of, 1, 1e6,
+           "Number of frames for requirements about the worst frame");
     add_json_option(app, json);
   }
   [[nodiscard]] int run() const;
@@ -58,7 +59,7 @@ void print(const std::string& topic, const std::vector<Goal>& goals) {
       std::count_if(goals.begin(), goals.end(), [&](const Goal& g) { return g.topic == topic; }));
   std::cout << topic << '\n';
   if (count == 0) {
-    std::cout << "nothing is asked under this topic yet\n\n";
+    std::cout << "this topic has no requirements\n\n";
     return;
   }
   std::cout << table << holding << " of " << count << " hold\n\n";
@@ -82,7 +83,8 @@ int Goals::run() const {
   if (machine.max > 0.0) {
     std::cout << "reference sweep during the run: " << short_number(machine.min) << " to "
               << short_number(machine.max) << " ms, median " << short_number(machine.median)
-              << " (23 ms where the other libraries were timed; far apart: a disturbed run)\n\n";
+              << " (23 ms on the machine where the other libraries were timed; a large range means "
+                 "a disturbed run)\n\n";
   }
   for (const std::string_view name : kTopics) {
     if (topic.empty() || name == topic) print(std::string(name), goals);
@@ -93,7 +95,7 @@ int Goals::run() const {
   std::size_t short_of = 0;
   for (const Goal& goal : goals) {
     if (goal.holds()) continue;
-    if (short_of++ == 0) std::cout << "falls short:\n";
+    if (short_of++ == 0) std::cout << "missed:\n";
     std::cout << "  " << goal.topic << ": " << goal.what << ": " << short_number(goal.measured)
               << " " << goal.unit << ", asked " << short_number(goal.asked) << '\n';
   }
@@ -103,10 +105,9 @@ int Goals::run() const {
 }  // namespace
 
 Command add_goals(CLI::App& app) {
-  return command<Goals>(
-      app, "goals",
-      "Every figure asked of winnow beside what it measures now. Times of other libraries are "
-      "scaled by a reference sweep timed in the same run.");
+  return command<Goals>(app, "goals",
+                        "Measures winnow and compares each figure with its requirement. Times of "
+                        "other libraries are scaled by a reference sweep in the same run.");
 }
 
 }  // namespace winnow::bench

@@ -13,18 +13,20 @@
 namespace winnow::bench {
 namespace {
 
-/// The library takes the widest instruction set where the variable names none that there is; who
-/// sets it for this tool is told.
+/// Throws ArgumentError if WINNOW_ISA names no available instruction set. The library itself would
+/// fall back to the widest one without an error.
 void check_isa_of_environment() {
   const char* name = std::getenv("WINNOW_ISA");
   const auto names = isa_names();
   if (name == nullptr || *name == '\0' || std::ranges::find(names, name) != names.end()) return;
-  throw ArgumentError(std::string("WINNOW_ISA=") + name +
-                      " is not among those this machine and build have: " + listed(names));
+  throw ArgumentError(
+      std::string("WINNOW_ISA=") + name +
+      " is not available in this build or on this machine; available: " + listed(names));
 }
 
 int run_tool(int argc, char** argv) {
-  CLI::App app{"winnow: collision detection, measured.", "winnow"};
+  CLI::App app{"winnow: benchmarks and tools for the collision-detection library winnow.",
+               "winnow"};
   app.require_subcommand(0, 1);
   app.set_version_flag("--version", std::string("winnow ") + kVersion + " (" + kCommit + ")");
   std::vector<Command> commands{

@@ -1,4 +1,5 @@
-// Commands that measure rows, print them and write them.
+// Commands that only measure: each fills tables by functions of bench/rows, prints them and writes
+// them as JSON. `add_measurements` at the end lists them; commands/main.cpp calls it.
 
 #include "bench/commands/options.h"
 #include "bench/commands/rows_command.h"
@@ -26,7 +27,7 @@
 namespace winnow::bench {
 namespace {
 
-/// One that measures partitions on several scenes of several sizes on several numbers of threads.
+/// Base of commands that measure partitions on several scenes, sizes and numbers of threads.
 class ScenesCommand : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
@@ -35,11 +36,11 @@ class ScenesCommand : public RowsCommand {
   }
 
  protected:
-  /// All but the threads.
+  /// Adds all options but `--threads`.
   void add_scene_options(CLI::App& app) {
     option(app, "--scene", scenes_,
-           "Scenes, or recordings (.aabbs, .winnow, .xz of either), which have their own number of "
-           "objects");
+           "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz), which have "
+           "a fixed number of objects");
     add_objects_option(app, objects_, "Numbers of objects");
     add_partitions_option(app, partitions_);
     add_seed_option(app, seed_);
@@ -49,7 +50,7 @@ class ScenesCommand : public RowsCommand {
   ScenesCommand(std::vector<std::string> scenes, std::vector<int> threads)
       : scenes_(std::move(scenes)), threads_(std::move(threads)) {}
 
-  /// Steps of one scene and size, which begin so.
+  /// Adds the steps of one scene and size; the titles of the steps start with `what`.
   virtual void measure_scene(const std::string& what, const NamedScene& scene,
                              std::size_t objects) = 0;
 
@@ -78,8 +79,9 @@ class Throughput final : public ScenesCommand {
 
   void add_options(CLI::App& app) {
     ScenesCommand::add_options(app);
-    app.add_flag("--peers", peers_, "Race other libraries too, and the yardstick if there is one");
-    app.add_flag("--yardstick", yardstick_, "Race the yardstick too");
+    app.add_flag("--peers", peers_,
+                 "Also measure other libraries, and the yardstick if it was built");
+    app.add_flag("--yardstick", yardstick_, "Also measure the yardstick");
     add_frames_option(app, frames_);
   }
 
@@ -87,13 +89,13 @@ class Throughput final : public ScenesCommand {
   void measure() override {
     if (peers_ && !has_peers()) {
       throw ArgumentError(
-          "--peers: this tool was built without other libraries; "
-          "bench/run --with-peers installs and builds them");
+          "--peers: this tool was built without other libraries; bench/run --with-peers installs "
+          "and builds them");
     }
     if (yardstick_ && !has_yardstick()) {
       throw ArgumentError(
-          "--yardstick: this tool was built without it; the CMake variable WINNOW_YARDSTICK names "
-          "the folder with the prototype");
+          "--yardstick: this tool was built without it; set the CMake variable WINNOW_YARDSTICK to "
+          "the folder of the prototype");
     }
     declare_frames(results);
     measure_all();
@@ -153,7 +155,7 @@ class Cold final : public ScenesCommand {
 
   void add_options(CLI::App& app) {
     ScenesCommand::add_options(app);
-    number(app, "--rounds", rounds_, 1, 1000, "Fresh partitions of each");
+    number(app, "--rounds", rounds_, 1, 1000, "Number of new partitions of each kind");
   }
 
  private:
@@ -183,7 +185,7 @@ class HostsCommand final : public ScenesCommand {
 
   void add_options(CLI::App& app) {
     ScenesCommand::add_options(app);
-    number(app, "--frames", frames_, 1, 1e6, "Frames that are timed");
+    number(app, "--frames", frames_, 1, 1e6, "Number of timed frames");
   }
 
  private:
@@ -204,14 +206,15 @@ class HostsCommand final : public ScenesCommand {
   std::size_t frames_ = 101;
 };
 
-/// A built-in scene, or a recording instead.
+/// A built-in scene or a recording.
 struct SceneOrRecording {
   std::string scene = "uniform";
   std::string recording;
 
   CLI::Option* add_to(CLI::App& app, const char* what) {
     CLI::Option* added = option(app, "--scene", scene, what);
-    option(app, "--recording", recording, "A recording instead")->excludes(added);
+    option(app, "--recording", recording, "File of a recording, instead of a scene")
+        ->excludes(added);
     return added;
   }
   [[nodiscard]] NamedScene named() const {
@@ -225,7 +228,8 @@ class Filters final : public ScenesCommand {
 
   void add_options(CLI::App& app) {
     add_scene_options(app);
-    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
+    number(app, "--rounds", rounds_, 1, 1000,
+           "Number of rounds; all contenders take turns in each");
   }
 
  private:
@@ -246,14 +250,16 @@ class Filters final : public ScenesCommand {
 class Queries final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    scene_.add_to(app, "A scene, in its first frame")->check(CLI::IsMember(scene_names()));
+    scene_.add_to(app, "Scene; its first frame is used")->check(CLI::IsMember(scene_names()));
     add_objects_option(app, asked_.objects);
     add_partitions_option(app, asked_.partitions);
     add_threads_option(app, asked_.threads);
-    number(app, "--rays", asked_.rays, 1, 1e8, "Rays of a set; dearer questions are fewer");
-    number(app, "--rounds", asked_.rounds, 1, 1000, "Rounds in which all take turns");
+    number(app, "--rays", asked_.rays, 1, 1e8,
+           "Number of rays in a set; sets of slower queries are smaller");
+    number(app, "--rounds", asked_.rounds, 1, 1000,
+           "Number of rounds; all contenders take turns in each");
     const auto names = question_set_names();
-    one_of(app, "--set", asked_.sets, {names.begin(), names.end()}, "Only these sets of questions");
+    one_of(app, "--set", asked_.sets, {names.begin(), names.end()}, "Sets of queries");
     add_seed_option(app, asked_.seed);
     add_rows_options(app);
   }
@@ -281,15 +287,15 @@ class Volumes final : public RowsCommand {
     settings_.assign(names.begin(), names.end());
     scene_.add_to(app, "Built-in scene for the first table");
     one_of(app, "--setting", settings_, {names.begin(), names.end()},
-           "Only these: the scene, turned cubes, turned rods, slow turned cubes");
+           "Settings: the scene, rotated cubes, rotated rods, slow rotated cubes");
     app.add_option("--step", asked_.step,
-                   "How far objects go in a frame, in their mean edges; default: as suits each, "
-                   "and as recorded")
+                   "Distance that objects move in a frame, in mean edge lengths; default: chosen "
+                   "for each setting, or as recorded")
         ->check(CLI::NonNegativeNumber);
-    number(app, "--objects", asked_.objects, 1, 1e6, "How many");
+    number(app, "--objects", asked_.objects, 1, 1e6, "Number of objects");
     one_of(app, "--partition", asked_.partition, {partitions.begin(), partitions.end()},
-           "Where the volumes are");
-    number(app, "--frames", asked_.frames, 1, 1000, "Frames that are timed");
+           "Partition that stores the volumes");
+    number(app, "--frames", asked_.frames, 1, 1000, "Number of timed frames");
     add_seed_option(app, asked_.seed);
     add_rows_options(app);
   }
@@ -312,7 +318,7 @@ class Volumes final : public RowsCommand {
   std::vector<std::string> settings_;
 };
 
-/// What is chosen of the names of some things; "all" is all there are.
+/// A selection from a list of names; "all" selects each.
 class Chosen {
  public:
   explicit Chosen(std::vector<std::string> names) : names_(std::move(names)) {}
@@ -337,7 +343,7 @@ class Chosen {
   std::vector<std::string> names_;
 };
 
-/// One about pairs of shapes: of some kinds, at some levels, by some tiers.
+/// Base of commands that measure pairs of shapes: of some kinds, at some levels, by some tiers.
 class PairsCommand : public RowsCommand {
  protected:
   PairsCommand(std::span<const PairKind> all, std::vector<std::string> levels,
@@ -348,11 +354,9 @@ class PairsCommand : public RowsCommand {
     std::vector<std::string> kinds;
     for (const PairKind& kind : all_) kinds.emplace_back(kind.name);
     kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
-    levels_.add_to(app, "--level", {kLevelNames.begin(), kLevelNames.end()},
-                   "How much is asked of a pair");
-    tiers_.add_to(app, "--tier", {kTierNames.begin(), kTierNames.end()},
-                  "How exact answers must be");
-    app.add_flag("!--no-peers", peers_, "Without other libraries");
+    levels_.add_to(app, "--level", {kLevelNames.begin(), kLevelNames.end()}, "Contact levels");
+    tiers_.add_to(app, "--tier", {kTierNames.begin(), kTierNames.end()}, "Tiers");
+    app.add_flag("!--no-peers", peers_, "Do not measure other libraries");
     add_seed_option(app, seed_);
     add_rows_options(app);
   }
@@ -382,15 +386,15 @@ class Narrow final : public PairsCommand {
 
   void add_options(CLI::App& app) {
     number(app, "--pairs", pairs_, 1, 1e7,
-           "Numbers of pairs; those of more than 16,384 lie scattered in memory");
-    add_threads_option(app, threads_, "Numbers of threads that winnow takes");
-    number(app, "--rounds", race_.rounds, 1, 1000, "Rounds in which all take turns");
+           "Numbers of pairs; the shapes of more than 16,384 pairs are scattered in memory");
+    add_threads_option(app, threads_, "Numbers of threads for winnow");
+    number(app, "--rounds", race_.rounds, 1, 1000,
+           "Number of rounds; all contenders take turns in each");
     app.add_flag("--one-a-call", one_a_call_,
-                 "Tiers also with a call of the function for one pair for each, as other libraries "
-                 "answer");
+                 "Also measure one call for each pair, which is how other libraries work");
     app.add_flag("--upright", upright_,
-                 "Bodies turned about the vertical axis alone, prisms for hulls, walls for "
-                 "triangles: edges and faces are parallel");
+                 "Rotate bodies only about the vertical axis, with prisms as hulls and walls as "
+                 "triangles, so that edges and faces are parallel");
     add_pair_options(app);
   }
 
@@ -432,19 +436,22 @@ class AccuracyCommand final : public PairsCommand {
   AccuracyCommand() : PairsCommand(main_pair_kinds(), {"distance"}, {"all"}) {}
 
   void add_options(CLI::App& app) {
-    option(app, "--ratio", ratios_, "Size of the second shape over that of the first")
+    option(app, "--ratio", ratios_, "Size of the second shape divided by the size of the first")
         ->check(CLI::PositiveNumber);
-    number(app, "--pairs", set_.pairs, 1, 1e7, "Pairs of each kind and ratio");
-    number(app, "--offset", set_.offset, 0.0, 1e12,
-           "Moves all pairs so far along each axis, at positions that are multiples of 2^-12");
+    number(app, "--pairs", set_.pairs, 1, 1e7, "Number of pairs of each kind and ratio");
+    number(
+        app, "--offset", set_.offset, 0.0, 1e12,
+        "Distance by which all pairs are moved along each axis; positions are multiples of 2^-12");
     option(app, "--angle", set_.angle,
-           "The second body stands as the first, turned by so many radians")
+           "Rotation of the second body relative to the first, in radians")
         ->check(CLI::NonNegativeNumber);
-    number(app, "--thinness", set_.thinness, 0.0, 1.0, "Triangles keep so much of their height");
+    number(app, "--thinness", set_.thinness, 0.0, 1.0,
+           "Factor by which the height of triangles is reduced");
     app.add_flag("--by-gap", by_gap_,
-                 "Also the errors of the pairs of each power of ten of |distance| over size");
+                 "Also list errors by |distance| divided by size, for each power of ten");
     one_of(app, "--judge", judge_, {"oracle", "reference"},
-           "Who knows the truth: 100 digits, or for many pairs winnow's slowest tier");
+           "Source of the true values: `oracle` computes with 100 digits; `reference`, for many "
+           "pairs, is winnow's tier of that name");
     add_pair_options(app);
   }
 
@@ -477,17 +484,16 @@ class AccuracyCommand final : public PairsCommand {
 class Pipeline final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    one_of(app, "--scene", scenes_, {"pile", "terrain", "balls", "tori"}, "Which");
-    one_of(app, "--level", levels_, scene_level_names(), "How much winnow is asked for");
-    app.add_flag(
-        "--costs", costs_,
-        "Instead, bytes of winnow's contacts, and what a margin costs, on the first number "
-        "of threads");
-    add_threads_option(app, asked_.threads, "Numbers of threads that winnow takes");
-    number(app, "--frames", asked_.frames, 1, 10'000, "Timed frames");
+    one_of(app, "--scene", scenes_, {"pile", "terrain", "balls", "tori"}, "Scenes");
+    one_of(app, "--level", levels_, scene_level_names(), "Contact levels for winnow");
+    app.add_flag("--costs", costs_,
+                 "Instead measure the memory of winnow's contacts and the cost of a margin, on the "
+                 "first of the given numbers of threads");
+    add_threads_option(app, asked_.threads, "Numbers of threads for winnow");
+    number(app, "--frames", asked_.frames, 1, 10'000, "Number of timed frames");
     number(app, "--bodies", asked_.bodies, 1, 1e6,
-           "Fewer or more of them in pile, terrain and balls");
-    app.add_flag("!--no-peers", asked_.peers, "Without other libraries");
+           "Number of bodies in pile, terrain and balls (default: the usual one)");
+    app.add_flag("!--no-peers", asked_.peers, "Do not measure other libraries");
     add_seed_option(app, asked_.seed);
     add_rows_options(app);
   }
@@ -520,7 +526,7 @@ class Pipeline final : public RowsCommand {
                               .seed = asked_.seed});
   }
 
-  /// All are asked for manifolds; winnow alone for less.
+  /// All engines are measured at level manifold; at lower levels only winnow.
   void measure_scene(const std::string& scene) {
     const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, asked_.bodies, asked_.seed);
     asked_.scene = scene;
@@ -545,22 +551,23 @@ class Pipeline final : public RowsCommand {
   PipelineMeasureOptions asked_{.machine_clock = false};
 };
 
-/// What moves: pairs of shapes, features of meshes, a scene.
+/// Measures times of impact: pairs of shapes, features of meshes, or a scene.
 class Impacts final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    what_.add_to(app, "--what", {kPairs, kFeatures, kScene}, "What moves");
+    what_.add_to(app, "--what", {kPairs, kFeatures, kScene}, "Moving objects");
     std::vector<std::string> kinds;
     for (const PairKind& kind : pair_kinds()) kinds.emplace_back(kind.name);
     kinds_.add_to(app, "--kind", kinds, "Kinds of pairs");
     turns_.add_to(app, "--turn", {kPairTurnNames.begin(), kPairTurnNames.end()},
-                  "How far bodies of pairs turn");
-    number(app, "--pairs", pairs_, 1, 1e6, "Pairs of each kind");
-    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
-    number(app, "--bodies", sweep_.bodies, 1, 1e6, "Bodies of the scene");
-    number(app, "--fast", sweep_.fast, 1, 1e6, "Of them are fast, at most all");
+                  "Rotation of the bodies of a pair");
+    number(app, "--pairs", pairs_, 1, 1e6, "Number of pairs of each kind");
+    number(app, "--rounds", rounds_, 1, 1000,
+           "Number of rounds; all contenders take turns in each");
+    number(app, "--bodies", sweep_.bodies, 1, 1e6, "Number of bodies in the scene");
+    number(app, "--fast", sweep_.fast, 1, 1e6, "Number of fast bodies among them");
     add_threads_option(app, sweep_.threads);
-    app.add_flag("!--no-peers", peers_, "Without other libraries");
+    app.add_flag("!--no-peers", peers_, "Do not measure other libraries");
     add_seed_option(app, sweep_.seed);
     add_rows_options(app);
   }
@@ -604,7 +611,7 @@ class Impacts final : public RowsCommand {
     }
   }
   void measure_scene() {
-    if (sweep_.fast > sweep_.bodies) throw ArgumentError("--fast: more than there are bodies");
+    if (sweep_.fast > sweep_.bodies) throw ArgumentError("--fast: more than --bodies");
     sweep_.frames = rounds_;
     add_swept_scene(results, sweep_);
   }
@@ -621,8 +628,9 @@ class Impacts final : public RowsCommand {
 class Kernels final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    option(app, "--kernel", text_, "Only those whose names contain this");
-    number(app, "--rounds", rounds_, 1, 1000, "Rounds in which all take turns");
+    option(app, "--kernel", text_, "Only kernels whose names contain this text");
+    number(app, "--rounds", rounds_, 1, 1000,
+           "Number of rounds; all contenders take turns in each");
     add_rows_options(app);
   }
 
@@ -642,62 +650,53 @@ class Kernels final : public RowsCommand {
 
 std::vector<Command> add_measurements(CLI::App& app) {
   return {
-      command<Throughput>(
-          app, "throughput",
-          "Races partitions, and other libraries, frame by frame interleaved: milliseconds and "
-          "bytes, and how time grows with objects and falls with threads; all must find the same "
-          "pairs"),
+      command<Throughput>(app, "throughput",
+                          "Measures partitions and other libraries, which take turns: time and "
+                          "memory of a frame, growth with the number of objects, and speedup by "
+                          "threads. All must find the same pairs."),
       command<Cold>(app, "cold",
-                    "First frames of fresh partitions, on memory that was written to before and on "
-                    "memory that was not: inserting, building, finding all pairs, and the "
-                    "yardstick's frame beside"),
-      command<HostsCommand>(
-          app, "hosts",
-          "Frames of partitions whose tasks run on a plain pool of threads, which "
-          "a program hands in, and on those of oneTBB, in turns"),
-      command<Filters>(
-          app, "filters",
-          "What layers and masks of objects cost in pairs, rays and boxes: each question beside "
-          "the "
-          "same one to a partition without filters, in turns, and what was found held against all "
-          "pairs"),
-      command<FootprintCommand>(
-          app, "footprint",
-          "Bytes an object by purpose, checked against what was really allocated and against the "
-          "process's resident set"),
-      command<Queries>(
-          app, "queries",
-          "Rays, boxes, frusta, balls, sweeps and nearest objects on one frame of a scene: "
-          "partitions and Embree in turns. What they find is compared hit by hit; \"undecided\" "
-          "counts questions on which Embree's float arithmetic may fall either way."),
+                    "Measures first frames of new partitions, on memory that was written before "
+                    "and on memory that was not: insertion, build, all pairs, and the yardstick's "
+                    "frame for comparison."),
+      command<HostsCommand>(app, "hosts",
+                            "Measures frames of partitions whose tasks run on a simple thread pool "
+                            "(a JobSystem) and on oneTBB, in turns."),
+      command<Filters>(app, "filters",
+                       "Measures the cost of layers and masks for pairs, rays and boxes: each "
+                       "query and the same query of a partition without filters, in turns. Results "
+                       "are checked by brute force."),
+      command<FootprintCommand>(app, "footprint",
+                                "Measures bytes per object by purpose, and checks them against the "
+                                "allocated memory and the resident set of the process."),
+      command<Queries>(app, "queries",
+                       "Measures rays, boxes, frusta, balls, swept volumes and nearest objects on "
+                       "one frame of a scene, with partitions and Embree in turns. Results are "
+                       "compared hit by hit; \"undecided\" counts queries whose result is within "
+                       "the rounding error of Embree's float arithmetic."),
       command<Narrow>(
           app, "narrow",
-          "Nanoseconds a pair of shapes: winnow's tiers and other libraries in turns on the same "
-          "random pairs. Other libraries start cold, without what they may remember of a pair."),
+          "Measures the time per pair of shapes: winnow's tiers and other libraries, in turns, on "
+          "the same random pairs. Other libraries start without cached results of earlier calls."),
       command<AccuracyCommand>(
           app, "accuracy",
-          "Errors of answers about pairs of shapes against the time they take, by kind, tier and "
-          "size ratio, other libraries beside. Every second pair overlaps, and half of the pairs "
-          "are nearly touching."),
-      command<Impacts>(
-          app, "impacts",
-          "When things that move first meet: nanoseconds a pair of shapes, winnow and other "
-          "libraries in turns on the same motions, and what they miss, say too late or leave of a "
-          "gap; features of meshes; a scene of which some bodies are fast, swept beside its "
-          "contacts."),
-      command<Pipeline>(
-          app, "pipeline",
-          "Milliseconds from poses to contacts: whole scenes, winnow and other libraries in turns. "
-          "A pile of 20,000 bodies, 2,000 hulls on a terrain of 200,978 triangles, each moving a "
-          "little (nothing is carried over) and at rest (contacts are); two tori of 20,000 "
-          "triangles."),
-      command<Volumes>(
-          app, "volumes",
-          "Bounding volumes and margins side by side: false positives against what they cost, the "
-          "exact test of the pairs included"),
+          "Measures the error and time of pairs of shapes by kind, tier and size ratio, for winnow "
+          "and other libraries. Every second pair overlaps, and half of the pairs nearly touch."),
+      command<Impacts>(app, "impacts",
+                       "Measures times of impact: the time per pair of shapes for winnow and other "
+                       "libraries, in turns, on the same motions; missed and late impacts, and the "
+                       "remaining gaps; features of meshes; sweeps of a scene with some fast "
+                       "bodies, compared with its contacts."),
+      command<Pipeline>(app, "pipeline",
+                        "Measures the time from poses to contacts in whole scenes, for winnow and "
+                        "other libraries in turns: a pile of 20,000 bodies and 2,000 hulls on a "
+                        "terrain of 200,978 triangles, each moving slightly (without carry-over) "
+                        "and at rest (with carry-over), and two tori of 20,000 triangles."),
+      command<Volumes>(app, "volumes",
+                       "Compares bounding volumes and margins: false positives and time, including "
+                       "the exact test of the pairs."),
       command<Kernels>(app, "kernels",
-                       "Nanoseconds of the kernels of partitions on every instruction set, on "
-                       "cubes that stay in the cache")};
+                       "Measures the kernels of partitions on every instruction set, on cubes that "
+                       "stay in the cache.")};
 }
 
 }  // namespace winnow::bench

@@ -14,19 +14,20 @@ namespace winnow::bench {
 void add_partitions_option(CLI::App& app, std::vector<std::string>& partitions) {
   std::vector<std::string> names = all_partitions();
   names.emplace_back("all");
-  one_of(app, "--partition", partitions, names, "Partitions, or all that suit the size");
+  one_of(app, "--partition", partitions, names,
+         "Partitions, or `all` that suit the number of objects");
 }
 
 void add_isa_option(CLI::App& app, std::string& isa) {
-  option(app, "--isa", isa, "Instruction set (default: the widest there is)");
+  option(app, "--isa", isa, "Instruction set (default: the widest one available)");
 }
 
 void add_seed_option(CLI::App& app, std::uint64_t& seed) {
-  option(app, "--seed", seed, "What the scene is drawn from");
+  option(app, "--seed", seed, "Seed of the random scene");
 }
 
 void add_json_option(CLI::App& app, std::string& path) {
-  option(app, "--json", path, "Also write the figures to this file");
+  option(app, "--json", path, "Also write the results to this file as JSON");
 }
 
 std::vector<int> usual_threads() {
@@ -36,21 +37,24 @@ std::vector<int> usual_threads() {
 
 void choose_isa(const std::string& name) {
   if (name.empty() || set_isa(name) == Status::ok) return;
-  throw ArgumentError("--isa: " + name +
-                      " is not among those this machine and build have: " + listed(isa_names()));
+  throw ArgumentError(
+      "--isa: " + name +
+      " is not available in this build or on this machine; available: " + listed(isa_names()));
 }
 
 void Target::add_to(CLI::App& app) {
-  app.add_option("target", name, "A recording (.aabbs, .winnow, .xz of either) or a scene's name")
+  app.add_option(
+         "target", name,
+         "Name of a scene, or file of a recording (.aabbs or .winnow, also compressed as .xz)")
       ->required();
-  add_objects_option(app, objects, "Number of objects of a scene (10000)");
-  app.add_option("--seed", seed, "What a scene is drawn from (1)");
+  add_objects_option(app, objects, "Number of objects of the scene (10000)");
+  app.add_option("--seed", seed, "Seed of the random scene (1)");
 }
 
 NamedScene Target::named() const {
   NamedScene scene = named_scenes({name}).front();
   if (scene.is_recording() && (objects || seed)) {
-    throw ArgumentError("--objects and --seed go with the name of a scene, and " + name +
+    throw ArgumentError("--objects and --seed need the name of a scene, and " + name +
                         " is not one (see: winnow scenes)");
   }
   return scene;

@@ -12,7 +12,7 @@
 
 namespace winnow::bench {
 
-// Options in the same words for all subcommands.
+// Options that several subcommands share, so that names and help texts agree.
 
 template <typename T>
 struct OptionValue {
@@ -30,7 +30,7 @@ struct OptionValue<std::optional<T>> {
   using Each = T;
 };
 
-/// Shows its default if it has one. A list is comma-separated or repeated.
+/// Adds an option and shows its default if it has one. A list is comma-separated or repeated.
 template <typename T>
 CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string& what) {
   CLI::Option* added = app.add_option(name, value, what);
@@ -39,7 +39,7 @@ CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string
   return added;
 }
 
-/// A number, or each number of a list, lies between these.
+/// Adds an option whose number, or each number of a list, lies in [least, most].
 template <typename T>
 CLI::Option* number(CLI::App& app, const char* name, T& value, double least, double most,
                     const std::string& what) {
@@ -48,25 +48,26 @@ CLI::Option* number(CLI::App& app, const char* name, T& value, double least, dou
       ->check(CLI::Range(static_cast<Each>(least), static_cast<Each>(most)));
 }
 
-/// A text, or each text of a list, is one of these.
+/// Adds an option whose text, or each text of a list, is one of `names`.
 template <typename T>
 CLI::Option* one_of(CLI::App& app, const char* name, T& value,
                     const std::vector<std::string>& names, const std::string& what) {
   return option(app, name, value, what)->check(CLI::IsMember(names));
 }
 
-/// One number of objects, or several.
+/// Takes one number of objects, or a list if T is one.
 template <typename T>
 void add_objects_option(CLI::App& app, T& objects, const char* what = "Number of objects") {
   number(app, "--objects", objects, 1, 1e8, what);
 }
-/// One number of threads, or several.
+/// Takes one number of threads, or a list if T is one.
 template <typename T>
 void add_threads_option(CLI::App& app, T& threads, const char* what = "Number of threads") {
   number(app, "--threads", threads, 1, 1024, what);
 }
 template <typename T>
-void add_frames_option(CLI::App& app, T& frames, const char* what = "Frames, the first included") {
+void add_frames_option(CLI::App& app, T& frames,
+                       const char* what = "Number of frames, including the first one") {
   number(app, "--frames", frames, 1, 1e6, what);
 }
 void add_partitions_option(CLI::App& app, std::vector<std::string>& partitions);
@@ -74,27 +75,27 @@ void add_isa_option(CLI::App& app, std::string& isa);
 void add_seed_option(CLI::App& app, std::uint64_t& seed);
 void add_json_option(CLI::App& app, std::string& path);
 
-/// 1, and all cores if there are more.
+/// Returns 1, and the number of cores if it is greater.
 [[nodiscard]] std::vector<int> usual_threads();
 
 /// Makes the named instruction set the active one; an empty name changes nothing. Throws
-/// ArgumentError, with the names there are.
+/// ArgumentError, which lists the available names, if the name is unknown.
 void choose_isa(const std::string& name);
 
-/// Of a built-in scene, unless asked otherwise.
+/// Default number of objects of a built-in scene.
 inline constexpr std::size_t kSceneObjects = 10'000;
 
-/// What a command shows that takes one scene: a built-in one by name, or a recording.
+/// The scene that a command runs on: a built-in one by name, or a recording.
 struct Target {
   std::string name;
-  std::optional<std::size_t> objects;  ///< of a built-in scene
-  std::optional<std::uint64_t> seed;   ///< of a built-in scene; unset: 1
+  std::optional<std::size_t> objects;  ///< for a built-in scene
+  std::optional<std::uint64_t> seed;   ///< for a built-in scene; unset: 1
 
-  /// The argument and its two options.
+  /// Adds the argument and its two options.
   void add_to(CLI::App& app);
-  /// Throws ArgumentError or RecordingError.
+  /// Finds the scene or reads the recording. Throws ArgumentError or RecordingError.
   [[nodiscard]] NamedScene named() const;
-  /// From the first frame on.
+  /// Returns the frames from the first on. `scene` must outlive the source.
   [[nodiscard]] std::unique_ptr<FrameSource> source(const NamedScene& scene) const {
     return scene.source(objects.value_or(kSceneObjects), seed.value_or(1));
   }

@@ -23,11 +23,10 @@ class Query final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
     app.add_option("file", file_, "JSON: an array of questions")->required();
-    option(app, "--tier", tier_, "How exact: robust or reference")
-        ->check(CLI::IsMember(kTiersByName));
+    option(app, "--tier", tier_, "Tier: robust or reference")->check(CLI::IsMember(kTiersByName));
     app.add_flag("--judge", judge_,
-                 "Of hard cases, which say what they expect: counts what each tier and other "
-                 "libraries have right, instead of answering");
+                 "For files of hard cases with expected results: count the correct answers of each "
+                 "tier and of other libraries, instead of answering");
     add_rows_options(app);
   }
 
@@ -59,7 +58,9 @@ class Query final : public RowsCommand {
 }  // namespace
 
 Command add_query(CLI::App& app) {
-  return command<Query>(app, "query", "Answers a file of questions about pairs of shapes and rays");
+  return command<Query>(app, "query",
+                        "Answers a JSON file of questions about pairs of shapes, rays and motions "
+                        "(see pipeline/FORMATS.md)");
 }
 
 }  // namespace winnow::bench

@@ -17,11 +17,11 @@ struct Record {
   std::uint64_t seed = 1;
 
   void add_options(CLI::App& app) {
-    app.add_option("scene", scene, "Its name")->required();
+    app.add_option("scene", scene, "Name of the scene")->required();
     add_objects_option(app, objects);
-    add_frames_option(app, steps, "Frames after the first one");
+    add_frames_option(app, steps, "Number of frames after the first one");
     add_seed_option(app, seed);
-    app.add_option("--out", out, "The file to write")->required();
+    app.add_option("--out", out, "File to write")->required();
   }
   [[nodiscard]] int run() const {
     const auto source = scene_or_error(scene, objects, seed);

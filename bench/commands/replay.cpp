@@ -36,7 +36,7 @@ struct Replay {
   void print(const std::vector<Run>& runs, const std::string& scene, std::size_t count) const;
 };
 
-/// A member of what `replay` writes.
+/// One element of the list that `replay` writes.
 Json replay_json(const Run& run, const std::string& scene, std::size_t objects) {
   Json pairs = Json::array();
   Json reported = Json::array();
@@ -82,7 +82,7 @@ int Replay::run() {
     Progress progress(partitions.taken.size());
     for (const std::string& name : partitions.taken) {
       progress.step(target.name + ": " + name);
-      // Every partition gets the frames anew, so that one run does not disturb another.
+      // A new source for every partition, so that one run does not disturb another.
       const auto source = target.source(scene);
       std::vector<Contender> contenders = make_contenders({name}, threads);
       runs.push_back(std::move(race(*source, contenders, options).front()));
@@ -99,16 +99,16 @@ int Replay::run() {
   return kFailed;
 }
 
-/// What became of a program's own questions; false if one was not answered as it was then.
+/// Prints how many recorded queries returned the recorded results; false if any differed.
 bool Replay::print_answers(const Recording& recording) {
   if (!recording.program) return true;
   const Recording::Program& program = *recording.program;
   std::cout << "recorded: " << grouped(program.calls) << " calls, "
             << grouped(program.questions - program.differences) << " of "
-            << grouped(program.questions) << " questions answered bit for bit as recorded"
+            << grouped(program.questions) << " queries returned the recorded results, bit for bit"
             << (program.is_whole ? "\n" : "; the recording was not closed\n");
   if (program.differences == 0) return true;
-  std::cerr << "winnow: the recorded questions were answered otherwise\n";
+  std::cerr << "winnow: some queries returned other results than recorded\n";
   return false;
 }
 
@@ -136,11 +136,11 @@ void Replay::print(const std::vector<Run>& runs, const std::string& scene,
 Command add_replay(CLI::App& app) {
   return command<Replay>(
       app, "replay",
-      "Finds all pairs in every frame of a recording or scene. The frame's time is one bulk update "
-      "of what changed (told to the partition, as a simulation knows it) and all pairs into one "
-      "buffer; medians leave out the first frame. What a program recorded of itself is played as "
-      "it "
-      "was, too, and every answer compared with the recorded one.");
+      "Finds all pairs in every frame of a recording or scene. The time of a frame includes one "
+      "bulk update of the changed boxes (the partition is given the list of changes, as in a "
+      "simulation) and writing all pairs into one buffer; medians exclude the first frame. A "
+      "program's own recording is also played call by call, and every result is compared with the "
+      "recorded one.");
 }
 
 }  // namespace winnow::bench

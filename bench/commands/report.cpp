@@ -12,7 +12,7 @@
 namespace winnow::bench {
 namespace {
 
-constexpr int kInterrupted = 130;  // as shells say of SIGINT
+constexpr int kInterrupted = 130;  // exit status of shells after SIGINT
 
 struct ReportCommand {
   std::vector<std::string> scenes = main_scenes();
@@ -44,19 +44,21 @@ void sort_once(std::vector<T>& values) {
 
 void ReportCommand::add_options(CLI::App& app) {
   option(app, "--out", out,
-         "Folder for index.html, results.json and CSVs; it is made if it is not there");
-  option(app, "--scene", scenes, "Built-in scenes or recordings (.aabbs, .winnow, .xz of either)");
+         "Folder for index.html, results.json and CSV files; created if missing");
+  option(app, "--scene", scenes,
+         "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz)");
   add_objects_option(app, objects, "Numbers of objects");
   add_threads_option(app, threads, "Numbers of threads");
   add_seed_option(app, seed);
   add_isa_option(app, isa);
   std::vector<std::string> ids;
   for (const ReportSection& section : report_sections()) ids.emplace_back(section.id);
-  one_of(app, "--section", section_ids, ids, "Only these");
-  app.add_flag("--million", million, "1,000,000 objects, too");
-  app.add_flag("--quick", quick, "Small and unsteady, in seconds: to see what there is");
-  app.add_flag("--no-peers", no_peers, "Without other libraries");
-  option(app, "--from", from, "Measure nothing: write the page and the CSVs of this results.json");
+  one_of(app, "--section", section_ids, ids, "Sections");
+  app.add_flag("--million", million, "Also measure 1,000,000 objects");
+  app.add_flag("--quick", quick,
+               "Measure small scenes in seconds, with unreliable times: a preview");
+  app.add_flag("--no-peers", no_peers, "Do not measure other libraries");
+  option(app, "--from", from, "Measure nothing: write the page and CSV files of this results.json");
 }
 
 ReportOptions ReportCommand::options() const {
@@ -114,7 +116,7 @@ void ReportCommand::note_settings(const ReportOptions& options, Results& results
 
 int ReportCommand::run() {
   choose_isa(isa);
-  if (out.empty()) throw ArgumentError("--out: a folder, please");
+  if (out.empty()) throw ArgumentError("--out: a folder is needed");
   if (!from.empty()) {
     Results results = read_results(from);
     try {
@@ -132,7 +134,7 @@ int ReportCommand::run() {
   const bool complete = make_report(out, chosen, sections(), results);
   print_summary(results);
   std::cout << out << "/index.html: open it in a browser"
-            << (complete ? "" : "; it holds what was measured until the interruption") << '\n';
+            << (complete ? "" : "; it contains the measurements up to the interruption") << '\n';
   if (!complete) return kInterrupted;
   return results.document()["problems"].empty() ? kDone : kFailed;
 }
@@ -142,8 +144,8 @@ int ReportCommand::run() {
 Command add_report(CLI::App& app) {
   return command<ReportCommand>(
       app, "report",
-      "Speed against error of everything, on one page: throughput, memory, volumes, pairs of "
-      "shapes, hard cases, queries, the pipeline, and which partition to take");
+      "Measures speed and error of all parts and writes one page: throughput, memory, volumes, "
+      "pairs of shapes, hard cases, queries, whole scenes, and a recommended partition.");
 }
 
 }  // namespace winnow::bench

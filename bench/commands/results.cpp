@@ -20,11 +20,12 @@ struct ResultsCommand {
 
   void add_options(CLI::App& app) {
     option(app, "results", from, "results.json of a report");
-    option(app, "--out", out, "The file of all tables");
+    option(app, "--out", out, "Markdown file to write, with all tables");
     option(app, "--readme", readme,
-           "A text with \"<!-- figures -->\" and \"<!-- end -->\" about one table");
+           "File whose text between \"<!-- figures -->\" and \"<!-- end -->\" is replaced by one "
+           "table");
     app.add_flag("--check", check,
-                 "Change nothing: end with 1 if a figure is not what the results say");
+                 "Change nothing; exit status 1 if a figure differs from the results");
   }
   [[nodiscard]] int run() const;
 
@@ -33,13 +34,13 @@ struct ResultsCommand {
                           const std::string& should) const;
 };
 
-/// Nothing if there is no such file.
+/// Returns the text, or an empty one if there is no such file.
 std::string file_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The first line in which they differ.
+/// Prints the first line that differs.
 void print_difference(const std::string& path, const std::string& is, const std::string& should) {
   std::istringstream is_lines(is);
   std::istringstream should_lines(should);
@@ -50,14 +51,15 @@ void print_difference(const std::string& path, const std::string& is, const std:
     const bool more_should = static_cast<bool>(std::getline(should_lines, should_line));
     if (more && more_should && is_line == should_line) continue;
     std::cout << path << ":" << number
-              << " is not what the results say\n  is:     " << (more ? is_line : "the end")
+              << " differs from the results\n  is:     " << (more ? is_line : "the end")
               << "\n  should: " << (more_should ? should_line : "the end")
-              << "\nbench/run results writes it anew\n";
+              << "\nrun `bench/run results` to write it again\n";
     return;
   }
 }
 
-/// Writes a text unless it is there; false if it is not, and may not be written.
+/// Writes `should` unless the file has that text already. With --check nothing is written; returns
+/// false if the text differs.
 bool ResultsCommand::keep(const std::string& path, const std::string& is,
                           const std::string& should) const {
   if (is == should) return true;
@@ -69,7 +71,7 @@ bool ResultsCommand::keep(const std::string& path, const std::string& is,
   file << should;
   file.close();
   if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
-  std::cout << path << ": written anew\n";
+  std::cout << path << ": written\n";
   return true;
 }
 
@@ -86,7 +88,7 @@ int ResultsCommand::run() const {
 Command add_results(CLI::App& app) {
   return command<ResultsCommand>(app, "results",
                                  "Writes the tables of a report's results.json as Markdown, and "
-                                 "its main figures into a readme");
+                                 "its main figures into README.md");
 }
 
 }  // namespace winnow::bench

@@ -16,7 +16,7 @@ void RowsCommand::add_rows_options(CLI::App& app) {
 
 int RowsCommand::run() {
   choose_isa(isa_);
-  results = Results();  // of the instruction set that was chosen
+  results = Results();  // must be made after the instruction set is chosen, which it stores
   measure();
   if (!json_.empty()) write_json(json_, document());
   return failed_ ? kFailed : kDone;

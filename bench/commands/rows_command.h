@@ -12,7 +12,7 @@
 
 namespace winnow::bench {
 
-/// A command that measures rows step by step into tables, which it prints and writes.
+/// Base of commands that measure rows step by step into tables, print them and write them as JSON.
 class RowsCommand {
  public:
   RowsCommand() = default;
@@ -20,26 +20,27 @@ class RowsCommand {
   RowsCommand& operator=(const RowsCommand&) = delete;
   virtual ~RowsCommand() = default;
 
-  /// The exit status.
+  /// Returns the exit status.
   int run();
 
  protected:
-  /// --isa, and --json.
+  /// Adds --isa and --json.
   void add_rows_options(CLI::App& app);
-  /// Declares tables, makes steps and prints.
+  /// Declares tables, runs steps and prints.
   virtual void measure() = 0;
 
-  /// Before the first step.
+  /// Sets the number of steps; call before the first step.
   void plan(std::size_t steps) { progress_.emplace(steps); }
-  /// Something that was found wrong is told, and ends the command with kFailed.
+  /// Runs one step. Passes on an ArgumentError; after any other exception prints it and continues,
+  /// and the command ends with kFailed.
   void step(const std::string& what, const std::function<void()>& measure_rows);
-  /// The rows of a table, all values or these.
+  /// Prints the rows of a table, with all values or the named ones.
   void print(const std::string& table, const std::vector<std::string>& values = {});
 
-  /// What is written: all rows.
+  /// The document written by --json; by default all rows.
   [[nodiscard]] virtual Json document() const;
   [[nodiscard]] bool is_written() const noexcept { return !json_.empty(); }
-  /// Ends the command with kFailed.
+  /// Makes the command end with kFailed.
   void fail() noexcept { failed_ = true; }
 
   Results results;

@@ -18,15 +18,15 @@ double pairs_an_object(std::string_view scene) {
 }
 
 int run_scenes() {
-  Table table({"scene", "pairs an object", "what it is"});
+  Table table({"scene", "pairs an object", "description"});
   table.flush_left(2);
   for (const SceneInfo& info : scene_infos()) {
     table.add(
         {std::string(info.name), short_number(pairs_an_object(info.name)), std::string(info.what)});
   }
   std::cout << table << "pairs measured in the first frame of " << grouped(kObjects)
-            << " objects (N). Unless something else is said,\n"
-            << "speeds are up to 5 % of the edge a frame and axis; objects are reflected at the "
+            << " objects (N). Unless stated otherwise,\n"
+            << "speeds are up to 5 % of the edge per frame and axis; objects are reflected at the "
                "walls.\n";
   return kDone;
 }

@@ -1,3 +1,7 @@
+// The command `winnow simulate`: runs a granular flow, structures that must stand, or fast bodies
+// that must not pass barriers, on winnow's scene, and checks the results. The simulations are in
+// bench/simulation, the rows in bench/rows.
+
 #include <winnow/simd/isa.h>
 #include "bench/commands/options.h"
 #include "bench/commands/rows_command.h"
@@ -19,19 +23,19 @@
 namespace winnow::bench {
 namespace {
 
-/// Steps from one recorded frame to the next: bodies move about a hundredth of their size.
+/// Steps per recorded frame: bodies move about a hundredth of their size.
 constexpr std::size_t kRecorded = 10;
 constexpr std::size_t kReports = 20;
-/// Rises of the energy that are taken for errors of the integration.
+/// Greatest relative rise of the energy that counts as an integration error.
 constexpr double kMostRise = 1e-3;
 
-/// Every structure.
+/// Selects every structure or barrier.
 constexpr const char* kAll = "all";
 
-/// Facts about a run, as they are printed: what and how much.
+/// Facts about a run to print: name and value.
 using FlowFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// Steps of a run, of which some are announced.
+/// Runs steps and announces some of them.
 class AnnouncedSteps {
  public:
   AnnouncedSteps(FlowRun& run, std::size_t steps)
@@ -61,7 +65,7 @@ class AnnouncedSteps {
   Progress progress_;
 };
 
-/// A flow as the writer of recordings wants it.
+/// A flow as a FrameSource, for the writer of recordings.
 class FlowFrames final : public FrameSource {
  public:
   explicit FlowFrames(AnnouncedSteps& steps) : steps_(steps), boxes_(steps.flow().objects()) {
@@ -110,25 +114,28 @@ class Simulate final : public RowsCommand {
 
 void Simulate::add_options(CLI::App& app) {
   objects_ = number(app, "--objects", asked_.objects, 1, 1e7,
-                    "Number of bodies; of a cloth vertices along an edge");
+                    "Number of bodies; for a cloth, vertices along an edge");
   steps_ = number(app, "--steps", asked_.steps, 1, 1e8,
-                  "Steps of a thousandth of a second; of a barrier of a sixtieth");
-  one_of(app, "--shape", asked_.shape, flow_shape_names(), "What falls");
+                  "Number of steps, of 1/1000 s; with --barrier, of 1/60 s");
+  one_of(app, "--shape", asked_.shape, flow_shape_names(), "Shapes of the bodies");
   option(app, "--mesh", mesh_,
-         "An OBJ, STL or PLY file to fall into, scaled to the funnel's width");
-  option(app, "--out", out_, "An HTML page to write, with plots over time");
-  option(app, "--record", record_, "An .aabbs file to write, one frame every 10 steps");
+         "OBJ, STL or PLY file of a mesh instead of the funnel, scaled to the funnel's width");
+  option(app, "--out", out_, "HTML page to write, with plots over time");
+  option(app, "--record", record_, ".aabbs file to write, with a frame every 10 steps");
   option(app, "--check", asked_.check,
-         "Every so many steps, compare the contacts with those of all pairs");
+         "Interval in steps at which contacts are compared with a brute-force test of all pairs; "
+         "0: never");
   std::vector<std::string> structures = standing_names();
   structures.emplace_back(kAll);
-  one_of(app, "--standing", standing_, structures,
-         "Instead of the flow, a structure that is to stand on a solver with warm start");
-  number(app, "--seconds", seconds_, 1, 1e6, "How long it is to stand, simulated");
+  one_of(
+      app, "--standing", standing_, structures,
+      "Instead of the flow, simulate a structure that must stand, with a solver with warm start");
+  number(app, "--seconds", seconds_, 1, 1e6, "Simulated time for --standing, in seconds");
   std::vector<std::string> barriers = barrier_names();
   barriers.emplace_back(kAll);
-  one_of(app, "--barrier", barrier_, barriers,
-         "Instead of the flow, something fast that is not to get through something thin");
+  one_of(
+      app, "--barrier", barrier_, barriers,
+      "Instead of the flow, simulate fast bodies and thin barriers, which must not be tunnelled");
   add_threads_option(app, asked_.threads);
   add_seed_option(app, asked_.seed);
   add_rows_options(app);
@@ -154,7 +161,7 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
       {"bytes", grouped(run.bytes())},
       {"allocations after " + grouped(run.warm_up()) + " steps",
        grouped(run.allocations()) + ", " + grouped(run.steady_allocations()) +
-           " in steps with no more contacts than ever before"}};
+           " in steps with no more contacts than in an earlier step"}};
   if (asked_.check != 0) {
     const FlowFaults& faults = run.faults();
     facts.emplace_back("checked by brute force",
@@ -176,7 +183,7 @@ void Simulate::write_flow_page(const FlowFacts& facts) const {
                   page.plots);
 }
 
-// With the manifolds of all parts, and with one for each region.
+// Measures each structure twice: with the manifolds of all parts, and with one manifold per region.
 void Simulate::measure_standing() {
   declare_standing(results);
   std::vector<std::string> names{standing_};
@@ -262,11 +269,11 @@ void Simulate::measure() {
 Command add_simulate(CLI::App& app) {
   return command<Simulate>(
       app, "simulate",
-      "Granular flow through a funnel made of triangles: a simulation that embeds winnow, its soak "
-      "test, and its benchmark from end to end. Fails if contacts create energy or a check finds a "
-      "contact lost, invented or doubled. Or structures that are to stand; fails if one drifts. Or "
-      "fast bodies in a funnel, a spinning blade, a cloth that drops on a ball; fails if anything "
-      "passes through anything.");
+      "Simulates granular flow through a funnel of triangles, with winnow embedded: an end-to-end "
+      "benchmark and soak test. It fails if contacts create energy, or if a check finds a missing, "
+      "false or duplicate contact. With --standing it simulates structures that must stand, and "
+      "fails if one drifts. With --barrier it simulates fast bodies in a funnel, a spinning blade, "
+      "or a cloth that drops on a ball, and fails if anything tunnels.");
 }
 
 }  // namespace winnow::bench

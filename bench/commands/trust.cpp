@@ -33,7 +33,7 @@ void print(const Json& row) {
 }
 
 int TrustCommand::run() const {
-  std::cout << "What tries to break winnow, and what it found.\n";
+  std::cout << "Tests that try to break winnow, and their results.\n";
   for (const Json& row : ledger()["rows"]) print(row);
   write_json(json, ledger());
   return kDone;
@@ -43,8 +43,8 @@ int TrustCommand::run() const {
 
 Command add_trust(CLI::App& app) {
   return command<TrustCommand>(app, "trust",
-                               "Prints what tests, fuzzers and checks found, when, and the command "
-                               "that finds it again");
+                               "Prints the results of tests, fuzzers and checks, with their dates "
+                               "and the commands that repeat them");
 }
 
 }  // namespace winnow::bench

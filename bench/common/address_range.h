@@ -7,10 +7,10 @@
 
 namespace winnow::bench {
 
-/// A range of addresses; the system gives memory to the pages that are written to.
+/// A reserved range of virtual addresses. The system commits a page when it is first written.
 class AddressRange {
  public:
-  /// Throws std::bad_alloc if there are no such addresses.
+  /// Throws std::bad_alloc if the system cannot reserve `bytes`.
   explicit AddressRange(std::size_t bytes) : bytes_(bytes) {
     void* const range = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE,
                                MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -23,7 +23,7 @@ class AddressRange {
 
   [[nodiscard]] std::byte* begin() const noexcept { return begin_; }
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
-  /// As if nobody had written to any page.
+  /// Returns all pages to the system; they read as zero and fault again on the next write.
   void forget() noexcept { ::madvise(begin_, bytes_, MADV_DONTNEED); }
 
  private:

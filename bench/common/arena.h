@@ -9,10 +9,10 @@
 
 namespace winnow::bench {
 
-/// Arenas of given numbers of threads, also of more than the machine has cores.
+/// TBB arenas by number of threads, which may exceed the number of cores.
 class Arenas {
  public:
-  /// `most`: the largest number of threads that will be asked for.
+  /// `most`: the largest number of threads that `run` is called with.
   explicit Arenas(int most)
       : control_(tbb::global_control::max_allowed_parallelism,
                  std::max(static_cast<std::size_t>(most),
@@ -25,7 +25,7 @@ class Arenas {
   }
 
  private:
-  // Without it an arena gets no more threads than there are cores.
+  // TBB limits arenas to the number of cores unless this allows more.
   tbb::global_control control_;
   std::map<int, tbb::task_arena> arenas_;
 };

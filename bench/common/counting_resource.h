@@ -7,8 +7,8 @@
 
 namespace winnow::bench {
 
-/// Passes requests on and knows how much is outstanding, to the byte. Partitions allocate from one
-/// thread only, so it need not lock.
+/// Forwards to `upstream` and counts outstanding bytes and allocations. Not synchronized:
+/// partitions allocate from one thread only.
 class CountingResource final : public std::pmr::memory_resource {
  public:
   explicit CountingResource(std::pmr::memory_resource* upstream = default_memory()) noexcept
@@ -16,7 +16,7 @@ class CountingResource final : public std::pmr::memory_resource {
 
   [[nodiscard]] std::size_t outstanding() const noexcept { return outstanding_; }
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
-  /// From now on the peak is that of what follows.
+  /// Starts a new measurement of the peak at the bytes outstanding now.
   void forget_peak() noexcept { peak_ = outstanding_; }
   [[nodiscard]] std::size_t allocations() const noexcept { return allocations_; }
 

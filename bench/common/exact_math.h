@@ -5,10 +5,11 @@
 
 namespace winnow::bench {
 
-// Powers and roots from + * / and sqrt alone, which round the same on every machine; std::cbrt and
-// std::pow need not.
+// Powers and roots that use only + - * / and sqrt, which IEEE 754 rounds the same on every machine.
+// std::cbrt and std::pow may differ.
 
-/// Cube root of a positive number by Newton's method, from above: it converges monotonically.
+/// Cube root of a positive number by Newton's method. Starts above the root, from where it
+/// converges monotonically.
 [[nodiscard]] inline double cube_root(double a) noexcept {
   double x = a > 1.0 ? a : 1.0;
   for (;;) {

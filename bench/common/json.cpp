@@ -11,7 +11,7 @@
 namespace winnow::bench {
 namespace {
 
-/// How deep lists and objects stand in each other at most, whether or not the text is JSON.
+/// Returns the deepest nesting of lists and objects. The text need not be valid JSON.
 std::size_t depth_of(const std::string& text) {
   std::size_t depth = 0;
   std::size_t deepest = 0;
@@ -40,7 +40,7 @@ Json read_json(const std::string& path) {
   try {
     return Json::parse(text.str());
   } catch (const Json::exception& error) {
-    // Behind the library's own number of the error.
+    // Skips the error number with which the library begins its message.
     const std::string what = error.what();
     const std::size_t end = what.find("] ");
     throw ArgumentError(path + ": " + (end == std::string::npos ? what : what.substr(end + 2)));

@@ -6,30 +6,31 @@
 
 namespace winnow::bench {
 
-/// Members stay in the order in which they are written.
+/// Keeps members in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// Lists and objects in each other at most, in files of others: what compares and copies values
-/// goes down them by calling itself.
+/// Deepest nesting accepted from a file: comparing and copying values recurses once per level, and
+/// a deeper file could overflow the stack.
 inline constexpr std::size_t kDeepestJson = 200;
 
-/// Of a file that anybody may have written. Throws ArgumentError, with the file and what is wrong
-/// where, if it cannot be read, is no JSON or is nested deeper than kDeepestJson.
+/// Reads an untrusted file. Throws ArgumentError with the path and the error if it cannot be read,
+/// is not JSON or is nested deeper than kDeepestJson.
 [[nodiscard]] Json read_json(const std::string& path);
 
-/// The member, or null if there is none or `value` is no object.
+/// Returns the member, or null if it is missing or `value` is not an object.
 [[nodiscard]] inline const Json& member(const Json& value, const char* name) {
   static const Json nothing;
   const auto at = value.find(name);
   return at == value.end() ? nothing : *at;
 }
-/// The element, or null if there is none or `value` is no list.
+/// Returns the element, or null if it is missing or `value` is not a list.
 [[nodiscard]] inline const Json& element(const Json& value, std::size_t i) {
   static const Json nothing;
   return value.is_array() && i < value.size() ? value[i] : nothing;
 }
 
-/// Writes to a file; does nothing for an empty path. Throws ArgumentError if it cannot.
+/// Writes to a file; does nothing for an empty path. Throws ArgumentError if the file cannot be
+/// written.
 void write_json(const std::string& path, const Json& value);
 
 }  // namespace winnow::bench

@@ -7,7 +7,7 @@
 
 namespace winnow::bench {
 
-/// Throws std::runtime_error unless winnow has done what it was asked for.
+/// Throws std::runtime_error unless `status` is ok.
 inline void need(Status status, const char* what) {
   if (status != Status::ok) throw std::runtime_error(std::string(what) + ": " + to_string(status));
 }

@@ -10,7 +10,8 @@
 namespace winnow::bench {
 namespace {
 
-// Seconds that all processors were busy; what a virtual machine's host took away is among them.
+// Returns the seconds that all processors were busy, including time stolen by the host of a virtual
+// machine.
 std::optional<double> busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;

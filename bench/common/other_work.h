@@ -6,12 +6,12 @@
 
 namespace winnow::bench {
 
-/// What the machine does beside this process and those that it has waited for, from when it is
-/// made. Known where there is a /proc/stat.
+/// Measures the load of all other processes from construction on. This process and child processes
+/// that have ended are not counted.
 class OtherWork {
  public:
   OtherWork();
-  /// Cores that it kept busy on average.
+  /// Returns the average number of cores that were busy, or nothing on systems without /proc/stat.
   [[nodiscard]] std::optional<double> cores() const;
 
  private:

@@ -11,7 +11,8 @@ void Progress::step(const std::string& what, double seconds) {
   const double gone = clock_.ms() / 1000.0;
   char left[32] = "";
   if (expected_ > 0.0) {
-    // This machine may be slower than the one on which the seconds were measured.
+    // Scales the estimate: this machine may be slower than the one that the seconds were measured
+    // on.
     const double pace = begun_ > 0.1 * expected_ ? gone / begun_ : 1.0;
     std::snprintf(left, sizeof left, ", %.0f s left", std::max(0.0, expected_ - begun_) * pace);
   }

@@ -4,8 +4,8 @@
 
 namespace winnow::bench {
 
-/// A bijection of 64-bit values that leaves no visible pattern (the finaliser of SplitMix64:
-/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+/// The finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
+/// generators", OOPSLA 2014): a bijection of 64-bit values.
 [[nodiscard]] constexpr std::uint64_t mix(std::uint64_t x) noexcept {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -13,8 +13,9 @@ namespace winnow::bench {
   return x ^ (x >> 31U);
 }
 
-/// SplitMix64. The distributions of <random> and the functions of libm differ between machines;
-/// everything here is made of integers and of operations that IEEE 754 rounds correctly.
+/// SplitMix64. Uses only integers and operations that IEEE 754 rounds correctly, so that results
+/// are the same on every machine; <random> distributions and libm functions differ between
+/// machines.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t seed) noexcept : state_(mix(seed)) {}
@@ -36,7 +37,7 @@ class Random {
     return static_cast<std::uint32_t>(((next() >> 32U) * count) >> 32U);
   }
 
-  /// Close to a standard normal: the sum of twelve uniforms, cut off at six deviations.
+  /// Approximately standard normal: the sum of twelve uniforms minus 6, thus within [-6, 6).
   constexpr double normal() noexcept {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += unit();

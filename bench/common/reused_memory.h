@@ -8,16 +8,16 @@
 
 namespace winnow::bench {
 
-/// One range of addresses, handed out from its beginning to its end. What was written to once costs
-/// no page faults when it is handed out again, until it is given back to the system.
+/// A bump allocator over one range of addresses. Memory that was written before causes no page
+/// faults when it is handed out again after `rewind`.
 class ReusedMemory final : public std::pmr::memory_resource {
  public:
-  /// Throws std::bad_alloc if there are no such addresses.
+  /// Throws std::bad_alloc if the system cannot reserve `bytes`.
   explicit ReusedMemory(std::size_t bytes) : range_(bytes) {}
 
-  /// Hands out everything again. Nothing that was allocated may be alive.
+  /// Makes all memory available again. No allocation may be alive.
   void rewind() noexcept { used_ = 0; }
-  /// The same, with pages that nobody has written to.
+  /// As `rewind`, but also returns the pages to the system, so that they fault again.
   void rewind_untouched() noexcept {
     range_.forget();
     used_ = 0;

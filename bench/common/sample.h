@@ -6,7 +6,7 @@
 
 namespace winnow::bench {
 
-/// Of a set of measurements. All zero if there is none.
+/// Spread of a set of measurements; all zero for an empty set.
 struct Spread {
   double min = 0.0;
   double median = 0.0;
@@ -18,7 +18,7 @@ struct Spread {
   return spread_of(values).median;
 }
 
-/// Milliseconds since it was made.
+/// Milliseconds since construction.
 class Stopwatch {
  public:
   [[nodiscard]] double ms() const noexcept {
@@ -30,8 +30,8 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Milliseconds that the calling thread has computed since it was made: what a machine does beside
-/// it does not count. Only for work that stays on one thread.
+/// CPU milliseconds of the calling thread since construction, which other load on the machine does
+/// not affect. Only for work that stays on one thread.
 class ThreadStopwatch {
  public:
   [[nodiscard]] double ms() const noexcept { return now_ms() - start_; }
@@ -46,7 +46,8 @@ struct GrowthPoint {
   double cost = 0.0;
 };
 
-/// Exponent b of cost = a * size^b: least squares of the logarithms. NaN for less than two sizes.
+/// Returns the exponent b of cost = a * size^b by least squares of the logarithms. NaN for fewer
+/// than two sizes.
 [[nodiscard]] double fitted_exponent(std::span<const GrowthPoint> points);
 
 }  // namespace winnow::bench

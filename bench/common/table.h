@@ -7,13 +7,13 @@
 
 namespace winnow::bench {
 
-/// Text in columns: the first flush left, the others flush right.
+/// Text in columns: the first is aligned left, the others right.
 class Table {
  public:
   explicit Table(std::vector<std::string> header) : rows_{std::move(header)} {}
 
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  /// A further column flush left.
+  /// Aligns a further column left.
   void flush_left(std::size_t column) { left_.push_back(column); }
 
   friend std::ostream& operator<<(std::ostream& out, const Table& table);

@@ -11,11 +11,11 @@
 
 namespace winnow::bench {
 
-/// A host's own threads, as plain as they come: whoever calls works along with the others, which
-/// take tasks one by one, the newest batch first.
+/// A minimal thread pool, as a host program may have. The caller of a batch works on it together
+/// with the workers. Workers take tasks one by one, from the newest batch first.
 class ThreadPool {
  public:
-  /// The caller counts as one of the threads.
+  /// `threads` includes the caller.
   explicit ThreadPool(std::size_t threads) : threads_(threads) {
     for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this] { serve(); });
   }
@@ -62,7 +62,7 @@ class ThreadPool {
       while (*at != &batch) at = &(*at)->older;
       *at = batch.older;
     }
-    // Whoever joined is in its last task.
+    // Helpers that joined may still be in their last task.
     while (batch.helpers.load() != 0) std::this_thread::yield();
   }
 
@@ -79,7 +79,7 @@ class ThreadPool {
     }
   }
 
-  // The newest batch with tasks to take.
+  // Returns the newest batch that has tasks left, or null.
   Batch* join() {
     const std::lock_guard lock(mutex_);
     for (Batch* batch = newest_; batch != nullptr; batch = batch->older) {
@@ -91,7 +91,8 @@ class ThreadPool {
     return nullptr;
   }
 
-  // A frame has many batches shortly after each other: to sleep between them costs more than they.
+  // A frame has many short batches in quick succession: sleeping between them would cost more than
+  // they do, so this spins for a while. Returns true if a new batch was signalled.
   [[nodiscard]] bool wait_awake(std::uint32_t seen) const {
     constexpr int kLooks = 200;
     for (int look = 0; look < kLooks; ++look) {

@@ -5,8 +5,8 @@
 
 namespace winnow::bench {
 
-/// Milliseconds that some work takes: on one thread what the thread computed, on several those of
-/// the clock on the wall.
+/// Returns the milliseconds of `work`: CPU time of the thread if `threads` is 1, otherwise
+/// wall-clock time in an arena.
 double timed(int threads, Arenas& arenas, const auto& work) {
   if (threads == 1) {
     const ThreadStopwatch own_clock;

@@ -5,9 +5,10 @@
 
 namespace winnow::bench {
 
-/// What `count` contenders take for their turns, by contender and round: `turn(round, i)` gives it.
-/// All have a turn in each round, so that whatever disturbs the machine disturbs them alike. The
-/// first `warming` rounds do not count.
+/// Measures `count` contenders in turns and returns the results by contender and round.
+/// `turn(round, i)` runs contender i once and returns its measurement. Each round runs all
+/// contenders, so that disturbances of the machine affect all alike. The first `warming` rounds are
+/// dropped.
 template <typename Turn>
 std::vector<std::vector<double>> take_turns(std::size_t count, std::size_t rounds,
                                             std::size_t warming, Turn&& turn) {

@@ -12,66 +12,67 @@
 
 namespace winnow::bench {
 
-/// Thrown by an engine that gives up a frame, see Engine::give_up_after.
+/// Thrown by an engine that exceeds the bound of Engine::give_up_after.
 struct GaveUp {};
 
-/// Anything that can be raced on a scene: a partition of winnow or another library. The harness
-/// times `start` and `frame` from outside and calls the rest outside its timers, so whatever a
-/// user would have to pay for a frame (update, rebuild, sorting out duplicates, copying pairs out
-/// of a callback) belongs inside those two.
+/// Base of everything that is raced on a scene: winnow's partitions and other libraries. The
+/// harness times `start` and `frame` from outside and calls everything else outside its timers. All
+/// work that a user pays for in a frame (update, rebuild, removal of duplicates, copying pairs out
+/// of a callback) therefore belongs in these two functions.
 ///
-/// An object is its row, 0..N-1, and keeps it for the whole run; there may come more. Calls come
-/// from one thread, inside a `tbb::task_arena` of the thread count the engine was made for.
+/// An object is identified by its row, 0..N-1, for the whole run; later frames may add rows. All
+/// calls come from one thread, inside a `tbb::task_arena` of the thread count that the engine was
+/// made for.
 class Engine {
  public:
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Short and stable, e.g. "FlatGrid" or "Bullet dbvt". The same on every call.
+  /// A short constant name, e.g. "FlatGrid" or "Bullet dbvt".
   [[nodiscard]] virtual std::string name() const = 0;
 
-  /// Objects above which a run would take unreasonably long; such scenes are skipped by name where
-  /// its time is not bounded.
+  /// Number of objects above which a run takes unreasonably long. Larger scenes are skipped, and
+  /// reported as skipped, unless the run bounds the time of frames.
   [[nodiscard]] virtual std::size_t largest() const {
     return std::numeric_limits<std::size_t>::max();
   }
 
-  /// Whether it uses one thread, whatever number it was made for.
+  /// True if it uses one thread, whatever number it was made for.
   [[nodiscard]] virtual bool is_serial() const { return false; }
 
-  /// From now on a `start` or `frame` that takes longer ends with GaveUp, and nothing but `bytes`
-  /// is asked of it any more. Only engines whose frames may take minutes look at the time.
+  /// After this call a `start` or `frame` that takes longer than `ms` throws GaveUp; then only
+  /// `bytes` may be called. Only engines whose frames may take minutes check the time.
   void give_up_after(double ms) noexcept { most_ms_ = ms; }
 
-  /// Frame 0: takes the boxes (row = index) and finds their pairs. Called once, before anything
-  /// but what is above.
+  /// Frame 0: takes the boxes (row = index) and finds their pairs. Called once, before `frame`,
+  /// `pairs`, `bytes` and `update_ms`.
   virtual void start(std::span<const Aabb> boxes) = 0;
 
-  /// A later frame. `changed_rows` (ascending, each once, maybe empty) are the objects whose boxes
-  /// differ from the last frame; `all_boxes` holds every object's box, changed or not; rows that
-  /// the last frame did not have are new objects. Brings them in and finds all pairs. `all_boxes`
-  /// is not kept alive after the call.
+  /// A later frame: updates the boxes and finds all pairs. `changed_rows` (ascending, unique, maybe
+  /// empty) are the objects whose boxes differ from the last frame. `all_boxes` holds the boxes of
+  /// all objects, changed or not; rows that the last frame did not have are new objects. The spans
+  /// are valid only during the call.
   virtual void frame(std::span<const std::uint32_t> changed_rows,
                      std::span<const Aabb> all_boxes) = 0;
 
-  /// What the last `start` or `frame` found: pairs of rows, each unordered pair once, (i, j) or
-  /// (j, i), any order. All truly overlapping pairs (closed boxes: touching is overlapping) must be
-  /// there; pairs that do not overlap may be there too, they are filtered out and counted as
+  /// Pairs of rows that the last `start` or `frame` found: each unordered pair once, as (i, j) or
+  /// (j, i), in any order. All overlapping pairs (closed boxes: touching is overlapping) must be
+  /// included. Other pairs may be included; the harness filters them out and counts them as
   /// reported. Valid until the next non-const call.
   [[nodiscard]] virtual std::span<const Pair> pairs() const = 0;
 
-  /// Bytes held now, without the pairs found; 0 if the library cannot tell.
+  /// Bytes held now, without the pairs found; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 
-  /// Milliseconds of the last `start` or `frame` that went into bringing boxes in, before the
-  /// search for pairs; 0 if the two cannot be told apart.
+  /// Milliseconds that the last `start` or `frame` spent on updating boxes before the search for
+  /// pairs; 0 if the two cannot be separated.
   [[nodiscard]] virtual double update_ms() const { return 0.0; }
 
  protected:
   Engine() = default;
 
-  /// Throws GaveUp if more than the bound has gone by.
+  /// Throws GaveUp if the time bound is exceeded.
   void check_time(const Stopwatch& since_start) const {
     if (since_start.ms() > most_ms_) throw GaveUp{};
   }

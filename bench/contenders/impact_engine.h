@@ -8,29 +8,29 @@
 
 namespace winnow::bench {
 
-/// When the bodies of a pair meet, as an engine says it.
+/// The time of impact of a pair.
 struct ImpactAnswer {
   bool hit = false;
   double time = 1.0;
 };
 
-/// Anything that says when pairs of moving bodies first meet: winnow or another library. As
-/// NarrowEngine.
+/// Base of everything that computes times of impact of pairs of moving bodies: winnow and other
+/// libraries. Used by the harness like NarrowEngine.
 class ImpactEngine {
  public:
   ImpactEngine(const ImpactEngine&) = delete;
   ImpactEngine& operator=(const ImpactEngine&) = delete;
   virtual ~ImpactEngine() = default;
 
-  /// Short and stable, e.g. "winnow" or "Bullet continuous".
+  /// A short constant name, e.g. "winnow" or "Bullet continuous".
   [[nodiscard]] virtual std::string name() const = 0;
-  /// True if it has a way to answer such pairs.
+  /// True if the engine supports such pairs.
   [[nodiscard]] virtual bool takes(const PairKind& kind, PairTurn turn) const = 0;
-  /// Makes everything ready. Called once, before any run; `set` outlives the engine.
+  /// Prepares everything. Called once, before any run; `set` outlives the engine.
   virtual void start(const MovingPairSet& set) = 0;
-  /// Answers some of the set's pairs.
+  /// Computes some of the set's pairs.
   virtual void run(std::span<const BodyPair> pairs) = 0;
-  /// What the last run said of its pair i.
+  /// Returns the result for pair i of the last run.
   [[nodiscard]] virtual ImpactAnswer answer(std::size_t i) const = 0;
 
  protected:

@@ -10,8 +10,8 @@
 
 namespace winnow::bench {
 
-/// A partition used as a simulation would use it: keys kept from the first frame on, one bulk
-/// update of what moved, all pairs into one reused buffer.
+/// A partition as a simulation uses it: keys are kept from the first frame on, each frame is one
+/// bulk update of the objects that moved, and all pairs go into one reused buffer.
 class PartitionEngine final : public Engine {
  public:
   /// `name` is one of all_partitions().
@@ -26,12 +26,12 @@ class PartitionEngine final : public Engine {
   [[nodiscard]] double update_ms() const override { return update_ms_; }
 
   [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
-  /// Where the partition allocates; the pair buffer does not.
+  /// The memory resource of the partition; the pair buffer does not use it.
   [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
   [[nodiscard]] const PairBuffer& buffer() const noexcept { return pairs_; }
 
   void forget_peak() noexcept { memory_.forget_peak(); }
-  /// Gives the partition's memory back; after it there is nothing but the pair buffer.
+  /// Frees the partition; afterwards only the pair buffer can be used.
   void drop_partition() noexcept { partition_ = Partition(StructureKind{}); }
 
  private:

@@ -1,3 +1,6 @@
+// Single and batched queries of a partition, as measure/query_race times them, and the conversion
+// of their results to rows.
+
 #include "bench/contenders/partition_queries.h"
 
 #include <tbb/blocked_range.h>
@@ -11,7 +14,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Box tests that one round of questions may cost a partition that tests every box.
+/// Most box tests for one run on a partition that tests every box per query.
 constexpr double kMostTests = 2e8;
 
 void require(Status status) {
@@ -50,12 +53,12 @@ std::size_t PartitionQueries::most_questions() const {
 
 void PartitionQueries::start(std::span<const Aabb> boxes) {
   keys_.resize(boxes.size());
-  // Ids of a fresh partition are 0, 1, 2, ...: the rows.
+  // A new partition gives the ids 0, 1, 2, ...: these are the rows.
   require(partition_.insert(boxes, {}, keys_));
   require(partition_.refresh());
 }
 
-/// Calls `visit(results)` after each question, with a Hit, a HitBuffer or an OverlapBuffer.
+/// Calls `visit(results)` after each query, with a Hit, a HitBuffer or an OverlapBuffer.
 template <typename Visit>
 void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::size_t end,
                                 Buffers& buffers, Visit&& visit) const {
@@ -91,7 +94,7 @@ void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::
   }
 }
 
-/// The results stay in `buffers_`.
+/// Runs one batched query; the results are in `buffers_`.
 void PartitionQueries::ask_batch(const QuestionSet& set, std::size_t count) {
   const Partition& partition = partition_;
   if (set.rays.empty()) {
@@ -157,7 +160,7 @@ Answers PartitionQueries::answers(const QuestionSet& set, Asking asking, std::si
   return result;
 }
 
-/// Of the last batch.
+/// Adds the results of the last batch to `answers`.
 void PartitionQueries::gather(const QuestionSet& set, std::size_t count, Answers& answers) {
   std::vector<Pair> pairs;
   if (set.rays.empty()) pairs.assign(buffers_.pairs.begin(), buffers_.pairs.end());

@@ -11,24 +11,24 @@
 
 namespace winnow::bench {
 
-/// A partition that is asked as a simulation would ask it: buffers kept from question to question.
-/// Single questions are asked from all threads of the arena; a batch is one call.
+/// A partition queried as a simulation does it: buffers are reused from query to query. Single
+/// queries run on all threads of the arena; a batch is one call.
 class PartitionQueries final : public QueryEngine {
  public:
   /// `name` is one of all_partitions().
   PartitionQueries(std::string_view name, int threads);
 
   [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
-  /// True unless the partition refuses such a question.
+  /// True unless the partition does not support such queries.
   [[nodiscard]] bool takes(const QuestionSet& set, Asking asking) const override;
   [[nodiscard]] std::size_t most_questions() const override;
   void start(std::span<const Aabb> boxes) override;
-  /// Throws Refusal.
+  /// Throws Refusal if the partition returns an error.
   std::uint64_t run(const QuestionSet& set, Asking asking, std::size_t count) override;
   [[nodiscard]] Answers answers(const QuestionSet& set, Asking asking, std::size_t count) override;
 
   [[nodiscard]] Partition& partition() noexcept { return partition_; }
-  /// Where the partition and the buffers of single-threaded questions allocate.
+  /// The memory resource of the partition and of the buffers of single-threaded queries.
   [[nodiscard]] const CountingResource& memory() const noexcept { return memory_; }
 
  private:

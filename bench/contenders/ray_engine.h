@@ -11,12 +11,12 @@
 
 namespace winnow::bench {
 
-/// What is asked of rays: where each first meets the mesh; whether it does; the first hit of every
-/// body that it meets, sorted, which of one mesh is a list of one.
+/// The result of a ray query: the first hit on the mesh; whether there is any; or the first hit of
+/// every body, sorted (a list of one, as there is one mesh).
 enum class RayWant { closest, any, all };
 
-/// Anything that takes rays through one triangle mesh: winnow or another library. The harness times
-/// `run` from outside, on one thread.
+/// Base of everything that casts rays at one triangle mesh: winnow and other libraries. The harness
+/// times `run` from outside, on one thread.
 class RayEngine {
  public:
   RayEngine(const RayEngine&) = delete;
@@ -24,15 +24,15 @@ class RayEngine {
   virtual ~RayEngine() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Makes everything ready. Called once; `mesh` outlives the engine.
+  /// Prepares everything. Called once; `mesh` outlives the engine.
   virtual void start(const Triangles& mesh) = 0;
-  /// Of the mesh and its tree; 0 if it does not tell.
+  /// Bytes of the mesh and its tree; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
-  /// Takes the rays, in whatever form it wants them, to be asked by the next `run`. Not timed.
+  /// Stores the rays for the next `run`, converted to the engine's types. Not timed.
   virtual void take(std::span<const ShapeRay> rays) = 0;
   virtual void run(RayWant want, Asking asking) = 0;
-  /// Of each ray, t of the first hit as the last `run` found it, infinity without one; of
-  /// RayWant::any zero instead. Not timed.
+  /// Returns the ray parameter t of each ray's first hit in the last `run`, infinity without a hit.
+  /// For RayWant::any a hit has t = 0. Not timed.
   [[nodiscard]] virtual std::vector<double> hits() const = 0;
 
  protected:

@@ -9,7 +9,8 @@
 namespace winnow::bench {
 namespace {
 
-/// The axis on which the boxes' extents are smallest against the whole range.
+/// Returns the axis on which the summed extents of the boxes are smallest relative to the whole
+/// range.
 int widest_axis(std::span<const Aabb> boxes) {
   Aabb all;
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();

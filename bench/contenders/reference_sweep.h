@@ -8,11 +8,11 @@
 
 namespace winnow::bench {
 
-/// Sort and sweep as plainly as it can be written, on one thread: the yardstick of the machine, and
-/// an independent opinion on what overlaps. It knows nothing of the rest of winnow.
+/// Sweep and prune in its simplest form, on one thread. It measures the speed of the machine and
+/// finds overlapping pairs independently: it uses none of winnow's algorithms.
 class ReferenceSweep final : public Engine {
  public:
-  /// `axis` 0, 1 or 2; any other value takes the axis of the first frame that spreads widest.
+  /// `axis` is 0, 1 or 2; any other value selects the axis on which the first frame spreads widest.
   explicit ReferenceSweep(int axis = 0) : axis_(axis) {}
 
   [[nodiscard]] std::string name() const override { return "reference sweep"; }
@@ -35,15 +35,15 @@ class ReferenceSweep final : public Engine {
   std::vector<Pair> pairs_;
 };
 
-/// How fast the machine is at this moment: times sweeps on x over the 10,000 objects of `uniform`.
-/// Figures measured elsewhere are scaled by it. One that is not wanted times nothing.
+/// Measures how fast the machine is now: times sweeps on x over the 10,000 objects of `uniform`.
+/// Figures measured on other machines are scaled by it. With `wanted` false it does nothing.
 class MachineClock {
  public:
   explicit MachineClock(bool wanted = true);
 
   /// Times one more sweep.
   void tick();
-  /// 0 if there was no tick.
+  /// Returns the median time, or 0 without a tick.
   [[nodiscard]] double median_ms() const;
 
  private:

@@ -11,14 +11,16 @@
 
 namespace winnow::bench {
 
-/// What an engine found in a frame, so that less work does not pass for speed.
+/// Number of contacts found in a frame, so that an engine that does less work does not appear
+/// faster.
 struct SceneFinds {
-  std::size_t touching = 0;  ///< pairs of bodies, the mesh among them
+  std::size_t touching = 0;  ///< touching pairs; the mesh counts as a body
   std::size_t points = 0;    ///< contact points
 };
 
-/// Anything that finds the contacts of a scene, from poses to points: winnow or another library.
-/// The harness times `start` and `frame` from outside, on one thread inside a `tbb::task_arena`.
+/// Base of everything that finds the contacts of a scene, from poses to contact points: winnow and
+/// other libraries. The harness times `start` and `frame` from outside, on one thread inside a
+/// `tbb::task_arena`.
 class SceneEngine {
  public:
   SceneEngine(const SceneEngine&) = delete;
@@ -26,22 +28,23 @@ class SceneEngine {
   virtual ~SceneEngine() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
-  /// True if it keeps contacts from frame to frame, so that scenes at rest are cheaper.
+  /// True if it reuses contacts of the last frame, so that scenes at rest are cheaper.
   [[nodiscard]] virtual bool carries_over() const = 0;
-  /// Makes everything ready. Called once, before any frame; `set` outlives the engine.
+  /// Prepares everything. Called once, before any frame; `set` outlives the engine.
   virtual void start(const BodySet& set) = 0;
-  /// Gives all bodies new poses and finds all contacts with their points.
+  /// Sets the poses of all bodies and finds all contacts with their points.
   virtual void frame(std::span<const Pose> poses) = 0;
-  /// Of the last frame. Not timed.
+  /// Returns the numbers for the last frame. Not timed.
   [[nodiscard]] virtual SceneFinds finds() const = 0;
-  /// That it holds after the last frame, all in all; 0 if it does not tell.
+  /// Bytes held in total after the last frame; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 
  protected:
   SceneEngine() = default;
 };
 
-/// Anything that builds a triangle mesh and finds which of its triangles meet those of a copy.
+/// Base of everything that builds a triangle mesh and finds the triangles that overlap triangles of
+/// a copy.
 class MeshEngine {
  public:
   using TrianglePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -55,9 +58,9 @@ class MeshEngine {
   virtual void build(const Triangles& mesh) = 0;
   /// Bytes of the mesh and its tree.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
-  /// Finds all triangles that meet, with contact points, for the mesh at two poses.
+  /// Finds all overlapping triangles, with contact points, for the mesh at two poses.
   virtual void collide(const Pose& a, const Pose& b) = 0;
-  /// What the last `collide` found. Not timed.
+  /// Returns the pairs of the last `collide`. Not timed.
   [[nodiscard]] virtual TrianglePairs pairs() const = 0;
 
  protected:

@@ -11,7 +11,7 @@ class WinnowImpacts final : public ImpactEngine {
   [[nodiscard]] std::string name() const override { return "winnow"; }
   [[nodiscard]] bool takes(const PairKind&, PairTurn) const override { return true; }
   void start(const MovingPairSet& set) override { set_ = &set; }
-  /// Throws std::runtime_error if the pairs are refused.
+  /// Throws std::runtime_error if winnow returns an error.
   void run(std::span<const BodyPair> pairs) override;
   [[nodiscard]] ImpactAnswer answer(std::size_t i) const override {
     return {result_.hits(i), result_.time()[i]};

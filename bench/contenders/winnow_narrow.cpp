@@ -18,7 +18,7 @@ void WinnowNarrow::run(ContactLevel level, std::span<const BodyPair> pairs) {
 }
 
 NarrowAnswer WinnowNarrow::answer(std::size_t i) const {
-  // All pairs of a set are of one kind, and stay in order.
+  // All pairs of a set are of one kind, so that the result has them in the order of the input.
   if (result_.pair_of(i) != i) throw std::logic_error("pairs of one kind changed their order");
   NarrowAnswer answer;
   answer.overlap = result_.overlaps(i);

@@ -9,7 +9,7 @@
 
 namespace winnow::bench {
 
-/// winnow's NarrowPhase in one tier, named after it.
+/// winnow's NarrowPhase in one tier; its name is the tier's.
 class WinnowNarrow final : public NarrowEngine {
  public:
   WinnowNarrow(NarrowTier tier, int threads);
@@ -17,7 +17,7 @@ class WinnowNarrow final : public NarrowEngine {
   [[nodiscard]] std::string name() const override { return std::string(to_text(options_.tier)); }
   [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
   void start(const PairSet& set) override { set_ = &set; }
-  /// Throws std::runtime_error if the pairs are refused.
+  /// Throws std::runtime_error if winnow returns an error.
   void run(ContactLevel level, std::span<const BodyPair> pairs) override;
   [[nodiscard]] NarrowAnswer answer(std::size_t i) const override;
   [[nodiscard]] double recomputed() const override;
@@ -30,7 +30,7 @@ class WinnowNarrow final : public NarrowEngine {
   NarrowResult result_;
 };
 
-/// winnow's function for one pair, in one tier, called for each.
+/// winnow's function for one pair, in one tier, called once per pair.
 class WinnowOnePair final : public NarrowEngine {
  public:
   explicit WinnowOnePair(NarrowTier tier) : options_{.tier = tier} {}
@@ -40,7 +40,7 @@ class WinnowOnePair final : public NarrowEngine {
   }
   [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
   void start(const PairSet& set) override { set_ = &set; }
-  /// Throws std::runtime_error if a pair is refused.
+  /// Throws std::runtime_error if winnow returns an error for a pair.
   void run(ContactLevel level, std::span<const BodyPair> pairs) override;
   [[nodiscard]] NarrowAnswer answer(std::size_t i) const override { return answers_[i]; }
 

@@ -8,12 +8,12 @@
 namespace winnow::bench {
 
 struct WinnowSceneOptions {
-  double carry_over = 0.0;  ///< what rests is carried over if this is above 0
+  double carry_over = 0.0;  ///< above 0, contacts of resting pairs are carried over between frames
   ContactLevel level = ContactLevel::manifold;
   double margin = 0.0;
 };
 
-/// winnow on a scene.
+/// Makes the engine that runs a winnow Scene.
 [[nodiscard]] std::unique_ptr<SceneEngine> make_winnow_scene(
     int threads, const WinnowSceneOptions& options = {});
 [[nodiscard]] std::unique_ptr<MeshEngine> make_winnow_mesh();

@@ -7,10 +7,10 @@
 
 namespace winnow::bench {
 
-/// Bytes as text (RFC 4648, with padding).
+/// Encodes bytes as base64 (RFC 4648, with padding).
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
-/// Values as they lie in memory.
+/// Encodes the memory of the values.
 template <typename T>
 [[nodiscard]] std::string base64_of(std::span<const T> values) {
   static_assert(std::is_standard_layout_v<T>);

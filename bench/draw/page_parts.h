@@ -2,13 +2,13 @@
 
 namespace winnow::bench {
 
-// The files of draw/page, compiled in so that the tool can be moved.
+// The files of draw/page, embedded so that the tool does not depend on its source folder.
 extern const char* const kPageStyle;
 extern const char* const kPageBody;
 extern const char* const kPageScript;
-/// The licence of three.js, which goes with every copy.
+/// The licence of three.js, which each page must include.
 extern const char* const kThreeJsNotice;
-/// Where the library was found when the tool was configured, or where Debian would put it.
+/// The folder of three.js found at configure time, or its place on Debian.
 extern const char* const kThreeJsFolder;
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// One frame as data for the page: selects the objects, pairs and contacts to draw, and encodes them
+// as JSON with base64 columns. commands/draw.cpp calls it; draw/page/data.js reads the result.
+
 #include "bench/draw/picture.h"
 
 #include "bench/draw/base64.h"
@@ -44,7 +47,8 @@ Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& op
   draw_contacts(contacts);
 }
 
-// A line from each point along its normal, half as long as a usual object is thick.
+// Draws each contact as a line from its point along the normal, half the median thickness of the
+// objects long.
 void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
   if (contacts.empty()) return;
   std::vector<float> edges;
@@ -73,7 +77,7 @@ void Picture::choose_objects(std::size_t most) {
   }
   place_.assign(all, kNotDrawn);
   for (std::size_t i = 0; i < all; ++i) {
-    // Of every all / most objects one.
+    // Selects `most` of the objects at equal intervals.
     const bool chosen = most >= all || (i + 1) * most / all != i * most / all;
     if (!chosen && !hit[i]) continue;
     place_[i] = static_cast<std::uint32_t>(drawn_.size());
@@ -142,7 +146,7 @@ Json Picture::data() const {
 }
 
 Json Picture::objects_data() const {
-  // Objects come in ascending order of their ids.
+  // Objects are drawn in ascending order of their ids.
   std::vector<Aabb> boxes;
   for (const ObjectId id : drawn_) boxes.push_back(sketch_.objects()[id]);
   return {{"boxes", column(boxes)}, {"rows", column(drawn_)}, {"data", column(data_)}};

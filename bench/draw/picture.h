@@ -14,7 +14,8 @@
 namespace winnow::bench {
 
 struct PictureOptions {
-  std::size_t most_objects = 200'000;  ///< drawn, evenly chosen; hit ones are drawn in any case
+  std::size_t most_objects = 200'000;  ///< limit of drawn objects, evenly selected; objects hit by
+                                       ///< a query are always drawn
   int max_depth = 64;
   bool labels = false;
   std::vector<Ray> rays;
@@ -24,13 +25,14 @@ struct PictureOptions {
 /// One frame of a scene in one partition, with everything that the page shows of it.
 class Picture {
  public:
-  /// `contacts` are those of the frame.
+  /// `contacts` are the contacts of this frame.
   Picture(std::string scene, const Stage& stage, const PictureOptions& options,
           std::span<const RecordedContact> contacts = {});
 
-  /// What is in the picture, in numbers: what the tool prints and what the page must show.
+  /// Returns the numbers of things in the picture: the tool prints them, and the page must draw as
+  /// many.
   [[nodiscard]] Json counts() const;
-  /// All of it, as page/data.js reads it.
+  /// Returns the whole picture in the form that page/data.js reads.
   [[nodiscard]] Json data() const;
 
  private:
@@ -53,10 +55,10 @@ class Picture {
   std::vector<BoxAnswer> boxes_;
 
   std::vector<ObjectId> drawn_;       // ascending
-  std::vector<ClientData> data_;      // of those
-  std::vector<std::uint32_t> place_;  // of each object in drawn_
-  std::vector<std::uint32_t> pairs_;  // two places a pair
-  std::vector<Vec3f> contact_ends_;   // of two ends a contact, the point first
+  std::vector<ClientData> data_;      // of each object in drawn_
+  std::vector<std::uint32_t> place_;  // index into drawn_ of each object, or kNotDrawn
+  std::vector<std::uint32_t> pairs_;  // two indices into drawn_ per pair
+  std::vector<Vec3f> contact_ends_;   // two ends per contact, the contact point first
 };
 
 }  // namespace winnow::bench

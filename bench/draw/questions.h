@@ -11,7 +11,7 @@ namespace winnow::bench {
 struct RayAnswer {
   Ray ray;
   Hit closest;
-  std::vector<Hit> hits;  ///< all of them, sorted by t
+  std::vector<Hit> hits;  ///< all hits, sorted by t
 };
 
 struct BoxAnswer {
@@ -20,12 +20,12 @@ struct BoxAnswer {
   std::vector<ObjectId> crossing;
 };
 
-/// From "ox,oy,oz,dx,dy,dz". Throws ArgumentError, as the next one does.
+/// Parses "ox,oy,oz,dx,dy,dz". Throws ArgumentError, as does parse_box.
 [[nodiscard]] Ray parse_ray(const std::string& text);
-/// From "x0,y0,z0,x1,y1,z1"; ends may be inf or -inf.
+/// Parses "x0,y0,z0,x1,y1,z1"; ends may be inf or -inf.
 [[nodiscard]] Aabb parse_box(const std::string& text);
 
-/// What the partition answers. Throws std::runtime_error if it refuses.
+/// Runs the queries. Throws std::runtime_error if the partition returns an error.
 [[nodiscard]] std::vector<RayAnswer> ask_rays(const Partition& partition,
                                               std::span<const Ray> rays);
 [[nodiscard]] std::vector<BoxAnswer> ask_boxes(const Partition& partition,

@@ -9,12 +9,12 @@
 
 namespace winnow::bench {
 
-/// Boxes and lines of one kind, as the page shows or hides them together.
+/// Boxes and lines of one colour, which the page shows or hides together.
 struct SketchLayer {
   std::string name;
   Colour colour;
   std::vector<Aabb> boxes;
-  std::vector<Vec3f> line_ends;  ///< two a line
+  std::vector<Vec3f> line_ends;  ///< two per line
 };
 
 struct SketchText {
@@ -23,20 +23,20 @@ struct SketchText {
   Colour colour;
 };
 
-/// Keeps what a partition draws, sorted by kind, which the colour tells.
+/// A DebugDraw that stores what a partition draws, sorted into layers by colour.
 class Sketch final : public DebugDraw {
  public:
   Sketch();
 
   void box(const Aabb& box, Colour colour) override;
   void line(const Vec3f& from, const Vec3f& to, Colour colour) override;
-  /// As the box around it.
+  /// Drawn as its bounding box.
   void sphere(const Sphere& sphere, Colour colour) override;
   void text(const Vec3f& at, std::string_view text, Colour colour) override;
 
-  /// In the order in which they were drawn.
+  /// The boxes of objects, in the order in which they were drawn.
   [[nodiscard]] std::span<const Aabb> objects() const noexcept { return objects_; }
-  /// The kinds of structure that were drawn, in a fixed order.
+  /// Returns the layers that are not empty, in a fixed order.
   [[nodiscard]] std::vector<const SketchLayer*> structure() const;
   [[nodiscard]] std::span<const SketchText> texts() const noexcept { return texts_; }
 
@@ -44,7 +44,7 @@ class Sketch final : public DebugDraw {
   SketchLayer& layer_of(Colour colour);
 
   std::vector<Aabb> objects_;
-  std::vector<SketchLayer> layers_;  // the last one takes colours that are not known
+  std::vector<SketchLayer> layers_;  // the last one takes unknown colours
   std::vector<SketchText> texts_;
 };
 

@@ -10,23 +10,24 @@
 
 namespace winnow::bench {
 
-/// A partition that is shown a scene as a simulation would show it, frame by frame: only what moved
-/// is updated, and every frame's pairs are asked for. Row i of the scene is object i and has client
-/// data i. Throws std::runtime_error where a call is refused.
+/// Runs a scene in a partition frame by frame, as a simulation does: updates only the objects that
+/// moved, and finds all pairs of every frame. Row i of the scene is object i and has client data i.
+/// Throws std::runtime_error if a call fails.
 class Stage {
  public:
-  /// At the first frame. The source must live as long.
+  /// Starts at the first frame. `source` must outlive this.
   Stage(std::string_view partition, FrameSource& source);
 
-  /// Goes to the next frame; false, and no change, if there is none.
+  /// Goes to the next frame. Returns false and changes nothing if there is none.
   bool advance();
 
-  /// Of the frame that was reached; the first is 0.
+  /// The number of the current frame; the first is 0.
   [[nodiscard]] std::size_t frame() const noexcept { return frame_; }
   [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
-  /// The frame's pairs that overlap, in canonical order; those of NSquared tested.
+  /// The overlapping pairs of the frame, in canonical order, without pairs that the partition
+  /// reported but whose boxes do not overlap.
   [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
-  /// How many the partition reported.
+  /// Number of pairs that the partition reported.
   [[nodiscard]] std::size_t reported() const noexcept { return reported_; }
 
  private:
@@ -43,7 +44,7 @@ class Stage {
   std::size_t reported_ = 0;
 };
 
-/// Throws std::runtime_error unless the call was accepted.
+/// Throws std::runtime_error unless `status` is ok.
 void require_ok(Status status, const char* call);
 
 }  // namespace winnow::bench

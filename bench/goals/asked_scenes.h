@@ -8,8 +8,8 @@
 
 namespace winnow::bench {
 
-/// A "scene", several "scenes", or the recordings of a "folder", which is given from where the tool
-/// is started. Without any the measurement is absent.
+/// Returns the scenes of the options: a "scene", several "scenes", or all recordings of a "folder"
+/// relative to the working directory. If there are none, marks the measurement as absent.
 [[nodiscard]] inline std::vector<NamedScene> asked_scenes(const Json& options, Measured& measured) {
   std::vector<std::string> names;
   if (options.contains("scene")) names = {options["scene"].get<std::string>()};

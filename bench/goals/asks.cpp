@@ -8,7 +8,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Every combination of one object of each source.
+/// Merges one object of each source, in every combination.
 std::vector<Json> combinations(const Json& sources, const Json& lists) {
   std::vector<Json> all{Json::object()};
   for (const Json& source : sources) {

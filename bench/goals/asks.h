@@ -9,7 +9,7 @@
 
 namespace winnow::bench {
 
-/// What is asked of winnow, by topic.
+/// The topics of goals, in the order of their listing.
 inline constexpr std::array<std::string_view, 10> kTopics{"engine", "scenes", "peers",  "queries",
                                                           "narrow", "motion", "meshes", "pipeline",
                                                           "choice", "report"};
@@ -17,15 +17,16 @@ inline constexpr std::array<std::string_view, 10> kTopics{"engine", "scenes", "p
 /// The text of goals/goals.json.
 extern const char* const kGoalsJson;
 
-/// The asks of a text
+/// Parses a text of this form into single entries:
 ///
 ///   {"lists": {"name": [{...}, ...]}, "asks": [{...}, ...]}
 ///
-/// one by one. An entry with "each": [SOURCE, ...] stands for one entry for each combination of its
-/// sources' objects; a source is the name of a list, or a list. "only": {"member": [values]} keeps
-/// some of them. "{member}" in its texts becomes that member of the objects; a text that is nothing
-/// else takes its value. What an entry says is described in goals/evaluate.h. Throws
-/// std::runtime_error if the text is not what it should be.
+/// An entry with "each": [SOURCE, ...] is expanded to one entry for each combination of its
+/// sources' objects; a source is a list, or the name of one in "lists". "only": {"member":
+/// [values]} keeps the combinations whose member has one of the values. "{member}" in the entry's
+/// texts is replaced by that member of the combined object; a text that consists of "{member}" only
+/// takes its value, of any type. goals/evaluate.h describes the other members of an entry. Throws
+/// std::runtime_error if the text is malformed.
 [[nodiscard]] std::vector<Json> parse_asks(std::string_view text);
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Measurements for goals about AutoPartition: its first frames, its frames after a scene changes,
+// and its worst frames, each compared with the best partition. goals/measurements.cpp lists them.
+
 #include "bench/goals/asked_scenes.h"
 #include "bench/goals/measurements.h"
 #include "bench/goals/undisturbed.h"
@@ -10,7 +13,7 @@
 namespace winnow::bench {
 namespace {
 
-/// What AutoPartition and the best of the others took for some of the frames.
+/// Time of AutoPartition and of the fastest other partition over a range of frames.
 struct OwnAndBest {
   double own_ms = 0.0;
   double best_ms = 0.0;
@@ -31,7 +34,7 @@ struct OwnAndBest {
   }
 };
 
-/// One scene after another with the same objects: a scene that changes its nature at once.
+/// A scene that changes abruptly: several scenes in sequence, with the same number of objects.
 class TurningScene final : public FrameSource {
  public:
   TurningScene(std::vector<std::string> scenes, std::size_t objects, std::size_t frames_each)
@@ -59,8 +62,8 @@ class TurningScene final : public FrameSource {
   std::unique_ptr<FrameSource> source_;
 };
 
-// Times of frames in which something moved, once the run has settled: one in which nothing does
-// says nothing of what others should take.
+// Returns the times of the frames after settling in which something moved. Frames without motion
+// are much cheaper and would distort the median.
 std::vector<double> working_frames(const Run& run) {
   std::vector<double> working;
   for (std::size_t f = kSettlingFrames; f < run.frame_ms.size(); ++f) {
@@ -69,8 +72,9 @@ std::vector<double> working_frames(const Run& run) {
   return working;
 }
 
-// The most by which a frame exceeds the median of those around it: what a scene asks for may grow
-// manyfold while it runs, so that a frame that is dear by the median of all need not be a hitch.
+// Returns the greatest ratio of a frame to the median of the frames around it. The work of a scene
+// may grow manyfold during a run, so a frame far above the median of all frames need not be a
+// hitch.
 double worst_hitch(std::span<const double> frames) {
   constexpr std::size_t kAround = 30;  // on each side
   double worst = 0.0;

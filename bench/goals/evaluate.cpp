@@ -1,3 +1,7 @@
+// Evaluates goals: picks figures from the rows that measurements made, combines them, and compares
+// the result with the bound. commands/goals.cpp calls `evaluate` for each entry; goals/lab.cpp runs
+// the measurements.
+
 #include "bench/goals/evaluate.h"
 
 #include <winnow/simd/isa.h>
@@ -13,14 +17,14 @@
 namespace winnow::bench {
 namespace {
 
-/// Measured where there is no answer, or a wrong one, and less is better.
+/// Stored as the measured value if there is no answer, or a wrong one, and less is better.
 constexpr double kUnanswered = 1e6;
-/// The reference sweep, in ms, on the machine on which the other libraries were timed.
+/// Milliseconds of the reference sweep on the machine on which the other libraries were timed.
 constexpr double kReferenceMachineMs = 23.0;
 
 struct AskFigure {
   double value = 0.0;
-  std::string from;  ///< of which rows
+  std::string from;  ///< the rows that gave it
 };
 
 bool is_of_peer(const Json& row, const Json& keys) {
@@ -43,18 +47,19 @@ bool is_meant(const Json& table, const Json& row, const Json& where) {
   });
 }
 
-/// Without the table's name, which is said by what is asked.
+/// Returns the id without the table's name, which is clear from the goal.
 std::string short_id(const Json& row) {
   const std::string id = row["id"];
   return id.substr(id.find('/') + 1);
 }
 
-/// The rows of one ask, narrowed to some values of keys.
+/// The rows of one entry, narrowed to some values of keys.
 class Rows {
  public:
   explicit Rows(std::vector<const Measured*> from) : from_(std::move(from)) {}
 
-  /// Those of a figure; members that the table does not have as keys do not narrow it.
+  /// Returns the rows of a figure. Members of `narrowed` that are not keys of the table are
+  /// ignored.
   [[nodiscard]] std::vector<const Json*> of(const Json& figure, const Json& narrowed) const {
     const std::string name = figure.at("of");
     std::vector<const Json*> rows;
@@ -73,7 +78,7 @@ class Rows {
     }
     return rows;
   }
-  /// How much slower this machine was.
+  /// Returns the factor by which this machine was slower than the reference machine.
   [[nodiscard]] double scale() const {
     for (const Measured* one : from_) {
       if (one->machine_ms > 0.0) return one->machine_ms / kReferenceMachineMs;
@@ -97,14 +102,14 @@ AskFigure sum_of(const std::vector<const Json*>& rows, const std::string& value)
   return sum;
 }
 
-/// Fitted to values that belong to numbers of objects.
+/// Returns the exponent of growth of `value` with "objects".
 AskFigure exponent_of(const std::vector<const Json*>& rows, const std::string& value) {
   std::vector<GrowthPoint> points;
   for (const Json* row : rows) points.push_back({value_of(*row, "objects"), value_of(*row, value)});
   return {fitted_exponent(points), "of " + std::to_string(rows.size()) + " rows"};
 }
 
-/// Of the rows by one of the rules; none if there are no such rows.
+/// Applies the figure's rule to its rows; nothing if there are none.
 std::optional<AskFigure> picked(const Json& figure, const Rows& rows, const Json& narrowed) {
   for (const char* rule : {"least", "most", "sum", "exponent", "the"}) {
     if (!figure.contains(rule)) continue;
@@ -153,7 +158,7 @@ std::optional<AskFigure> figure_of(const Json& figure, const Rows& rows, const J
   return found;
 }
 
-/// The combinations of these keys among the rows of the value.
+/// Returns the combinations of these keys among the rows of the value.
 std::vector<Json> combinations_of(const Json& keys, const Json& value, const Rows& rows,
                                   const Json& narrowed) {
   std::vector<Json> all;
@@ -165,7 +170,7 @@ std::vector<Json> combinations_of(const Json& keys, const Json& value, const Row
   return all;
 }
 
-/// What is measured under these keys; none if a figure has no row.
+/// Returns the measured value for these keys; nothing if a figure has no row.
 std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Json& narrowed) {
   auto value = figure_of(ask["value"], rows, narrowed);
   if (!value || !ask.contains("over")) return value;
@@ -176,7 +181,7 @@ std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Js
   return value;
 }
 
-/// Measured under each combination of these keys that has an answer.
+/// Returns the measured value of each combination of these keys that has one.
 std::vector<AskFigure> measured_by(const Json& keys, const Json& ask, const Rows& rows,
                                    const Json& narrowed) {
   std::vector<AskFigure> figures;
@@ -203,7 +208,7 @@ std::optional<AskFigure> condensed_of(const Json& ask, const Rows& rows, const J
                                           short_number(last.value) + " of " + last.from};
 }
 
-/// None if it is optional and cannot be answered.
+/// Returns nothing if the entry is optional and has no value or bound.
 std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narrowed) {
   Goal goal{.topic = ask["topic"],
             .what = filled(ask["what"], narrowed),

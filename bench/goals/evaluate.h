@@ -7,7 +7,7 @@
 
 namespace winnow::bench {
 
-/// One line of the answer: what is asked, and what it measures now.
+/// One goal: a bound, and the value measured now.
 struct Goal {
   std::string topic{};
   std::string what{};
@@ -15,37 +15,37 @@ struct Goal {
   bool at_least = false;
   double asked = 0.0;
   double measured = 0.0;
-  std::string detail{};  ///< which rows it is made of
+  std::string detail{};  ///< the rows that gave the value
 
   [[nodiscard]] bool holds() const noexcept {
     return at_least ? measured >= asked : measured <= asked;
   }
 };
 
-/// An ask is a predicate over rows:
+/// Evaluates a parsed entry, which is a predicate over the rows of tables:
 ///
-///   "measure": {NAME: options} or a list of such, see measurements.h: who makes the rows
-///   "value": FIGURE, "over": FIGURE: what is measured, and what it is divided by
+///   "measure": {NAME: options}, or a list of these: the measurements that make the rows, see
+///     measurements.h
+///   "value": FIGURE, "over": FIGURE: the measured value, and its divisor if there is one
 ///   "at_most" or "at_least": FIGURE: the bound
-///   "by": [keys]: a goal for each combination of keys among the rows of the value
-///   "worst_by": [keys]: of these the worst counts
-///   "median_by": [keys]: of these the median
-///   "optional": true: no goal where a figure has no row
+///   "by": [keys]: one goal for each combination of these keys among the rows of the value
+///   "worst_by": [keys]: the value is the worst one among the combinations of these keys
+///   "median_by": [keys]: the value is the median of the combinations of these keys
+///   "optional": true: no goal if a figure has no row
 ///
-/// A FIGURE is a number, or an object:
+/// A FIGURE is a number, or one of these objects:
 ///
-///   {"least" | "most" | "sum" | "exponent" | "the": value, "of": table, "where": {members}}, of
-///   the rows with
-///     these members (of a list any; "peer": whether they are another library's; "@isa": the active
-///     instruction set; the exponent is that of growth with "objects"); "else_existing": number, if
-///     there are none
-///   {"existing": number}: a time of another library, elsewhere, scaled by how much slower the
-///     reference sweep was while the rows were measured
-///   {"least_of": [FIGURE, ...]}: the least of those that there are
+///   {RULE: value, "of": table, "where": {members}}: applies RULE to the value in the rows of the
+///     table that have these members. RULE is "least", "most", "sum", "exponent" (of growth with
+///     "objects") or "the" (there must be only one row). A member given as a list matches any of
+///     its elements, "@isa" matches the active instruction set, and "peer": true selects rows of
+///     other libraries. "else_existing": number is used as "existing" if there are no such rows.
+///   {"existing": number}: a time of another library on the reference machine, multiplied by how
+///     much slower the reference sweep was during this measurement
+///   {"least_of": [FIGURE, ...]}: the least of the figures that have rows
 ///
-/// each with "divided_by": number. What cannot be answered does not hold; asks for what this
-/// machine does not have make no goals. Throws std::runtime_error if an entry says nothing
-/// sensible.
+/// An object may have "divided_by": number. A goal without a value fails. There are no goals if
+/// this machine lacks what is measured. Throws std::runtime_error if an entry is malformed.
 [[nodiscard]] std::vector<Goal> evaluate(const Json& ask, Lab& lab);
 
 }  // namespace winnow::bench

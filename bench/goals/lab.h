@@ -9,25 +9,26 @@
 
 namespace winnow::bench {
 
-/// What came of a measurement.
+/// The result of a measurement.
 struct Measured {
   Results results;
-  double machine_ms = 0.0;  ///< of the reference sweep in the same run; 0: it was not timed
-  std::string fault{};      ///< why there is no answer
-  bool absent = false;      ///< this machine has not got what is asked about
+  double machine_ms = 0.0;  ///< of the reference sweep in the same run; 0 if not timed
+  std::string fault{};      ///< the error, if the measurement failed
+  bool absent = false;      ///< this machine lacks what is measured
 };
 
-/// Measures what goals ask about, each thing once.
+/// Runs the measurements that goals need, each at most once.
 class Lab {
  public:
-  /// `worst_of`: among how many frames the worst is looked for.
+  /// `worst_of`: number of frames among which the worst one is searched.
   explicit Lab(std::size_t worst_of = kWorstOf) : worst_of_(worst_of) {}
 
-  /// By {NAME: options}, see measurements.h. Throws std::runtime_error if there is none of the
-  /// name.
+  /// Runs {NAME: options}, see measurements.h, or returns the earlier result. Throws
+  /// std::runtime_error if the name is unknown.
   const Measured& measured(const Json& request);
 
-  /// The reference sweep in every measurement so far. Far apart, the run was disturbed.
+  /// Spread of the reference sweep over all measurements so far. A wide spread means that the run
+  /// was disturbed.
   [[nodiscard]] Spread machine_ms() const;
 
   [[nodiscard]] std::size_t worst_of() const noexcept { return worst_of_; }

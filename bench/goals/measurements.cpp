@@ -1,3 +1,6 @@
+// The measurements that goals refer to by name. Each reads its options, runs a function of
+// bench/rows or bench/measure, and stores rows. goals/lab.cpp calls them through `find_measurer`.
+
 #include "bench/goals/measurements.h"
 
 #include "bench/contenders/partitions.h"
@@ -34,13 +37,13 @@
 namespace winnow::bench {
 namespace {
 
-/// Frames that a goal is measured on.
+/// Number of frames that a goal is measured on.
 std::size_t frames_of_goal(std::size_t objects) {
   return objects <= 20'000 ? 81U : objects <= 300'000 ? 26U : 8U;
 }
 
-/// Throughput, interleaved: of every partition that suits the size on 1 and 2 threads on the active
-/// instruction set, unless the options say otherwise; and of the "yardstick".
+/// Throughput, interleaved. Default: every partition that suits the size, on 1 and 2 threads, on
+/// the active instruction set; "yardstick" adds the yardstick library.
 void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_frames(measured.results);
   MeasureOptions how{.objects = options.at("objects"), .machine_clock = true};
@@ -54,8 +57,8 @@ void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Other libraries beside partitions, on 1 and 2 threads, each for at most "seconds", and a frame
-/// for at most "frame_seconds".
+/// Other libraries and partitions, on 1 and 2 threads; each takes at most "seconds", and a frame at
+/// most "frame_seconds".
 void goal_beside_peers(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.absent = !has_peers();
   if (measured.absent) return;
@@ -86,7 +89,7 @@ void goal_cold(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Frames on a plain pool of threads against those of oneTBB.
+/// Frames on a simple thread pool compared with oneTBB.
 void goal_hosts(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_hosts(measured.results);
   for (const NamedScene& scene : asked_scenes(options, measured)) {
@@ -94,7 +97,7 @@ void goal_hosts(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Questions to every partition that suits the size, with filters over without.
+/// Queries with and without filters, for every partition that suits the size.
 void goal_filters(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_filters(measured.results);
   const std::size_t objects = options.at("objects");
@@ -103,7 +106,7 @@ void goal_filters(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Every partition on every instruction set and numbers of threads against the reference.
+/// Compares the pairs of every partition, instruction set and number of threads with the reference.
 void goal_same_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"same_pairs",
                             "engine",
@@ -167,7 +170,7 @@ void goal_advice(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// One partition and the other libraries that answer questions, one thread.
+/// Queries of one partition and of other libraries, on one thread.
 void goal_queries(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_queries(measured.results);
   measured.machine_ms =
@@ -186,7 +189,7 @@ void goal_frusta(const Json& options, Lab& /*lab*/, Measured& measured) {
   add_frusta(measured.results, options.at("objects"), 15);
 }
 
-/// Allocations of every partition when the same questions are asked again.
+/// Allocations of every partition when the same queries are repeated.
 void goal_second_rounds(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"second_rounds",
                             "queries",
@@ -202,7 +205,7 @@ void goal_second_rounds(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Partitions after many removals and insertions against fresh ones.
+/// Partitions after many removals and insertions, compared with new ones.
 void goal_churn(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"churn",
                             "queries",
@@ -233,7 +236,7 @@ void goal_pair_events(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Frames in a row in which few objects move, or little.
+/// Consecutive frames in which few objects move, or move little.
 void goal_quiet_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"quiet_frames",
                             "scenes",
@@ -252,7 +255,7 @@ void goal_quiet_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// One partition of many environments against a partition for each.
+/// One partition with many environments compared with one partition per environment.
 void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"worlds",
                             "queries",
@@ -267,8 +270,8 @@ void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Pairs of one kind on one thread, on two if there are too many pairs for the caches, and the
-/// other libraries.
+/// Pairs of one kind, and the other libraries. On one thread, and also on two if the pairs do not
+/// fit the caches.
 void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
   const std::string name = options.at("kind");
   const PairKind* kind = find_pair_kind(name);
@@ -286,7 +289,7 @@ void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
           .machine_ms;
 }
 
-/// One tier on all kinds of pairs.
+/// Errors of one tier on all kinds of pairs.
 void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
   const auto pairs = options.at("pairs").get<std::map<std::string, std::size_t>>();
   declare_pair_errors(measured.results);
@@ -304,7 +307,8 @@ void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-/// Questions with reasoned answers in the files of a folder, either way round.
+/// Pair queries whose answers were derived by reasoning, from the files of a folder, in both orders
+/// of the pair.
 void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_hard_cases(measured.results);
   const std::string folder = options.at("folder");
@@ -379,7 +383,7 @@ void goal_mesh_rays(const Json& options, Lab& /*lab*/, Measured& measured) {
                             .machine_ms;
 }
 
-/// A frame of the granular flow against its phases, each by itself.
+/// A frame of the granular flow, compared with the sum of its phases measured one by one.
 void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.declare({"flow_frames",
                             "pipeline",
@@ -401,7 +405,7 @@ void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   measured.results.add("flow_frames", {{"how", "phases"}, {"ms", to_value(alone)}});
 }
 
-/// A long granular flow: allocations, energy, and contacts against brute force.
+/// A long granular flow: allocations, energy, and contacts compared with brute force.
 void goal_flow_soak(const Json& options, Lab& /*lab*/, Measured& measured) {
   declare_flows(measured.results);
   declare_flow_checks(measured.results);

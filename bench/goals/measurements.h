@@ -7,13 +7,14 @@
 
 namespace winnow::bench {
 
-/// Makes rows of some options of an ask.
+/// Makes the rows of a goal from its options.
 using Measurer = void (*)(const Json& options, Lab& lab, Measured& measured);
 
-/// Null if there is none of the name.
+/// Returns null if there is none of that name.
 [[nodiscard]] const Measurer* find_measurer(const std::string& name);
 
-// choice_measurements.cpp: what AutoPartition loses to the best, and frames to the median one.
+// choice_measurements.cpp: AutoPartition compared with the best partition, and worst frames with
+// the median.
 void measure_first_frames(const Json& options, Lab& lab, Measured& measured);
 void measure_changes(const Json& options, Lab& lab, Measured& measured);
 void measure_worst_frames(const Json& options, Lab& lab, Measured& measured);

@@ -1,3 +1,6 @@
+// Measurements for goals about `winnow report`: runs it in another process, to its end or killed
+// half-way, and checks the page and the rows. goals/measurements.cpp lists them.
+
 #include "bench/common/errors.h"
 #include "bench/common/sample.h"
 #include "bench/common/table.h"
@@ -23,7 +26,7 @@ class ReportProcess {
       : process_(with_folder(options, folder_.path()), true) {}
 
   [[nodiscard]] OwnProcess& process() noexcept { return process_; }
-  /// Empty if there is none.
+  /// Returns the text of the page; empty if there is none.
   [[nodiscard]] std::string page() const {
     std::ifstream file(folder_.path() / "index.html", std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -68,7 +71,7 @@ void add_of_process(Results& results, const std::string& what, double value,
   results.add("report_process", {{"what", what}, {"value", value}, {"detail", detail}});
 }
 
-/// Figures of the page that are not those of their rows.
+/// Counts the figures of the page that differ from their rows.
 void add_trace(Results& results, const ReportProcess& report) {
   const std::string page = report.page();
   if (page.empty()) throw std::runtime_error("there is no page (Chart.js?)");
@@ -80,7 +83,7 @@ void add_trace(Results& results, const ReportProcess& report) {
   add_of_process(results, "wrong figures", static_cast<double>(trace.wrong.size()), detail);
 }
 
-/// Problems, and steps that were not measured.
+/// Counts problems and steps that were not measured.
 void add_faults(Results& results, const ReportProcess& report) {
   if (report.rows() == 0) throw std::runtime_error("the report has no rows");
   const Results made = report.results();

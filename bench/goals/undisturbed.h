@@ -10,8 +10,8 @@
 
 namespace winnow::bench {
 
-/// Races partitions on the same frames a few times over and keeps each frame's least time: sums of
-/// few frames, and the worst of many, say nothing if one of them was disturbed.
+/// Races partitions several times on the same frames and keeps each frame's minimum. Sums of few
+/// frames, and the worst of many, are useless if one of them was disturbed.
 [[nodiscard]] std::vector<Run> undisturbed(
     const std::function<std::unique_ptr<FrameSource>()>& make_source,
     const std::vector<std::string>& partitions, std::size_t frames, int threads);

@@ -1,3 +1,7 @@
+// Runs narrow-phase engines on pairs with reference results and computes the errors of their
+// distances, depths and normals. bench/rows/accuracy_rows.cpp calls `measure_accuracy`; truths.cpp
+// gives the reference results.
+
 #include "bench/measure/accuracy.h"
 
 #include <winnow/simd/isa.h>
@@ -23,7 +27,7 @@ double degrees_between(const double (&a)[3], const double (&b)[3]) {
   return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
 }
 
-/// False for the zero that stands where none is given.
+/// Returns false for the zero vector that stands for a missing normal.
 bool is_direction(const double (&v)[3]) {
   const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   return std::isfinite(square) && square > 0.0;
@@ -35,7 +39,8 @@ PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, ContactLe
   result.gap = static_cast<double>(length / static_cast<long double>(truth.size));
   result.overlap = truth.overlap;
   result.wrong = answer.overlap != truth.overlap;
-  // Manifolds are asked for without a margin: of other pairs nothing needs to be known.
+  // Manifolds are computed without a margin, so that engines need no result for pairs that are
+  // apart.
   if (level == ContactLevel::boolean) return result;
   if (level == ContactLevel::manifold && truth.distance > 0.0L) return result;
   const bool has_normal = is_direction(answer.normal);
@@ -116,7 +121,7 @@ Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& s
 
 namespace {
 
-/// Of an engine that gave up.
+/// The result for an engine that throws: all answers are missing.
 Accuracy no_answers(const NarrowEngine& engine, ContactLevel level, std::size_t pairs) {
   Accuracy accuracy;
   accuracy.engine = engine.name();

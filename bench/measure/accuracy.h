@@ -13,90 +13,92 @@
 
 namespace winnow::bench {
 
-/// How wrong an engine is about one pair of which the truth is known.
+/// Error of an engine on one pair with a reference result.
 struct PairError {
-  /// In truth: |distance| over the pair's size, and whether they overlap.
+  /// Reference: |distance| over the pair's size, and whether the bodies overlap.
   double gap = 0.0;
   bool overlap = false;
-  bool wrong = false;         ///< the verdict
-  bool missing = false;       ///< no finite distance, or no normal, though the level has them
-  bool beyond_bound = false;  ///< off by more than the answer says
-  /// |distance - truth| / (size + |truth|); NaN: there is none.
+  bool wrong = false;         ///< the verdict differs from the reference
+  bool missing = false;       ///< no finite distance or no normal, at a level that has them
+  bool beyond_bound = false;  ///< the error exceeds the engine's error bound
+  /// |distance - truth| / (size + |truth|); NaN if there is no distance.
   double error = std::numeric_limits<double>::quiet_NaN();
-  /// Between the normals; NaN: it is not unique to 0.1 degrees, or there is none.
+  /// Angle between the normals; NaN if the true normal is not unique to 0.1 degrees or none is
+  /// given.
   double degrees = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Of a set of errors. All zero if there is none.
+/// Distribution of a set of errors; all zero for an empty set.
 struct ErrorSpread {
   std::size_t count = 0;
   double median = 0.0;
-  double p99 = 0.0;  ///< what 99 of 100 do not exceed
+  double p99 = 0.0;  ///< 99th percentile
   double worst = 0.0;
 };
 
-/// How wrong one engine is about the pairs of a set at a level, and how long it takes.
+/// Errors and times of one engine on the pairs of a set at a level.
 struct Accuracy {
   std::string engine;
   ContactLevel level{};
-  std::size_t pairs = 0;  ///< those of which the truth is known
+  std::size_t pairs = 0;  ///< number of pairs with a reference result
   std::size_t wrong = 0;
-  /// Other libraries are not asked for manifolds of pairs that do not overlap.
+  /// At level manifold, only overlapping pairs count.
   std::size_t missing = 0;
-  ErrorSpread all{};    ///< of distances, negative ones too
-  ErrorSpread apart{};  ///< of them, those of pairs that do not overlap
-  ErrorSpread depth{};  ///< and those of pairs that do
+  ErrorSpread all{};    ///< errors of distances, negative ones included
+  ErrorSpread apart{};  ///< errors of pairs that do not overlap
+  ErrorSpread depth{};  ///< errors of pairs that overlap
   ErrorSpread degrees{};
   std::size_t beyond_bound = 0;
-  std::size_t normals_off = 0;  ///< by more than 0.01 degrees
-  std::vector<double> ns{};     ///< a pair, on one thread, one entry a run over the set
+  std::size_t normals_off = 0;  ///< normals off by more than 0.01 degrees
+  std::vector<double> ns{};     ///< ns per pair on one thread, one entry per run over the set
   double recomputed = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What was wrong in the engine's last run, which was over all pairs of the set: an entry for each
-/// pair of which the truth is known.
+/// Returns the errors of the engine's last run, which must have covered all pairs of the set: one
+/// entry for each pair with a reference result.
 [[nodiscard]] std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level,
                                                const PairSet& set,
                                                std::span<const PairTruth> truths);
 
-/// The figures of some pairs, without the engine, the level and the times.
+/// Summarizes errors; the engine, the level and the times are not set.
 [[nodiscard]] Accuracy summary_of(std::span<const PairError> errors);
 
-/// Runs a started engine over all pairs of the set several times and compares what it says with the
-/// truth.
+/// Runs a started engine several times over all pairs of the set and compares its results with the
+/// reference.
 [[nodiscard]] Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
                                     std::span<const PairTruth> truths, std::size_t runs = 3);
 
-/// The nearest to touching that pairs are brought, in radii of the smaller body, unless said
-/// otherwise.
+/// Default of PairSetOptions::nearest here: the smallest gap or depth of pairs, in radii of the
+/// smaller body.
 inline constexpr double kNearestPairs = 1e-6;
 
-/// Pairs of one kind, and who is asked about them.
+/// Pairs of one kind, and the engines to measure on them.
 struct AccuracyOptions {
   PairKind kind;
   PairSetOptions set{.pairs = 400, .nearest = kNearestPairs};
   std::vector<ContactLevel> levels{ContactLevel::distance};
   std::vector<NarrowTier> tiers{NarrowTier::robust, NarrowTier::reference};
-  bool peers = true;  ///< other libraries too, where the tool was built with them
+  bool peers = true;  ///< also other libraries, if the tool was built with them
   TruthSource judge = TruthSource::oracle;
-  std::size_t runs = 3;  ///< that are timed
+  std::size_t runs = 3;  ///< number of timed runs
 };
 
-/// The errors of the pairs whose |distance| over their size begins with this power of ten.
+/// Errors of the pairs whose |distance| / size has the same power of ten.
 struct AccuracyAtGap {
-  double gap = 0.0;  ///< 1e-3: from it up to 1e-2
+  double gap = 0.0;  ///< lower end of the decade: 1e-3 for [1e-3, 1e-2)
   Accuracy accuracy;
 };
 
 struct AccuracyMeasurement {
   std::vector<Accuracy> engines;      ///< by level, winnow's tiers first
-  std::vector<AccuracyAtGap> by_gap;  ///< of each of them from the smallest gap, touching left out
+  std::vector<AccuracyAtGap> by_gap;  ///< per engine from the smallest gap; without touching pairs
 };
 
-/// Of an engine that throws, all answers are missing.
+/// Measures all engines. If an engine throws, all its answers count as missing.
 [[nodiscard]] AccuracyMeasurement measure_accuracy(const AccuracyOptions& options);
 
-/// "100 digits", or the tier that takes their place where the tool was built without.
+/// Returns "100 digits", or the name of the tier that replaces it if the tool was built without the
+/// oracle.
 [[nodiscard]] std::string judge_name(TruthSource judge);
 
 }  // namespace winnow::bench

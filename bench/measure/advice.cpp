@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::string_view kAuto = "AutoPartition";
 
-/// To two significant digits or so, as text has it.
+/// Formats to about two significant digits.
 std::string about(double value) {
   char text[32];
   std::snprintf(text, sizeof text, value < 10.0 ? "%.1f" : "%.0f", value);
   return text;
 }
 
-/// What a partition is, and what that has to do with its speed.
+/// Description of a partition, for the reason of its speed.
 struct Nature {
   std::string_view partition;
   std::string_view what;
@@ -39,7 +39,7 @@ constexpr Nature kNatures[] = {
     {"StaticBvh", "refits a tree over objects in an order that takes long to find"},
 };
 
-/// The function that makes a structure, by its name: "LinearBvh" is made by linear_bvh.
+/// Converts the name of a structure to the function that makes it: "LinearBvh" to linear_bvh.
 std::string function_of(std::string_view name) {
   std::string function;
   for (const char c : name) {
@@ -77,7 +77,7 @@ std::string why(const Partition& partition, const Run& run, double median_ms) {
   return text;
 }
 
-/// Frames after it has settled; if these are fewer than three, after the first.
+/// Returns the frame times after settling, or after the first frame if fewer than three are left.
 std::vector<double> settled_frames(const Run& run) {
   const auto settled = run.settled_ms();
   if (settled.size() >= 3) return {settled.begin(), settled.end()};

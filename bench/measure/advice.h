@@ -10,16 +10,15 @@
 
 namespace winnow::bench {
 
-/// One partition in a race on somebody's scene.
+/// One partition in a race on the user's scene.
 struct Advised {
   std::string partition;
-  double first_ms = 0.0;  ///< of the frame in which it was built
-  std::vector<double>
-      settled;              ///< ms of the frames after the first six, or after the first of a few
-  double median_ms = 0.0;   ///< of those
-  double times_best = 0.0;  ///< over that of the fastest
-  std::size_t bytes = 0;    ///< held, without results
-  std::string why;          ///< one sentence from its counters
+  double first_ms = 0.0;        ///< ms of the frame in which it was built
+  std::vector<double> settled;  ///< ms of the frames after the sixth, or after the first if few
+  double median_ms = 0.0;       ///< of `settled`
+  double times_best = 0.0;      ///< median over the fastest median
+  std::size_t bytes = 0;        ///< bytes held, without results
+  std::string why;              ///< reason in one sentence, from its counters
 };
 
 struct Advice {
@@ -28,21 +27,21 @@ struct Advice {
   std::size_t frames = 0;
   int threads = 1;
   double moving = 0.0;           ///< share of the objects that move in a frame
-  double pairs = 0.0;            ///< a frame
-  SceneFeatures features;        ///< of the last sample that AutoPartition took
+  double pairs = 0.0;            ///< per frame
+  SceneFeatures features;        ///< of the last sample of AutoPartition
   std::vector<Advised> ranking;  ///< fastest first
-  std::string chosen;            ///< by AutoPartition, in the end
+  std::string chosen;            ///< AutoPartition's structure at the end
   std::string reason;
-  bool same_pairs = true;  ///< all found the same
+  bool same_pairs = true;  ///< all found the same pairs
 
-  /// The fastest that is not AutoPartition.
+  /// Returns the fastest partition other than AutoPartition.
   [[nodiscard]] const Advised& best() const;
-  /// A line of C++ that makes it.
+  /// Returns a line of C++ that makes it.
   [[nodiscard]] std::string code() const;
 };
 
-/// Races the partitions, AutoPartition among them, on `frames` frames of a source, interleaved.
-/// Throws std::invalid_argument if there are no partitions but AutoPartition.
+/// Races the partitions and AutoPartition on `frames` frames of a source, interleaved. Throws
+/// std::invalid_argument if `partitions` has no partition other than AutoPartition.
 [[nodiscard]] Advice advise(FrameSource& source, const std::vector<std::string>& partitions,
                             std::size_t frames, int threads);
 

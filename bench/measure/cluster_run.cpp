@@ -1,3 +1,6 @@
+// Runs a recording or scene on the ranks of a cluster, as pairs of boxes (BoxRanks) or contacts of
+// bodies (BodyRanks). commands/cluster.cpp and bench/rows/cluster_rows.cpp call `run_cluster`.
+
 #include "bench/measure/cluster_run.h"
 
 #include <winnow/pipeline/cluster_scene.h>
@@ -20,7 +23,7 @@ void require_ok(Status status, const char* what) {
   }
 }
 
-/// Adds batches, of which none may be refused.
+/// Adds batches; returns the first error of any of them.
 template <typename Batch, typename Ranks>
 Status add_all(const std::vector<Batch>& batches, Ranks& ranks) {
   std::vector<Status> answers(batches.size());
@@ -30,7 +33,7 @@ Status add_all(const std::vector<Batch>& batches, Ranks& ranks) {
   return refused == answers.end() ? Status::ok : *refused;
 }
 
-/// Ranks of boxes.
+/// A cluster of boxes.
 struct BoxRanks {
   BoxRanks(Transport& transport, const Execution& execution)
       : cluster(transport, {.execution = execution}) {}
@@ -54,12 +57,12 @@ struct BoxRanks {
   Cluster cluster;
 };
 
-/// Ranks of bodies.
+/// A cluster of bodies.
 struct BodyRanks {
   BodyRanks(Transport& transport, const Execution& execution, ContactLevel asked)
       : cluster(transport, pool, {.scene = {.execution = execution}}), level(asked) {}
 
-  /// Every process makes the shapes of all bodies that come, in the order of their rows.
+  /// Adds the shapes of new bodies. Every process adds all of them, in the order of rows.
   void see(std::span<const Aabb> boxes) {
     for (std::size_t i = shapes.size(); i < boxes.size(); ++i) {
       require_ok(pool.add(box_shape_of(boxes[i]), shapes.emplace_back()), "shape");
@@ -100,7 +103,7 @@ struct BodyRanks {
   ContactLevel level;
 };
 
-/// A scene as the ranks of this process see it.
+/// Runs frames of a scene on the ranks of this process.
 template <typename Ranks>
 class ClusterEngine {
  public:
@@ -165,7 +168,7 @@ class ClusterEngine {
     last_.assign(boxes.begin(), boxes.end());
   }
 
-  /// No process begins before all others are there.
+  /// Starts the frame on all processes at the same time.
   void synchronize() {
     std::uint64_t nothing = 0;
     require_ok(transport_.reduce(std::span(&nothing, 1), {}), "start of a frame");
@@ -179,7 +182,7 @@ class ClusterEngine {
     if (grows_) require_ok(ranks_.add(fresh_, fresh_boxes_), "add");
   }
 
-  /// A rank's own bodies stay in the order of their keys, in which it is told fastest of them.
+  /// Updates the list of each rank's own bodies, sorted by key: moves are fastest in that order.
   void follow() {
     for (std::size_t r = 0; r < bodies_.size(); ++r) {
       std::vector<ClusterBody>& bodies = bodies_[r];
@@ -220,7 +223,7 @@ class ClusterEngine {
   Ranks& ranks_;
   decltype(Ranks::cluster)& cluster_;
   std::vector<std::vector<ClusterBody>> bodies_;  // of each hosted rank
-  // What each hosted rank is told of a frame.
+  // The input of a frame for each hosted rank.
   std::vector<std::vector<Key>> keys_;
   std::vector<std::vector<Aabb>> boxes_;
   std::vector<std::vector<BodyName>> fresh_;

@@ -14,8 +14,7 @@
 
 namespace winnow::bench {
 
-/// What the ranks of a cluster did in a frame; the same on every process. Times are those of the
-/// process that took longest.
+/// Results of one frame, equal on all processes. The times are the slowest process's.
 struct ClusterFrame {
   double frame_ms = 0.0;
   double update_ms = 0.0;
@@ -27,11 +26,11 @@ struct ClusterFrame {
 struct ClusterRun {
   std::uint32_t ranks = 1;
   std::vector<ClusterFrame> frames;
-  std::uint64_t bytes = 0;  ///< held by all ranks in the end
+  std::uint64_t bytes = 0;  ///< held by all ranks at the end
 
-  /// Median of the frames after the first; of the first if there is no other.
+  /// Median of the frames after the first, or the first frame's time if it is the only one.
   [[nodiscard]] double median_ms() const;
-  /// Numbers of one kind, of each frame.
+  /// Returns one value of each frame.
   template <typename Get>
   [[nodiscard]] auto each(Get&& get) const {
     std::vector<decltype(get(frames.front()))> values;
@@ -40,22 +39,22 @@ struct ClusterRun {
   }
 };
 
-/// What a cluster is shown, and asked.
+/// Limits and contact level of a run.
 struct ClusterOrder {
-  std::size_t frames = 1;  ///< at most so many
-  /// Unset: the pairs of boxes. Else contacts of bodies, which have the sizes of the boxes that
-  /// they come with and follow their middles.
+  std::size_t frames = 1;  ///< limit
+  /// Unset: pairs of boxes. Otherwise contacts of bodies at this level; a body has the size of its
+  /// first box and follows the box's centre.
   std::optional<ContactLevel> level;
 };
 
-/// Shows frames of a source to a cluster. Every process reads all of them, and tells its ranks what
-/// became of the bodies that belong to these; the first frame's boxes are added where their rows
-/// say. Finding what changed and fingerprints are outside the times. Throws std::runtime_error
-/// where the cluster fails. Collective.
+/// Runs frames of a source on a cluster. Every process reads all frames and updates the bodies that
+/// its ranks own. The boxes of the first frame are distributed to ranks by row. Finding changes,
+/// and fingerprints, are not timed. Throws std::runtime_error if the cluster returns an error.
+/// Collective: all processes must call it.
 [[nodiscard]] ClusterRun run_cluster(FrameSource& source, Transport& transport,
                                      const ClusterOrder& order, const Execution& execution);
 
-/// A box as a body: its shape is half as long, wide and high as it says, and stands at its middle.
+/// Returns the box as a body's shape, with half the edges, and its centre as a pose.
 [[nodiscard]] BoxShape box_shape_of(const Aabb& box) noexcept;
 [[nodiscard]] Pose middle_of(const Aabb& box) noexcept;
 

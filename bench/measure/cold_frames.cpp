@@ -1,3 +1,6 @@
+// Times the first frame of new partitions, on fresh and on used memory, with and without reserved
+// room. bench/rows/cold_rows.cpp calls `race_cold_frames`.
+
 #include "bench/measure/cold_frames.h"
 
 #include <winnow/core/hooks.h>
@@ -19,22 +22,22 @@
 namespace winnow::bench {
 namespace {
 
-/// All that a first frame asks for, blocks that it gives back included.
+/// Bytes of address space for all allocations of a first frame, including freed ones.
 std::size_t room_for(std::size_t objects) {
   constexpr std::size_t kEach = 8192;
   return (std::size_t{1} << 28U) + kEach * objects;
 }
 
-/// Milliseconds from the beginning of a first frame to the end of each part.
+/// Milliseconds from the start of a first frame to the end of each part.
 struct Parts {
   double inserted = 0.0;
   double built = 0.0;
   double found = 0.0;
 };
 
-/// Tells when the structure of the frame that is running was built. Nobody asks for that
-/// beforehand: programs ask for pairs, and an order that serves other questions too takes longer to
-/// find.
+/// Records when the structure of the current frame was built, by a hook. Calling `refresh` before
+/// would change the measurement: programs query pairs directly, and the structure built for other
+/// queries takes longer.
 class BuildEnd {
  public:
   explicit BuildEnd(const Stopwatch& clock) : before_(set_stage_hook(note)) { clock_ = &clock; }
@@ -66,7 +69,7 @@ Parts run_frame(std::span<const Aabb> boxes, Partition& partition, std::vector<K
   return parts;
 }
 
-/// Runs first frames of one fresh partition after the other.
+/// Runs first frames, each of a new partition.
 struct FirstFrames {
   std::span<const Aabb> boxes;
   int threads;
@@ -76,7 +79,7 @@ struct FirstFrames {
   [[nodiscard]] Partition make(const ColdFrames& frames, std::pmr::memory_resource& memory) {
     return make_named(frames.partition, {.memory = &memory, .execution = execution_for(threads)});
   }
-  /// What it finds.
+  /// Runs one first frame and returns its pairs.
   PairSummary run(ColdFrames& frames, std::pmr::memory_resource& memory) {
     const Stopwatch clock;
     Partition partition = make(frames, memory);
@@ -90,14 +93,14 @@ struct FirstFrames {
                                              pairs.footprint().total().reserved));
     return summarize(pairs.pairs(), boxes);
   }
-  /// Milliseconds that it takes to write to so many bytes of ordinary pages for the first time.
+  /// Milliseconds of the first write to `bytes` of ordinary pages.
   [[nodiscard]] double write_to_pages(std::size_t bytes) {
     fresh.forget();
     const Stopwatch clock;
     touch_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
     return clock.ms();
   }
-  /// The same after room for the objects and so many pairs was made.
+  /// As `run`, but reserves room for the objects and `count` pairs before the frame.
   PairSummary run_reserved(ColdFrames& frames, std::pmr::memory_resource& memory, std::size_t count,
                            Pages pages) {
     Partition partition = make(frames, memory);
@@ -171,7 +174,7 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
   };
   Arenas arenas(threads);
   arenas.run(threads, [&] {
-    run_all();  // code and the yardstick's own memory
+    run_all();  // warms up code and the yardstick's own memory
     forget_frames(race);
     for (std::size_t round = 0; round < rounds; ++round) run_all();
   });

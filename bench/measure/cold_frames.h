@@ -10,8 +10,8 @@
 
 namespace winnow::bench {
 
-/// Where a partition gets its memory: from ordinary pages that nobody has written to; from those
-/// that its frame before has; or, as by default, from large pages that nobody has written to.
+/// Memory of a partition: ordinary pages not written before; ordinary pages that the previous frame
+/// has written; large pages not written before, which are the default of the library.
 inline constexpr std::string_view kUntouched = "untouched";
 inline constexpr std::string_view kTouched = "touched";
 inline constexpr std::string_view kLargePages = "large pages";
@@ -24,24 +24,24 @@ struct ColdFrames {
   std::vector<double> build_ms{};
   std::vector<double> pairs_ms{};
   std::vector<double> total_ms{};
-  // Not on touched pages: a frame for which all memory was reserved, one for which it was touched
-  // as well, and what the latter took before the frame.
+  // Not for touched pages: a frame with all memory reserved; a frame with all memory reserved and
+  // touched, and the time of that reservation.
   std::vector<double> reserved_ms{};
   std::vector<double> ready_ms{};
   std::vector<double> reserve_ms{};
-  // What it takes to write to as many ordinary pages as the partition and its pairs hold.
+  // Time of the first write to as many ordinary pages as the partition and its pairs occupy.
   std::vector<double> pages_ms{};
 };
 
 struct ColdRace {
-  std::vector<ColdFrames> frames;    ///< of each partition, in each of the memories
-  std::vector<double> yardstick_ms;  ///< of frames of the same boxes; none without it
+  std::vector<ColdFrames> frames;    ///< each partition in each kind of memory
+  std::vector<double> yardstick_ms;  ///< frames of the same boxes; empty without the yardstick
 };
 
-/// First frames of so many fresh partitions of these boxes: all boxes are inserted, the structure
-/// is built and all pairs are found. Reserved is room for them and for as many pairs as they have.
-/// All take turns, and frames of the yardstick, which always starts anew, among them if it is
-/// wanted. Throws std::runtime_error if not all find the same pairs.
+/// Times first frames of new partitions, `rounds` per partition and kind of memory: all boxes are
+/// inserted, the structure is built and all pairs are found. Reserved frames have room for these
+/// boxes and pairs. All take turns, together with the yardstick, which always starts anew, if
+/// `yardstick` is set. Throws std::runtime_error if the pairs differ.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
                                         const std::vector<std::string>& partitions, int threads,
                                         std::size_t rounds = 7, bool yardstick = true);

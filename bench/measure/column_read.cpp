@@ -8,7 +8,7 @@ using Wide = float __attribute__((vector_size(64)));
 }  // namespace
 
 float read_columns(const float* const* columns, std::size_t count) noexcept {
-  // Two sums a column: enough for loads, and not additions, to be what it waits for.
+  // Two sums per column, so that loads and not the latency of additions limit the speed.
   Wide sums[12] = {};
   const std::size_t steps = count / 32;
   for (std::size_t i = 0; i < steps; ++i) {

@@ -4,8 +4,8 @@
 
 namespace winnow::bench {
 
-/// Adds up six columns of `count` floats, 64-byte aligned and a multiple of 32 long: what it costs
-/// to have read every box once, as fast as this machine's widest loads go.
+/// Sums six columns of `count` floats, which are 64-byte aligned and a multiple of 32 long, with
+/// the widest loads of the machine: the cost of reading every box once.
 [[nodiscard]] float read_columns(const float* const* columns, std::size_t count) noexcept;
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Compares the results of query engines with each other and with a test of every box in double.
+// query_race.cpp calls it; judge.cpp decides doubtful cases.
+
 #include "bench/measure/judge.h"
 
 #include <algorithm>
@@ -11,8 +14,8 @@ namespace {
 
 constexpr double kDoubleRounding = 1e-13;
 constexpr double kFloatRounding = 1e-6;
-/// Relative, of a t: three roundings to nearest of whoever computes in float, one rounding down of
-/// a partition, and a little.
+/// Relative tolerance of t: three roundings to nearest of an engine in float, one rounding down of
+/// a partition, and some slack.
 constexpr double kSameT = 3.0 * 0x1p-23;
 
 bool same_t(double a, double b) noexcept {
@@ -38,13 +41,13 @@ std::string named(std::uint32_t row) {
   return "object " + std::to_string(row);
 }
 
-/// Of one question: empty if nothing is wrong.
+/// Result for one query; `wrong` is empty if the answers agree.
 struct Finding {
   std::string wrong;
   bool undecided = false;
 };
 
-/// Compares all questions and sums up.
+/// Compares all queries and counts the findings.
 template <typename CompareOne>
 Comparison compare_each(std::size_t questions, CompareOne&& compare_one) {
   Comparison result;
@@ -80,7 +83,7 @@ Finding compare_one_exactly(const Judge& judge, const QuestionSet& set, std::siz
   return {text(g, got.end()) + ", expected " + text(e, expected.end())};
 }
 
-/// The object that only one engine found.
+/// Checks an object that only one engine found.
 Finding judge_lone(const Judge& judge, const QuestionSet& set, std::size_t i, const Found& found) {
   const Verdict verdict = judge.verdict(set, i, found.row, kFloatRounding);
   if (verdict.possible && !verdict.certain) return {{}, true};
@@ -92,7 +95,7 @@ Finding compare_closest(const Judge& judge, const QuestionSet& set, std::size_t 
   if (expected.empty() && got.empty()) return {};
   const bool both = !expected.empty() && !got.empty();
   if (both && same_t(static_cast<double>(expected[0].t), static_cast<double>(got[0].t))) return {};
-  // Whoever stopped earlier found an object that the other did not.
+  // The smaller t belongs to an object that the other engine did not find.
   const bool got_first = expected.empty() || (both && got[0].t < expected[0].t);
   return judge_lone(judge, set, i, got_first ? got[0] : expected[0]);
 }
@@ -130,11 +133,11 @@ Finding compare_nearest(std::span<const Found> expected, std::span<const Found> 
   return same ? Finding{} : Finding{"other distances"};
 }
 
-/// What testing every box in double found for one question.
+/// The reference for one query: every box tested in double.
 struct Force {
   std::vector<std::uint32_t> certain;
-  double least_t = std::numeric_limits<double>::infinity();  ///< of the certain ones
-  std::vector<double> distances;                             ///< of `nearest`, sorted
+  double least_t = std::numeric_limits<double>::infinity();  ///< of the certain rows
+  std::vector<double> distances;                             ///< for Want::nearest, sorted
 
   Force(const Judge& judge, const QuestionSet& set, std::size_t i, std::size_t objects) {
     for (std::uint32_t row = 0; row < objects; ++row) {

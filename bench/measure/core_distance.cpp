@@ -10,10 +10,10 @@ namespace winnow::bench {
 namespace {
 
 constexpr int kTries = 11;
-constexpr int kThere = 1000;      // ways there, and as many back, of a try
-constexpr int kPatience = 10000;  // looks, which take longer than any way between running threads
+constexpr int kThere = 1000;      // round trips per try
+constexpr int kPatience = 10000;  // failed reads before yielding, longer than any usual delay
 
-/// Two threads that wait for each other's number in turns.
+/// Two threads that pass a number back and forth.
 class Rally {
  public:
   void answer() noexcept {
@@ -22,7 +22,7 @@ class Rally {
       ball_.store(ball + 1, std::memory_order_release);
     }
   }
-  /// Nanoseconds of a way in a try.
+  /// Returns the nanoseconds of one way, in one try.
   double serve(int serve) noexcept {
     const Stopwatch clock;
     for (int i = 0; i < kThere; ++i) {
@@ -34,7 +34,7 @@ class Rally {
   }
 
  private:
-  // Where another program has the other core, whoever waits makes room.
+  // Yields if the other thread's core is taken by another program.
   void wait_for(int ball) const noexcept {
     for (int looks = 0; ball_.load(std::memory_order_acquire) != ball; ++looks) {
       if (looks > kPatience) std::this_thread::yield();

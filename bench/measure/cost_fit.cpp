@@ -1,3 +1,6 @@
+// Fits the cost constants of AutoPartition's candidates to measured times: first least squares for
+// each candidate, then a search for constants that choose better. commands/fit.cpp calls it.
+
 #include "bench/measure/cost_fit.h"
 
 #include "bench/common/sample.h"
@@ -14,7 +17,8 @@
 namespace winnow::bench {
 namespace {
 
-/// Objects move in turns: in each frame the next ones catch up with the scene.
+/// A scene in which only a share of the objects moves per frame: in each frame the next ones take
+/// their current box.
 class SomeMoving final : public FrameSource {
  public:
   SomeMoving(std::unique_ptr<FrameSource> scene, double share)
@@ -28,7 +32,7 @@ class SomeMoving final : public FrameSource {
   [[nodiscard]] std::span<const Aabb> boxes() const override { return boxes_; }
   bool advance() override {
     if (!scene_->advance()) return false;
-    // Far apart from each other, as things that wake by themselves are.
+    // The stride spreads the moving objects over the scene, like bodies that wake independently.
     constexpr std::size_t kStride = 7919;
     for (std::size_t k = 0; k < movers_; ++k) {
       next_ = (next_ + kStride) % boxes_.size();
@@ -44,7 +48,7 @@ class SomeMoving final : public FrameSource {
   std::size_t next_ = 0;
 };
 
-/// Of all but the slowest fiftieth, in which the machine did something else.
+/// Mean without the slowest 2 % of the values, which other load on the machine may have disturbed.
 double mean_without_strays(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.resize(values.size() - values.size() / 50);
@@ -57,7 +61,7 @@ std::vector<std::string> candidate_names() {
   return names;
 }
 
-/// One equation: terms times constants shall be a time.
+/// One equation: the sum of terms times constants equals a time.
 template <std::size_t N>
 struct Equation {
   std::array<CostTerm, N> terms;
@@ -65,7 +69,7 @@ struct Equation {
   double weight;
 };
 
-/// Constants that are not negative, with the least sum of squares of weighted errors.
+/// Finds nonnegative constants with the least sum of squared weighted errors.
 template <std::size_t N>
 void solve(const std::vector<Equation<N>>& equations, StructureCosts& costs) {
   constexpr int kSweeps = 20'000;
@@ -96,7 +100,7 @@ double least_of(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }
 
-/// What the frames of all samples are predicted to take, and how bad it would be to choose by that.
+/// Predicted times of the frames of all samples, and the cost of choosing by them.
 class Judgement {
  public:
   Judgement(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs)
@@ -108,16 +112,16 @@ class Judgement {
     }
   }
 
-  /// Predicts anew what candidate k takes.
+  /// Updates the predictions for candidate k.
   void update(std::size_t k, const StructureCosts& costs) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       predicted_[i][k] = sum_of(terms_[i], costs);
     }
   }
 
-  /// The sum of what choosing costs beyond the best, where candidates of about the same prediction
-  /// are as likely to be chosen: a tie that is broken by luck is no success. Predictions that are
-  /// off count as well, a little, so that constants stay what they mean.
+  /// Sum over the samples of the chosen time over the best, minus 1. Candidates with similar
+  /// predictions are weighted as equally likely choices, so that a lucky tie does not count as
+  /// success. Prediction errors have a small weight, so that constants keep their meaning.
   [[nodiscard]] double loss() const {
     constexpr double kErrors = 0.05;
     double sum = 0.0;
@@ -135,7 +139,7 @@ class Judgement {
 
  private:
   static double regret(const std::vector<double>& predicted, const std::vector<double>& times) {
-    constexpr double kTie = 0.05;  // predictions within this are about the same
+    constexpr double kTie = 0.05;  // predictions within this relative difference count as ties
     const double least = least_of(predicted);
     double weights = 0.0;
     double sum = 0.0;
@@ -152,13 +156,13 @@ class Judgement {
   std::vector<std::vector<double>> predicted_;
 };
 
-/// Constants from which the choice is better: each is made larger and smaller in turn, by less and
-/// less, and stays what does best.
+/// Coordinate search: changes each constant up and down in turn, with decreasing steps, and keeps
+/// each change that reduces the loss.
 void choose_better(const std::vector<CostSample>& samples, std::vector<StructureCosts>& costs) {
   constexpr double kAtFirst = 0.5;
   constexpr double kAtLast = 0.01;
   constexpr int kRounds = 12;
-  // What a constant that is zero begins with: a hundredth of a typical object's nanoseconds.
+  // First value for constants that are zero: a hundredth of the nanoseconds of a typical object.
   constexpr double kLeast = 0.01;
   if (samples.empty()) return;
   Judgement judgement(samples, costs);
@@ -188,7 +192,7 @@ void choose_better(const std::vector<CostSample>& samples, std::vector<Structure
   }
 }
 
-/// Of what candidate k is predicted to take for a frame, relative.
+/// Median relative error of the predicted frame time of candidate k.
 double median_error(const std::vector<CostSample>& samples, const StructureCosts& costs,
                     std::size_t k) {
   std::vector<double> errors;
@@ -251,7 +255,7 @@ FittedCosts fit_costs(const std::vector<CostSample>& samples) {
     }
     solve(frames, costs);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      // The first frame is a build and a frame in which everything is asked.
+      // The first frame consists of a build and a frame in which all objects count as changed.
       FrameWork all = samples[i].work;
       all.changed = samples[i].features.objects;
       const auto asked = frame_terms(samples[i].features, all, samples[i].pairs);

@@ -11,42 +11,42 @@
 
 namespace winnow::bench {
 
-/// What the structures that the automatic choice chooses from took for frames of one scene.
+/// Times of AutoPartition's candidates on frames of one scene.
 struct CostSample {
   std::string scene;
-  double moving = 1.0;  ///< share of the objects that moves in a frame
+  double moving = 1.0;  ///< share of the objects that move in a frame
   SceneFeatures features;
   FrameWork work;
-  double pairs = 0.0;         ///< of a frame
-  std::vector<double> frame;  ///< ns, by candidate: midway between the median and the mean frame
-  std::vector<double> first;  ///< ns, by candidate: of the frame in which it was built
+  double pairs = 0.0;         ///< per frame
+  std::vector<double> frame;  ///< ns, by candidate: mean of the median and the mean frame
+  std::vector<double> first;  ///< ns, by candidate: the frame in which it was built
 };
 
-/// A scene of which only a share of the objects moves in each frame, the others in turn; one that
-/// grows stays as it is.
+/// Returns a scene in which only a share of the objects moves in each frame, each object in its
+/// turn. Scenes that grow are returned unchanged.
 [[nodiscard]] std::unique_ptr<FrameSource> some_moving(std::unique_ptr<FrameSource> scene,
                                                        double share);
 
 /// Races all candidates on a scene, interleaved, on one thread.
 [[nodiscard]] CostSample measure_costs(FrameSource& scene, double moving, std::size_t frames);
 
-/// Constants that were fitted, and how far their predictions are off.
+/// Fitted constants and the errors of their predictions.
 struct FittedCosts {
-  std::vector<StructureCosts> costs;  ///< by candidate; those of other queries as they are
+  std::vector<StructureCosts> costs;  ///< by candidate; constants of other queries are unchanged
   std::vector<double> error;          ///< by candidate: median relative error of a frame
 };
 
-/// Least squares of the relative errors, without negative constants (Lawson and Hanson, "Solving
-/// Least Squares Problems", 1974, chapter 23, here by coordinate descent), from which constants are
-/// sought that choose better: what a wrong choice costs decides, not how far a prediction is off.
-/// Where a candidate is far from the best its error matters less: it need only be known not to be
-/// chosen.
+/// Fits constants by nonnegative least squares of the relative errors (Lawson and Hanson, "Solving
+/// Least Squares Problems", 1974, chapter 23; here by coordinate descent), then improves the
+/// choices by a search whose loss is mainly the time lost by wrong choices. Errors of a candidate
+/// matter less the slower it is than the best, as it only has to be recognised as slower.
 [[nodiscard]] FittedCosts fit_costs(const std::vector<CostSample>& samples);
 
-/// The constants that the library has.
+/// Returns the constants that the library uses now.
 [[nodiscard]] std::vector<StructureCosts> present_costs();
 
-/// What the cheapest prediction takes over what the best candidate takes, once settled.
+/// Returns the settled time of the candidate with the cheapest prediction over the time of the best
+/// candidate.
 [[nodiscard]] double regret_of(const CostSample& sample, const std::vector<StructureCosts>& costs,
                                std::size_t& chosen, std::size_t& best);
 

@@ -9,14 +9,14 @@
 
 namespace winnow::bench {
 
-/// `feature_impacts` on steps of one kind.
+/// Times and errors of `feature_impacts` on steps of one kind.
 struct FeatureTiming {
   std::size_t pairs = 0;
-  std::vector<double> ns{};  ///< a pair, one entry a round
+  std::vector<double> ns{};  ///< ns per pair, one entry per round
   std::size_t hits = 0;
-  /// Steps that touch exactly, and that it says do not, or later.
+  /// Steps that touch exactly, with no impact reported or a later one.
   std::size_t missed = 0;
-  /// Steps that stay apart, and that it says touch.
+  /// Steps that stay apart, with an impact reported.
   std::size_t invented = 0;
 };
 

@@ -17,7 +17,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Median frames by candidate, of a scene and a number of objects.
+/// Median frame times by candidate, for each scene and number of objects.
 using Figures = std::map<std::pair<std::string, std::size_t>, std::map<std::string, double>>;
 
 constexpr std::array<const char*, 5> kColumns{"scene", "objects", "threads", "kind", "median_ms"};
@@ -29,7 +29,7 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-/// Where each of the columns stands in a line.
+/// Returns the index of each column in a line.
 std::array<std::size_t, kColumns.size()> columns_of(const std::string& path,
                                                     const std::string& line) {
   const std::vector<std::string> names = fields_of(line);

@@ -1,3 +1,6 @@
+// Times queries of a partition with filters and without, and compares the results with all pairs
+// that pass the filter. bench/rows/filter_rows.cpp calls `race_filters`.
+
 #include "bench/measure/filter_race.h"
 
 #include "bench/common/need.h"
@@ -15,7 +18,7 @@ namespace {
 constexpr std::size_t kWarmingRounds = 4;
 constexpr std::size_t kRays = 1000;
 constexpr std::size_t kBoxes = 1000;
-constexpr std::size_t kFew = 20;  // of so many objects one moves
+constexpr std::size_t kFew = 20;  // one object of this many moves
 constexpr float kBoxEdges = 4.0F;
 
 constexpr std::array<std::string_view, 5> kSettings{"1 % apart", "mixed", "static", "never, mixed",
@@ -25,7 +28,7 @@ constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "an
 enum Setting : std::size_t { one_percent, mixed, still, never_mixed, never_apart };
 enum Question : std::size_t { all_move, few_move, another, rays, boxes };
 
-/// In a set of objects whose boxes begin below `middle` on x, or not.
+/// Returns the filter of an object. `middle` divides the boxes on x into two sets.
 ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box, float middle) {
   const std::uint64_t chance = mix(object);
   const bool second = setting == never_apart ? box.min[0] >= middle : chance % 2 == 0;
@@ -41,7 +44,8 @@ ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box,
   }
 }
 
-/// Who asks with rays and boxes: one that does not want the few, and otherwise one of the objects.
+/// Returns the filter of ray and box queries: one that excludes the few, or the filter of one of
+/// the objects.
 Filter asking(std::size_t setting) {
   const auto as = [](std::uint32_t layers, std::uint32_t mask) {
     Filter filter;
@@ -62,10 +66,10 @@ Filter asking(std::size_t setting) {
   }
 }
 
-/// What a question found, in one order: pairs, or for each ray what it hits.
+/// Sorted results of a query: pairs, or the hit of each ray.
 using FoundPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// A partition that follows a scene and is asked one question in every frame.
+/// A partition that follows a scene and runs one query per frame.
 class Asked {
  public:
   Asked(std::string_view partition, std::size_t question, std::span<const Aabb> first)
@@ -80,7 +84,7 @@ class Asked {
     edge_ = median_by(first, [](const Aabb& box) { return box.max[0] - box.min[0]; });
     need(partition_.insert(boxes_, {}, keys_), "objects");
     if (question_ != another) return;
-    // Somewhere else than what they are asked about, so that both differ.
+    // Shifted, so that the two partitions differ.
     for (Aabb& box : other_boxes_) {
       for (Vec3f* const end : {&box.min, &box.max}) (*end)[0] += 0.37F * edge_;
     }
@@ -95,7 +99,7 @@ class Asked {
     if (question_ == another) need(other_.set_filter(other_keys_, other_filters_), "filters");
   }
 
-  /// Brings a frame in, and gives back the milliseconds of the answer.
+  /// Updates the partition and returns the milliseconds of the query.
   double run(std::span<const Aabb> frame, std::size_t round) {
     move(frame, round);
     if (question_ != all_move && question_ != few_move) need(partition_.refresh(), "refresh");
@@ -105,7 +109,7 @@ class Asked {
     return clock.ms();
   }
 
-  /// What the last one found.
+  /// Returns the results of the last query.
   [[nodiscard]] FoundPairs found() const {
     if (question_ == rays) return hits_;
     FoundPairs all;
@@ -114,7 +118,7 @@ class Asked {
     return all;
   }
 
-  /// The same by comparing everything with everything.
+  /// Returns the expected results, by testing all pairs.
   [[nodiscard]] FoundPairs truth() const;
 
  private:
@@ -170,7 +174,7 @@ class Asked {
   [[nodiscard]] std::uint32_t asked(std::size_t most) const {
     return static_cast<std::uint32_t>(std::min(most, boxes_.size()));
   }
-  /// From one object's corner on towards another's.
+  /// Returns a ray from a corner of one object towards another.
   [[nodiscard]] Ray ray(std::uint32_t i) const {
     const Vec3f from = other_boxes_[i].min;
     const Vec3f to = other_boxes_[(i + boxes_.size() / 3) % boxes_.size()].max;
@@ -209,7 +213,7 @@ class Asked {
 };
 
 FoundPairs Asked::truth() const {
-  // Keys are handed out in order: ids are the objects' numbers.
+  // Keys are given in order, so ids are the indices of the objects.
   Partition all = make_named("BoundsNSquared", {.execution = Execution::serial()});
   std::vector<Key> keys(boxes_.size());
   need(all.insert(boxes_, {}, keys), "objects");
@@ -249,15 +253,15 @@ FoundPairs Asked::truth() const {
   return found;
 }
 
-/// Answers that only one of two has.
+/// Counts the results that only one of the two has.
 std::size_t differences(const FoundPairs& a, const FoundPairs& b) {
   FoundPairs apart;
   std::ranges::set_symmetric_difference(a, b, std::back_inserter(apart));
   return apart.size();
 }
 
-/// Milliseconds by contestant and round. Who comes first finds caches and branch predictors as
-/// others left them, and is another one in each round.
+/// Returns milliseconds by contestant and round. A different one starts each round, since the first
+/// runs with caches and branch predictors as left by the others.
 std::vector<std::vector<double>> time_in_turns(const std::vector<std::unique_ptr<Asked>>& all,
                                                FrameSource& source, std::size_t rounds) {
   std::vector<std::vector<double>> ms(all.size());

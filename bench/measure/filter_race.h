@@ -14,32 +14,34 @@
 
 namespace winnow::bench {
 
-/// What filters cost in one question to a partition, on one thread.
+/// Cost of filters in one kind of query of a partition, on one thread.
 struct FilterRow {
   std::string filters;                ///< see filter_setting_names()
   std::string question;               ///< see filter_question_names()
-  std::vector<double> plain_ms{};     ///< without filters, by rounds
-  std::vector<double> filtered_ms{};  ///< with them
-  std::size_t wrong = 0;  ///< answers that are not those of a comparison of all with all
+  std::vector<double> plain_ms{};     ///< without filters, by round
+  std::vector<double> filtered_ms{};  ///< with filters, by round
+  std::size_t wrong = 0;              ///< results that differ from a test of all pairs
 
   [[nodiscard]] double over_plain() const { return median_of(filtered_ms) / median_of(plain_ms); }
 };
 
-/// Who may meet whom: "1 % apart" in a layer that does not meet itself, "mixed" by chance in two
-/// layers that all meet, "static" nine tenths that do not meet each other, "never, mixed" and
-/// "never, apart" in two layers of which each meets itself alone, by chance and by place.
+/// Names of the filter settings: "1 % apart": pairs within a random 1 % of the objects are
+/// excluded. "mixed": two random layers, no pairs excluded. "static": pairs within a random nine
+/// tenths of the objects are excluded. "never, mixed" and "never, apart": two layers with pairs
+/// only within each, assigned at random or by position.
 [[nodiscard]] std::span<const std::string_view> filter_setting_names() noexcept;
 
-/// What is asked: "all move" and "few move" for all pairs after so many boxes changed, "another"
-/// for pairs with a second partition, "rays" for the closest hits, "boxes" for what overlaps them.
+/// Names of the queries: "all move" and "few move" find all pairs after all or few boxes changed;
+/// "another" finds pairs with a second partition; "rays" finds closest hits; "boxes" finds the
+/// objects that overlap boxes.
 [[nodiscard]] std::span<const std::string_view> filter_question_names() noexcept;
 
-/// A scene's frames from the first one on.
+/// Returns the frames of a scene from the first one on.
 using MakeFrames = std::function<std::unique_ptr<FrameSource>()>;
 
-/// All settings in all questions, each beside the same question without filters, in turns over the
-/// same frames. What the last round found is compared with all pairs by `BoundsNSquared` without
-/// filters, of which those are taken that `may_meet` lets pass.
+/// Runs all settings in all queries, interleaved with the same query without filters, on the same
+/// frames. The results of the last round are compared with the pairs of `BoundsNSquared` without
+/// filters that `may_meet` allows.
 [[nodiscard]] std::vector<FilterRow> race_filters(const MakeFrames& frames,
                                                   std::string_view partition, std::size_t rounds);
 

@@ -9,8 +9,8 @@
 
 namespace winnow::bench {
 
-/// What a frame's pairs amount to. Two engines found the same pairs if `pairs` and `fingerprint`
-/// agree; `reported` also counts pairs whose boxes do not overlap.
+/// Summary of a frame's pairs. Two engines found the same pairs if `pairs` and `fingerprint` agree;
+/// `reported` also counts pairs whose boxes do not overlap.
 struct PairSummary {
   std::uint64_t reported = 0;
   std::uint64_t pairs = 0;
@@ -24,7 +24,7 @@ struct PairSummary {
 [[nodiscard]] PairSummary summarize(std::span<const Pair> pairs,
                                     std::span<const Aabb> boxes) noexcept;
 
-/// Sixteen lower-case hexadecimal digits.
+/// Formats as sixteen lower-case hexadecimal digits.
 [[nodiscard]] std::string to_hex(std::uint64_t value);
 
 }  // namespace winnow::bench

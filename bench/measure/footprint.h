@@ -9,10 +9,10 @@
 
 namespace winnow::bench {
 
-/// A purpose that bytes are held for.
+/// A purpose for which bytes are held.
 struct Purpose {
-  const char* name;   ///< as in JSON
-  const char* label;  ///< as in tables
+  const char* name;   ///< in JSON
+  const char* label;  ///< in tables
   Bytes Footprint::*bytes;
 };
 
@@ -26,21 +26,21 @@ inline constexpr std::array<Purpose, 6> kPurposes{
 
 inline constexpr std::size_t kFootprintFrames = 5;
 
-/// What a partition holds after some frames.
+/// Memory of a partition after some frames.
 struct Held {
   std::string partition;
   std::size_t objects = 0;
   Footprint footprint;
   Footprint buffer;             ///< the caller's pair buffer
-  std::size_t outstanding = 0;  ///< at the memory resource
-  std::size_t peak_first = 0;   ///< the most that was, in the frame in which it was built
-  std::size_t peak_later = 0;   ///< the same of the frames after it
-  std::size_t resident = 0;     ///< by which the process's resident set shrinks without it
+  std::size_t outstanding = 0;  ///< according to the memory resource
+  std::size_t peak_first = 0;   ///< greatest `outstanding` in the frame in which it was built
+  std::size_t peak_later = 0;   ///< greatest `outstanding` in the later frames
+  std::size_t resident = 0;  ///< decrease of the process's resident set when the partition is freed
 
   [[nodiscard]] bool exact() const { return footprint.total().reserved == outstanding; }
 };
 
-/// Shows a partition the next kFootprintFrames frames of the source. `resident` is right if
+/// Runs the next kFootprintFrames frames of the source on a partition. `resident` is valid only if
 /// keep_resident_set_exact was called before.
 [[nodiscard]] Held measure_held(const std::string& partition, FrameSource& source, int threads);
 

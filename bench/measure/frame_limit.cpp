@@ -24,7 +24,7 @@ double least_ms(int repeats, Work&& work) {
   return least;
 }
 
-/// Keeps the compiler from leaving out what made `p`.
+/// Prevents the compiler from removing the computation of `p`.
 void use(const void* p) {
   asm volatile("" : : "r"(p) : "memory");
 }
@@ -53,7 +53,7 @@ FrameLimit measure_frame_limit(std::size_t objects, std::size_t pairs, int repea
     use(columns.data());
     float sum = 0.0F;
     const float* const floats = columns.data()->min.data();
-    for (std::size_t i = 0; i < 6 * objects; i += 16) sum += floats[i];  // a load a cache line
+    for (std::size_t i = 0; i < 6 * objects; i += 16) sum += floats[i];  // one load per cache line
     use(&sum);
   });
   const std::vector<std::uint32_t> order = shuffled(objects);

@@ -39,7 +39,8 @@ double ms_of_frame(Follower& follower, std::span<const Aabb> boxes) {
   return clock.ms();
 }
 
-// Threads look out for more work a while: those of one must not take the time of the other.
+// Idle threads spin for a while. This pause lets the threads of one host go to sleep, so that they
+// take no time from the other.
 void let_threads_sleep() {
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }

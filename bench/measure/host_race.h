@@ -8,16 +8,16 @@
 
 namespace winnow::bench {
 
-/// Milliseconds of frames, by who runs the tasks: what moved is brought in, and all pairs are
-/// found.
+/// Milliseconds of frames, by the host that runs the tasks. A frame updates the boxes that moved
+/// and finds all pairs.
 struct HostRace {
   std::vector<double> arena_ms{};  ///< oneTBB
-  std::vector<double> pool_ms{};   ///< a plain pool of threads, see ThreadPool
+  std::vector<double> pool_ms{};   ///< a simple thread pool, see ThreadPool
 };
 
-/// Plays frames of a scene to two partitions of one kind on so many threads each, in turns, which
-/// one is first changing with every frame; the first frames, which build, do not count. Throws
-/// std::runtime_error if they report different pairs, or the same in another order.
+/// Runs frames of a scene on two partitions of one kind, with `threads` threads each. The host that
+/// runs first alternates; the first frames, which build, are not counted. Throws std::runtime_error
+/// if the pairs or their order differ.
 [[nodiscard]] HostRace race_hosts(FrameSource& source, std::string_view partition, int threads,
                                   std::size_t frames);
 

@@ -16,13 +16,13 @@ namespace winnow::bench {
 namespace {
 
 constexpr int kLooks = 64;
-/// The tolerance that winnow is asked for by default.
+/// winnow's default tolerance.
 constexpr double kLoose = 1e-6;
-/// What rounding of motions makes of gaps, in radii.
+/// Effect of rounding of the motions on gaps, in radii.
 constexpr double kRounding = 1e-12;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// Nanoseconds a pair.
+/// Returns nanoseconds per pair.
 double timed_ns(std::size_t pairs, const auto& work) {
   const ThreadStopwatch clock;
   work();
@@ -61,7 +61,7 @@ void ImpactJudge::judge(ImpactEngine& engine, ImpactTiming& timing) {
     ++timing.hits;
     const double size = std::min(size_of(pairs[i].a), size_of(pairs[i].b));
     const double doubt = found.error_bound()[k] + kRounding * size;
-    // Those that begin in each other meet at once.
+    // Bodies that overlap at the start have impact time 0, which is never late.
     const bool late =
         answer.time > 0.0 && (overlap_[i] < answer.time || found.distance()[k] < -doubt);
     timing.late += late ? 1 : 0;
@@ -74,7 +74,7 @@ void ImpactJudge::judge(ImpactEngine& engine, ImpactTiming& timing) {
   for (const double gap : gaps) timing.worst_gap = std::max(timing.worst_gap, gap);
 }
 
-/// Of which tolerances are shares: from the middle of a body. Half-spaces have none.
+/// Returns the length that tolerances are relative to: the radius of a body. Half-spaces have none.
 double ImpactJudge::size_of(std::uint32_t body) const {
   const ShapeId shape = set_.middle->shapes[body];
   if (shape.kind() == ShapeKind::half_space) return kEndless;

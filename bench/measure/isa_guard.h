@@ -4,7 +4,7 @@
 
 namespace winnow::bench {
 
-/// Puts back the instruction set that was active.
+/// Restores the instruction set that was active at its construction.
 class IsaGuard {
  public:
   IsaGuard() = default;
@@ -12,7 +12,7 @@ class IsaGuard {
   IsaGuard& operator=(const IsaGuard&) = delete;
   ~IsaGuard() { choose(before_); }
 
-  /// One that this machine has, for which the choice cannot be refused.
+  /// Activates `isa`, which must be available on this machine.
   static void choose(Isa isa) noexcept {
     if (isa != active_isa()) static_cast<void>(set_isa(isa));
   }

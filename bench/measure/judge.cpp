@@ -1,3 +1,6 @@
+// Evaluates one query on one box in double, with an error margin. comparison.cpp uses it as the
+// reference for query engines.
+
 #include "bench/measure/judge.h"
 
 #include <winnow/core/eigen.h>
@@ -21,7 +24,7 @@ struct DoubleBox {
   [[nodiscard]] double distance(const Double3& point) const {
     return (min - point).cwiseMax(point - max).cwiseMax(0.0).norm();
   }
-  /// Of the coordinates that are computed with; an end at infinity is not.
+  /// Greatest finite coordinate by magnitude; rounding errors are relative to it.
   [[nodiscard]] double size() const {
     double most = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -46,7 +49,7 @@ Line line_of(const Sweep& sweep, const Double3& origin) {
           static_cast<double>(sweep.max_t)};
 }
 
-/// The part of a line that lies in a box: where it surely does, and where it may.
+/// The interval of a line inside of a box: computed, surely inside, and possibly inside.
 struct Stretch {
   double enter_surely;
   double leave_surely;
@@ -88,7 +91,7 @@ Verdict judge_line(const DoubleBox& box, const Line& line, double tolerance) {
   return {s.enter_maybe <= s.leave_maybe, s.enter_surely <= s.leave_surely, s.enter};
 }
 
-/// A swept box meets a box where a point meets the sum of the two.
+/// A swept box touches a box if its origin touches the Minkowski sum of the two.
 Verdict judge_cast(const DoubleBox& box, const BoxCast& cast, double tolerance) {
   DoubleBox sum = box;
   sum.min -= as_eigen(cast.box.max).cast<double>();
@@ -96,8 +99,8 @@ Verdict judge_cast(const DoubleBox& box, const BoxCast& cast, double tolerance) 
   return judge_line(sum, line_of(cast, Double3::Zero()), tolerance);
 }
 
-/// The distance of a moving point from a box is a convex function of time: its least value is found
-/// by ternary search, the first time at which it is the radius by bisection before that.
+/// The distance of a moving point from a box is a convex function of time. Ternary search finds its
+/// minimum, and bisection before it the first time at which it equals the radius.
 Verdict judge_cast(const DoubleBox& box, const SphereCast& cast, double tolerance) {
   const Line line = line_of(cast, cast.sphere.center.cast<double>());
   const auto radius = static_cast<double>(cast.sphere.radius);
@@ -150,7 +153,7 @@ Verdict judge_region(const DoubleBox& box, const Frustum& frustum, double tolera
     const Double3 normal = plane.normal.cast<double>();
     const auto offset = static_cast<double>(plane.offset);
     const Double3 corner = (normal.array() > 0.0).select(box.max, box.min);
-    // An axis along the plane adds nothing, also where the box has no end.
+    // A zero component of the normal must give zero, also for an infinite end of the box.
     const Double3 terms = (normal.array() == 0.0).select(0.0, normal.cwiseProduct(corner));
     const double depth = terms.sum() + offset;
     const double margin = tolerance * (terms.cwiseAbs().sum() + std::abs(offset));

@@ -1,3 +1,6 @@
+// Times the kernels of partitions (flat, tree, grid, sweep) on every instruction set, on unit cubes
+// in the columns that the kernels read. bench/rows/kernel_rows.cpp calls `race_kernels`.
+
 #include "bench/measure/kernel_race.h"
 
 #include "bench/common/sample.h"
@@ -26,7 +29,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kKernelObjects = 4096;
-/// Pairs for which there is room.
+/// Capacity of the result buffer, in pairs.
 constexpr std::size_t kRoom = std::size_t{1} << 18U;
 constexpr double kTurnMs = 1.0;
 
@@ -43,7 +46,7 @@ void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
     pool.column(kRadiusColumn)[row] = 0.5F * (box.max.x() - box.min.x());
     return;
   }
-  // The first three slabs of a k-DOP are the box; those along diagonals follow from its corners.
+  // The first three slabs of a k-DOP are the box; the diagonal ones follow from its corners.
   const std::size_t slabs = slab_count(pool.volume());
   for (std::size_t s = 0; s < slabs; ++s) {
     const auto a = static_cast<Eigen::Index>(s % 3);
@@ -53,8 +56,8 @@ void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
   }
 }
 
-/// What kernels take: the cubes of `uniform` in the columns of a pool, padded, ordered by cells.
-/// One cell on axis 0 makes strips, which are swept along it.
+/// Input of the kernels: the cubes of `uniform` in the columns of a pool, padded and ordered by
+/// cells. With one cell on axis 0 the cells are strips that are swept along that axis.
 class KernelRows {
  public:
   KernelRows(std::size_t objects, const CellCounts& cells, Volume volume = Volume::aabb)
@@ -83,7 +86,7 @@ class KernelRows {
     view.id = pool.ids();
     return view;
   }
-  /// All rows as a batch of queries.
+  /// Returns all rows as a batch of queries.
   [[nodiscard]] QueryBatch all_rows() const {
     QueryBatch batch;
     for (std::size_t c = 0; c < pool.columns(); ++c) batch.column[c] = pool.column(c);
@@ -101,7 +104,7 @@ class KernelRows {
     return {rows(), key_.data(), start_.data(), {axis_[0], axis_[1], axis_[2]}};
   }
   [[nodiscard]] TreeView nodes() const { return tree.view(rows()); }
-  /// Rows of cells along axis 0, or strips.
+  /// Returns the number of rows of cells along axis 0, or of strips.
   [[nodiscard]] std::uint32_t lines() const { return axis_[1].count * axis_[2].count; }
 
   BoundsPool pool;
@@ -120,7 +123,7 @@ class KernelRows {
         from_[a].push_back(c == 0 ? -inf : origin + static_cast<float>(c) * width);
         to_[a].push_back(c + 1 == count ? inf : origin + static_cast<float>(c + 1) * width);
       }
-      // Cubes of edge 1, but for the rounding of their upper ends.
+      // Cubes of edge 1, except for rounding of their upper ends.
       axis_[a] = {.from = from_[a].data(),
                   .to = to_[a].data(),
                   .count = count,
@@ -156,13 +159,13 @@ class KernelRows {
   std::array<CellAxis, 3> axis_;
   std::array<std::vector<float>, 3> from_;
   std::array<std::vector<float>, 3> to_;
-  std::vector<std::uint32_t> start_;  // first row of each cell, and the end
+  std::vector<std::uint32_t> start_;  // first row of each cell, then the end
   std::vector<float> key_;            // lower end of each row on axis 0
 };
 
 struct Kernel {
   std::string name;
-  /// Writes pairs; false if there is no room for them.
+  /// Writes pairs; returns false if the buffer is full.
   std::function<bool(PairSink&)> call;
 };
 
@@ -180,7 +183,7 @@ void add_flat(std::vector<Kernel>& all, const std::string& name, std::size_t obj
 }
 
 void add_tree(std::vector<Kernel>& all) {
-  // In the order of cells of some 16 objects, so that blocks are compact.
+  // Ordered by cells of about 16 objects, so that blocks are compact.
   const auto rows = std::make_shared<const KernelRows>(kKernelObjects, CellCounts{6, 6, 6});
   all.push_back({"tree refit", [=](PairSink&) {
                    const TreeView tree = rows->nodes();
@@ -200,7 +203,7 @@ void add_tree(std::vector<Kernel>& all) {
 }
 
 void add_cells(std::vector<Kernel>& all) {
-  // The world is 20 wide: cells of 1.4.
+  // The world has edge 20, so cells have edge 1.4.
   const auto cells = std::make_shared<const KernelRows>(kKernelObjects, CellCounts{15, 15, 15});
   all.push_back({"grid self pairs", [=](PairSink& sink) {
                    return flat_grid_kernels().self_pairs(cells->grid(), 0, cells->lines(), sink);
@@ -208,7 +211,7 @@ void add_cells(std::vector<Kernel>& all) {
   all.push_back({"grid query", [=](PairSink& sink) {
                    return flat_grid_kernels().query(cells->grid(), cells->all_rows(), sink);
                  }});
-  // Room for every row, and for one full store behind the last.
+  // One entry for each row, and one full vector store past the end.
   const auto misfits = std::make_shared<std::vector<std::uint32_t>>(kKernelObjects + 16);
   all.push_back({"grid find misfits", [=](PairSink&) {
                    const GridView grid = cells->grid();
@@ -239,7 +242,7 @@ std::vector<Kernel> all_kernels() {
   return all;
 }
 
-/// One call, into the same room each time.
+/// Calls a kernel once; all calls write to the same buffer.
 void call(const Kernel& kernel, std::vector<std::uint32_t>& room, KernelTiming& timing) {
   PairSink sink;
   sink.cursor = room.data();
@@ -266,7 +269,7 @@ std::vector<KernelTiming> race_kernels(std::size_t rounds, const std::string& te
     const Kernel& kernel = kernels[i / available_isas().size()];
     IsaGuard::choose(timings[i].isa);
     const ThreadStopwatch once;
-    call(kernel, room, timings[i]);  // warms the caches, and tells how many make a turn
+    call(kernel, room, timings[i]);  // warms the caches and determines the number of calls per turn
     const auto calls = static_cast<std::size_t>(kTurnMs / std::max(once.ms(), 1e-4)) + 1;
     const ThreadStopwatch clock;
     for (std::size_t c = 0; c < calls; ++c) call(kernel, room, timings[i]);

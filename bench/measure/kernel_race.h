@@ -13,14 +13,13 @@ namespace winnow::bench {
 struct KernelTiming {
   std::string kernel;
   Isa isa{};
-  std::vector<double> ns{};  ///< a call, one entry a round
-  std::uint64_t tests = 0;   ///< of a box against a box, a call; 0: it tests none
-  std::uint64_t pairs = 0;   ///< found
+  std::vector<double> ns{};  ///< ns per call, one entry per round
+  std::uint64_t tests = 0;   ///< box tests per call; 0 if it tests none
+  std::uint64_t pairs = 0;   ///< pairs found per call
 };
 
-/// Kernels whose names contain `text`, on unit cubes that stay in the cache, in rounds in which all
-/// of them take turns on all instruction sets of this machine. The active one is what it was when
-/// this returns.
+/// Races the kernels whose names contain `text` on all instruction sets of this machine,
+/// interleaved, on unit cubes that fit the cache. Restores the active instruction set.
 [[nodiscard]] std::vector<KernelTiming> race_kernels(std::size_t rounds,
                                                      const std::string& text = "");
 

@@ -25,7 +25,7 @@ class KeyRounds {
     need(partition_.insert(scene_->boxes(), {}, keys_), "keys");
   }
 
-  /// The times of one round go to the end of `times`.
+  /// Runs one round and appends its times to `times`.
   void run(KeyMode mode, std::array<std::vector<double>, 3>& times) {
     choose();
     const std::span<Key> keys = std::span(keys_).subspan(first_, batch_);
@@ -65,7 +65,7 @@ class KeyRounds {
     return ns;
   }
 
-  /// Takes the next keys in turn, or brings random ones to the front.
+  /// Selects the next keys in order, or swaps random ones to the front.
   void choose() {
     const std::size_t count = keys_.size();
     if (!random_order_) {

@@ -6,23 +6,23 @@
 
 namespace winnow::bench {
 
-/// MPI, from here to the end of the process; only where the tool was built with it.
+/// Initializes MPI and finalizes it at destruction. Available only if the tool was built with MPI.
 class MpiSession {
  public:
-  /// Joins the processes that were started together. Throws std::runtime_error. `time_limit` is
-  /// that of MpiOptions.
+  /// Connects the processes that mpirun started. `time_limit` is in seconds, see MpiOptions. Throws
+  /// std::runtime_error.
   explicit MpiSession(double time_limit);
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
   ~MpiSession();
 
   [[nodiscard]] Transport& transport() noexcept { return *transport_; }
-  /// Ends all processes at once: what is left where one of them does not answer.
+  /// Ends all processes immediately; for errors after which a process cannot respond to the others.
   [[noreturn]] static void abort();
 
-  /// Whether the tool was built with MPI and Zoltan.
+  /// Returns true if the tool was built with MPI and Zoltan.
   [[nodiscard]] static bool is_there() noexcept;
-  /// Whether this process was started by mpirun.
+  /// Returns true if mpirun started this process.
   [[nodiscard]] static bool is_started() noexcept;
 
  private:

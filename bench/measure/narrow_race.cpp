@@ -1,3 +1,6 @@
+// Races narrow-phase engines on the pairs of a set at one level, and compares their verdicts,
+// depths and numbers of contacts. bench/rows (pair times) and accuracy.cpp call it.
+
 #include "bench/measure/narrow_race.h"
 
 #include "bench/common/timed.h"
@@ -13,10 +16,10 @@ namespace winnow::bench {
 
 namespace {
 
-/// Pairs that are answered before a turn is timed.
+/// Pairs computed before a turn is timed.
 constexpr std::size_t kWarming = 512;
 
-/// One contender at the level that is being raced.
+/// One contender at the level of the race.
 class PairEntry {
  public:
   PairEntry(const PairSet& set, ContactLevel level, const NarrowContender& contender)
@@ -26,7 +29,7 @@ class PairEntry {
     timing_.threads = contender.threads;
   }
 
-  /// Answers a part of the pairs to compare its verdicts, and learns how long a turn may be.
+  /// Computes a part of the pairs, compares the verdicts, and sets the number of pairs per turn.
   void check(std::vector<NarrowAnswer>& expected, const NarrowRaceOptions& options,
              Arenas& arenas) {
     const std::span<const BodyPair> all = set_.pairs;
@@ -40,10 +43,10 @@ class PairEntry {
     passes_ = std::max<std::size_t>(1, static_cast<std::size_t>(wanted) / part_);
   }
 
-  /// Nanoseconds a pair.
+  /// Times one turn and returns nanoseconds per pair.
   double time(Arenas& arenas) {
     const std::span<const BodyPair> part = next_part();
-    // Every turn begins with what the one before left in the caches.
+    // Warms the caches, which the previous turn has filled with other data.
     engine_.run(timing_.level, part.last(std::min(kWarming, part.size())));
     const double ms = timed(timing_.threads, arenas, [&] {
       for (std::size_t pass = 0; pass < passes_; ++pass) engine_.run(timing_.level, part);
@@ -54,7 +57,7 @@ class PairEntry {
   [[nodiscard]] NarrowTiming& timing() noexcept { return timing_; }
 
  private:
-  /// With what the first engine said, which this one is if nothing is expected yet.
+  /// Compares with the answers of the first engine, or stores them if `expected` is empty.
   void compare(std::span<const BodyPair> pairs, std::vector<NarrowAnswer>& expected) {
     const bool is_first = expected.empty();
     std::size_t overlapping = 0;

@@ -12,66 +12,66 @@
 
 namespace winnow::bench {
 
-/// One engine on the pairs of one set at one level.
+/// Times of one engine on the pairs of one set at one level.
 struct NarrowTiming {
   std::string engine;
   ContactLevel level{};
   int threads = 1;
-  std::vector<double> ns{};  ///< a pair, one entry a round
-  double recomputed = 0.0;   ///< share of the pairs; NaN: the engine cannot tell
-  /// Verdicts that differ from those of the first engine, of `compared`.
+  std::vector<double> ns{};  ///< ns per pair, one entry per round
+  double recomputed = 0.0;   ///< share of pairs computed twice; NaN if unavailable
+  /// Verdicts that differ from the first engine's, among `compared` pairs.
   std::size_t disagree = 0;
   std::size_t compared = 0;
-  /// Share of the pairs that overlap whose depth is given, but differs from that of the first
-  /// engine by more than 1 % of the sizes.
+  /// Share of the overlapping pairs whose depth differs from the first engine's by more than 1 % of
+  /// the sizes; pairs without a depth do not count as different.
   double other_depth = 0.0;
-  /// Mean number of contacts of the pairs that overlap, at level manifold.
+  /// Mean number of contacts of the overlapping pairs, at level manifold.
   double contacts = 0.0;
 
   [[nodiscard]] double median_ns() const { return median_of(ns); }
 };
 
-/// Who takes part, and on how many threads.
+/// An engine, and its number of threads.
 struct NarrowContender {
   std::unique_ptr<NarrowEngine> engine;
   int threads = 1;
 };
 
-/// Which of them.
+/// Selects the contenders.
 struct NarrowContenderOptions {
   std::vector<NarrowTier> tiers{NarrowTier::robust};
-  std::vector<int> threads{1};  ///< winnow's; other libraries use one
-  bool one_a_call = false;      ///< winnow's tiers also as they answer a single pair
-  bool peers = false;           ///< other libraries too, where the tool was built with them
+  std::vector<int> threads{1};  ///< of winnow; other libraries use one
+  bool one_a_call = false;      ///< also winnow's function for a single pair
+  bool peers = false;           ///< also other libraries, if the tool was built with them
 };
 
-/// All started with the set.
+/// Makes the contenders and starts them with the set.
 [[nodiscard]] std::vector<NarrowContender> narrow_contenders(const PairSet& set,
                                                              const NarrowContenderOptions& options);
 
 struct NarrowRaceOptions {
   std::size_t rounds = 7;
-  /// A turn lasts about so long: fast engines go over the pairs several times, slow ones over a
-  /// part of them, in the next turn over the next part.
+  /// Approximate duration of a turn: fast engines run several times over the pairs, slow ones over
+  /// a part of them, and in the next turn over the next part.
   double turn_ms = 4.0;
-  /// No part is smaller than this.
+  /// Least number of pairs of a part.
   std::size_t smallest_part = 2048;
-  /// Pairs whose verdicts are compared.
+  /// Number of pairs whose verdicts are compared.
   std::size_t compared = 8192;
 };
 
-/// Lets all contenders that have a way to do it answer the pairs of a set at a level: once to
-/// compare verdicts with those of the first, then in rounds in which they take turns. Time on one
-/// thread is what the thread computed, so that other work on the machine counts for little; on
-/// several it is that of the clock on the wall. The engines must have been started with the set.
+/// Runs all contenders that support it on the pairs of a set at a level: once to compare verdicts
+/// with the first one's, then in rounds in which they take turns. On one thread the time is the
+/// thread's CPU time, which other load on the machine hardly affects; on several it is wall-clock
+/// time. The engines must have been started with the set.
 [[nodiscard]] std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
                                                    std::span<NarrowContender> contenders,
                                                    const NarrowRaceOptions& options);
 
-/// Sets of more pairs than this are too large for the caches: their bodies lie in random order.
+/// Sets with more pairs than this do not fit the caches; their bodies are in random order.
 inline constexpr std::size_t kMostPairsInCache = 16'384;
 
-/// A race on the pairs of one kind.
+/// Options of a race on the pairs of one kind.
 struct NarrowMeasureOptions {
   PairKind kind;
   std::size_t pairs = 8192;
@@ -79,7 +79,7 @@ struct NarrowMeasureOptions {
                                    ContactLevel::manifold};
   NarrowContenderOptions contenders{};
   std::uint64_t seed = 1;
-  bool upright = false;  ///< as PairSetOptions say
+  bool upright = false;  ///< see PairSetOptions
   NarrowRaceOptions race{};
 };
 
@@ -89,11 +89,11 @@ struct NarrowMeasurement {
   std::vector<NarrowTiming> timings;
   double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race
 
-  /// Null if there is none.
+  /// Returns null if there is none.
   [[nodiscard]] const NarrowTiming* find(NarrowTier tier, ContactLevel level,
                                          int threads = 1) const noexcept;
-  /// False for what is systematically wrong: verdicts in more than 1 of 100 pairs, other depths in
-  /// more than 1 of 10, or less than half as many contacts as the first engine of the level finds.
+  /// Returns false for systematic errors: verdicts that differ in more than 1 of 100 pairs, depths
+  /// in more than 1 of 10, or fewer than half the contacts of the first engine of the level.
   [[nodiscard]] bool is_right(const NarrowTiming& timing) const noexcept;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kReadings = 50;
 
-/// The columns of boxes, as a partition keeps them.
+/// The columns of boxes, in the layout of a partition.
 class Columns {
  public:
   explicit Columns(std::span<const Aabb> boxes)
@@ -34,7 +34,7 @@ class Columns {
     }
   }
 
-  /// Milliseconds of one reading.
+  /// Returns the milliseconds of reading all columns once.
   [[nodiscard]] double time() const {
     volatile float result = read_columns(columns_.data(), count_);  // warms the caches
     const ThreadStopwatch clock;

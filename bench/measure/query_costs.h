@@ -7,27 +7,27 @@
 
 namespace winnow::bench {
 
-/// What a frustum costs beside reading every box.
+/// Cost of frustum queries compared with reading every box.
 struct FrustumCosts {
-  /// By partition of one frustum, and at last of reading the six columns of all boxes once: one
-  /// entry a round.
+  /// Milliseconds per frustum for each partition, and last of reading the six columns of all boxes
+  /// once; one entry per round.
   std::vector<std::vector<double>> ms;
-  double found_a_question = 0;  ///< objects
+  double found_a_question = 0;  ///< mean number of objects
 };
 
-/// Questions of the set (see question_set_names) about the first frame of `uniform`, on one thread.
-/// Throws Refusal.
+/// Runs the queries of a set (see question_set_names) on the first frame of `uniform`, on one
+/// thread. Throws Refusal.
 [[nodiscard]] FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
                                                  const std::string& set, std::size_t objects,
                                                  std::size_t rounds = 15);
 
-/// Allocations by a partition and its buffers when a set of questions is asked for the second time.
+/// Allocations by a partition and its buffers when a set of queries is run a second time.
 struct SecondRound {
-  std::string set;  ///< and how it was asked
+  std::string set;  ///< name of the set, and how it was run
   std::size_t allocations = 0;
 };
 
-/// All sets, singly and as a batch, on `uniform`, on one thread. Throws Refusal.
+/// Runs all sets, singly and as a batch, on `uniform`, on one thread. Throws Refusal.
 [[nodiscard]] std::vector<SecondRound> measure_second_rounds(std::string_view partition,
                                                              std::size_t objects);
 

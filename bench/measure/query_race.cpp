@@ -1,3 +1,6 @@
+// Races query engines on sets of queries and compares their results. bench/rows/query_rows.cpp
+// calls `measure_queries`; comparison.cpp compares the results.
+
 #include "bench/measure/query_race.h"
 
 #include "bench/common/random.h"
@@ -14,10 +17,10 @@ namespace winnow::bench {
 
 namespace {
 
-/// One question in so many is asked before a turn is timed.
+/// One of this many queries is run before a turn is timed.
 constexpr std::size_t kWarming = 8;
 
-/// One contender in one manner, on the set that is being asked.
+/// One contender with single or batched queries, on the current set.
 struct SetEntry {
   QueryEngine* engine;
   bool in_float;
@@ -53,7 +56,7 @@ class SetRace {
     }
   }
 
-  /// Compares, and warms everything up.
+  /// Runs each contender once, compares the results, and warms up.
   void check() {
     const Judge judge(boxes_);
     std::optional<Answers> expected;
@@ -78,7 +81,7 @@ class SetRace {
     for (std::size_t round = 0; round < options_.rounds; ++round) {
       for (SetEntry& entry : entries_) {
         if (!entry.run.refusal.empty()) continue;
-        // Every turn begins with what the one before left in the caches: a few questions first.
+        // Warms the caches, which the previous turn has filled with other data, by a few queries.
         const std::size_t few = (entry.run.questions + kWarming - 1) / kWarming;
         (void)entry.engine->run(set_, entry.run.asking, few);
         entry.run.ms.push_back(timed(options_.threads, arenas_, [&] {

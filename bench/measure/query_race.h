@@ -14,25 +14,25 @@
 
 namespace winnow::bench {
 
-/// Who is asked.
+/// An engine in the race.
 struct QueryContender {
   std::unique_ptr<QueryEngine> engine;
-  bool in_float = false;  ///< it computes in float, and is compared accordingly
+  bool in_float = false;  ///< the engine computes in float; its results are compared accordingly
 };
 
-/// One engine that was asked one set of questions in one manner.
+/// Results of one engine on one set of queries, single or batched.
 struct QueryRun {
   std::string engine;
   std::string set;
   Asking asking = Asking::single;
   int threads = 1;
   std::size_t questions = 0;
-  std::uint64_t found = 0;  ///< objects, over all questions
-  /// Of question and object of everything found; of any hit, of the questions that had one.
+  std::uint64_t found = 0;  ///< number of objects, over all queries
+  /// Hash over query and object of all results; for Want::any, over the queries with a result.
   std::uint64_t fingerprint = 0;
-  std::vector<double> ms{};  ///< one entry a round
-  Comparison comparison{};   ///< with the first partition that answers the set
-  std::string refusal{};     ///< why it did not answer; nothing was measured then
+  std::vector<double> ms{};  ///< one entry per round
+  Comparison comparison{};   ///< with the first partition that supports the set
+  std::string refusal{};     ///< the error if it failed; nothing is measured then
 
   [[nodiscard]] double found_a_question() const {
     return questions == 0 ? 0.0 : static_cast<double>(found) / static_cast<double>(questions);
@@ -43,24 +43,25 @@ struct QueryRun {
 struct QueryRaceOptions {
   std::size_t rounds = 5;
   int threads = 1;
-  /// Questions of each set that every box is tested for, to check the first engine; 0: none.
+  /// Number of queries per set that are checked by testing every box, for the first engine; 0:
+  /// none.
   std::size_t judged = 4;
-  MachineClock* clock = nullptr;  ///< ticks before each set of questions
+  MachineClock* clock = nullptr;  ///< ticks before each set of queries
 };
 
-/// Puts all sets to all contenders, singly and as a batch: once to compare what they find, then in
-/// rounds in which they take turns. One thread is timed by what it computes, so that other work on
-/// the machine counts for little; several by the clock on the wall. The engines must not have been
-/// started.
+/// Runs all sets on all contenders, singly and as a batch: once to compare the results, then in
+/// rounds in which they take turns. On one thread the time is the thread's CPU time, which other
+/// load on the machine hardly affects; on several it is wall-clock time. The engines must not have
+/// been started.
 [[nodiscard]] std::vector<QueryRun> race_queries(std::span<const Aabb> boxes,
                                                  const std::vector<QuestionSet>& sets,
                                                  std::vector<QueryContender>& contenders,
                                                  const QueryRaceOptions& options);
 
-/// One race of questions on the first frame of a scene.
+/// Options of a race of queries on the first frame of a scene.
 struct QueryMeasureOptions {
   std::string scene{};
-  const Recording* recording = nullptr;  ///< instead of the scene
+  const Recording* recording = nullptr;  ///< replaces the scene
   std::size_t objects = 100'000;
   std::uint64_t seed = 1;
   std::vector<std::string> partitions{"all"};
@@ -69,13 +70,13 @@ struct QueryMeasureOptions {
   std::size_t rounds = 5;
   std::vector<std::string> sets{};  ///< empty: all
   bool machine_clock = true;
-  bool peers = false;  ///< other libraries too, where the tool was built with them
+  bool peers = false;  ///< also other libraries, if the tool was built with them
 };
 
 struct QueryMeasurement {
   std::size_t objects = 0;
   std::vector<QueryRun> runs;
-  double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race, if asked for
+  double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race, if enabled
 };
 
 [[nodiscard]] QueryMeasurement measure_queries(const QueryMeasureOptions& options);

@@ -1,3 +1,6 @@
+// Races partitions and other libraries over the frames of a scene, in blocks of frames, and checks
+// that all find the same pairs. bench/rows, the commands replay and fit, and advice.cpp call it.
+
 #include "bench/measure/race.h"
 
 #include "bench/common/arena.h"
@@ -20,15 +23,15 @@ namespace {
 
 struct Frame {
   std::vector<Aabb> boxes;
-  std::vector<std::uint32_t> changed;  // rows of the frame before that differ
+  std::vector<std::uint32_t> changed;  // rows of the previous frame whose boxes differ
 };
 
-/// Reads a source block by block.
+/// Reads a source in blocks of frames.
 class FrameBlocks {
  public:
   explicit FrameBlocks(FrameSource& source) : source_(source) {}
 
-  /// At most `count` frames; empty at the end.
+  /// Returns at most `count` frames; empty at the end.
   const std::vector<Frame>& next(std::size_t count) {
     frames_.clear();
     while (frames_.size() < count) {
@@ -54,10 +57,10 @@ class FrameBlocks {
   bool started_ = false;
 };
 
-/// Whether a contender begins another frame.
+/// Returns whether a contender runs another frame.
 bool goes_on(const Run& run, const TimeBounds& bounds) {
   if (run.gave_up_ms > 0.0) return false;
-  constexpr std::size_t kFewest = 3;  // after the first
+  constexpr std::size_t kFewest = 3;  // not counting the first
   if (bounds.run == 0.0 || run.frame_ms.size() <= kFewest) return true;
   return std::accumulate(run.frame_ms.begin() + 1, run.frame_ms.end(), 0.0) < 1e3 * bounds.run;
 }
@@ -168,14 +171,14 @@ bool all_agree(const std::vector<Run>& runs) noexcept {
 
 namespace {
 
-/// Why a library is left out of a race; empty if it is not.
+/// Returns the reason why a library is left out of a race; empty if it takes part.
 std::string why_skipped(const Engine& engine, const MeasureOptions& options,
                         const Measurement& result) {
   if (result.objects <= engine.largest() || options.bounds.any()) return {};
   return engine.name() + " (more than " + grouped(engine.largest()) + " objects)";
 }
 
-/// Those that use one thread only once.
+/// Adds the other libraries. Serial ones take part only once.
 void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
                Measurement& result) {
   for (const int threads : options.threads) {

@@ -16,17 +16,18 @@
 
 namespace winnow::bench {
 
-/// Who takes part in a race, and how.
+/// An engine in the race, and its settings.
 struct Contender {
   std::unique_ptr<Engine> engine;
   int threads = 1;
   Isa isa = active_isa();
 };
 
-/// Frames until which a contender has settled.
+/// Number of frames until a contender has settled.
 inline constexpr std::size_t kSettlingFrames = 6;
 
-/// What one contender did, one entry per frame; entry 0 is the first frame, in which it was built.
+/// Results of one contender, one entry per frame; entry 0 is the first frame, in which it was
+/// built.
 struct Run {
   std::string engine;
   int threads = 1;
@@ -34,79 +35,79 @@ struct Run {
   std::vector<double> frame_ms;
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
-  std::vector<std::size_t> changed;  ///< boxes; of the first frame none
-  /// When it gave up the frame after these; 0: it gave up none.
+  std::vector<std::size_t> changed;  ///< number of changed boxes; 0 for the first frame
+  /// Milliseconds after which it gave up the frame after these; 0 if it gave up none.
   double gave_up_ms = 0.0;
   std::size_t bytes = 0;
 
-  /// The frames after which it had settled; none if there were fewer.
+  /// Returns the times of the frames after settling; empty if there are none.
   [[nodiscard]] std::span<const double> settled_ms() const noexcept;
-  /// Of the frames after the first; of the first if there is no other.
+  /// Spread of the frames after the first, or of the first if it is the only one.
   [[nodiscard]] Spread frame_spread() const;
   [[nodiscard]] double median_update_ms() const;
   [[nodiscard]] double pairs_a_frame() const;
   [[nodiscard]] double reported_a_frame() const;
-  /// In the frames that both have finished.
+  /// Compares the frames that both have finished.
   [[nodiscard]] bool same_pairs(const Run& other) const noexcept;
 };
 
-/// How long a contender may take, in seconds; 0: as long as it takes.
+/// Time limits of a contender, in seconds; 0 for none.
 struct TimeBounds {
-  /// Once its frames after the first have taken so long it begins no more; but it has three, so
-  /// that one that was disturbed is not the median.
+  /// A contender starts no further frame once its frames after the first have taken this long. It
+  /// runs at least three of them, so that one disturbed frame is not the median.
   double run = 0.0;
-  double frame = 0.0;  ///< a frame that takes longer is given up by engines that can
+  double frame = 0.0;  ///< engines that support it give up frames that take longer
 
   [[nodiscard]] bool any() const noexcept { return run > 0.0 || frame > 0.0; }
 };
 
 struct RaceOptions {
-  std::size_t frames = 30;  ///< the first one included; fewer if the source ends
-  /// Frames that a contender runs in a row before the next one runs the same: long enough for its
-  /// data to be warm, short enough for all to meet the same disturbances.
+  std::size_t frames = 30;  ///< including the first; fewer if the source ends
+  /// Frames that a contender runs in sequence before the next one runs the same: long enough to
+  /// keep its data in the caches, short enough that disturbances affect all contenders alike.
   std::size_t block = 5;
   MachineClock* clock = nullptr;  ///< ticks before each block
   TimeBounds bounds{};
 };
 
-/// Runs all contenders over the same frames, interleaved. What changed between frames is found
-/// outside the timers, because a simulation knows what it moved; and so are the fingerprints. The
-/// instruction set is what it was when this returns.
+/// Runs all contenders over the same frames, interleaved. Changed boxes are determined outside the
+/// timers, because a simulation has that list already; fingerprints are not timed either. Restores
+/// the active instruction set.
 [[nodiscard]] std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
                                     const RaceOptions& options);
 
-/// One contender for each partition.
+/// Makes one contender for each partition.
 [[nodiscard]] std::vector<Contender> make_contenders(const std::vector<std::string>& partitions,
                                                      int threads);
 
-/// True if all runs found the same pairs in every frame that they have finished.
+/// Returns true if all runs found the same pairs in every frame that they have finished.
 [[nodiscard]] bool all_agree(const std::vector<Run>& runs) noexcept;
 
-/// One race on one scene: every partition at every thread count on every instruction set.
+/// Options of a race on one scene: every partition at every thread count on every instruction set.
 struct MeasureOptions {
   std::string scene{};
-  const Recording* recording = nullptr;  ///< instead of the scene
+  const Recording* recording = nullptr;  ///< replaces the scene
   std::size_t objects = 10'000;
   std::uint64_t seed = 1;
   std::vector<std::string> partitions{"all"};
   std::vector<int> threads{1};
   std::vector<Isa> isas{};  ///< empty: the active one
-  bool peers = false;       ///< other libraries too, where the tool was built with them
-  bool yardstick = false;   ///< the yardstick too, where the tool was built with it
-  bool reference = false;   ///< the reference sweep too, as the judge of what overlaps
+  bool peers = false;       ///< also other libraries, if the tool was built with them
+  bool yardstick = false;   ///< also the yardstick, if the tool was built with it
+  bool reference = false;   ///< also the reference sweep, as the reference for pairs
   bool machine_clock = false;
-  std::size_t frames = 0;  ///< the first one included; 0: what suits the size
-  TimeBounds bounds{};     ///< with any, libraries take part that would be too slow for the size
+  std::size_t frames = 0;  ///< including the first; 0: chosen by the number of objects
+  TimeBounds bounds{};     ///< if any is set, libraries too slow for the size take part as well
 };
 
 struct Measurement {
   std::string scene{};
   std::size_t objects = 0;
-  bool grows = false;              ///< from frame to frame there may be more of them
-  std::vector<Run> runs;           ///< partitions, then peers, then the reference
-  std::size_t partition_runs = 0;  ///< how many of them, from the front, are partitions
-  std::size_t peer_runs = 0;       ///< how many after these are other libraries, the yardstick last
-  std::vector<std::string> skipped;  ///< too slow for the size
+  bool grows = false;                ///< objects may be added from frame to frame
+  std::vector<Run> runs;             ///< partitions, then peers, then the reference
+  std::size_t partition_runs = 0;    ///< number of partitions, at the front of `runs`
+  std::size_t peer_runs = 0;         ///< number of other libraries after these, the yardstick last
+  std::vector<std::string> skipped;  ///< libraries too slow for the size
   double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
 
   [[nodiscard]] std::span<const Run> partitions() const {
@@ -119,7 +120,7 @@ struct Measurement {
 
 [[nodiscard]] Measurement measure(const MeasureOptions& options);
 
-/// Frames that give a steady median in a second or so.
+/// Returns a number of frames that gives a stable median in about a second.
 [[nodiscard]] std::size_t frames_for(std::size_t objects);
 
 }  // namespace winnow::bench

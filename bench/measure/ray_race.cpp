@@ -26,7 +26,8 @@ Triangles make_mesh(const RayRaceOptions& options) {
   return make_terrain(make_hills(static_cast<std::uint32_t>(cells), 1.0, kRelief, options.seed));
 }
 
-/// From a point to another, each anywhere in a box, in numbers that are floats, as some want them.
+/// Returns a ray between random points of two boxes; all numbers are floats, which some engines
+/// need.
 ShapeRay ray_between(Random& random, const Eigen::AlignedBox3d& from,
                      const Eigen::AlignedBox3d& to) {
   ShapeRay ray;
@@ -40,7 +41,7 @@ ShapeRay ray_between(Random& random, const Eigen::AlignedBox3d& from,
   return ray;
 }
 
-/// A terrain is looked at from up to half its width above it; a soup through one of its six sides.
+/// Rays start above a terrain, up to half its width, or outside one of the six sides of a soup.
 std::vector<ShapeRay> make_rays(const RayRaceOptions& options, const Triangles& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);

@@ -9,12 +9,12 @@
 
 namespace winnow::bench {
 
-/// Rays through one mesh, one thread.
+/// Options of a race of rays at one mesh, on one thread.
 struct RayRaceOptions {
-  /// "terrain": rays from above it to below; "soup", triangles without order or neighbours in a
-  /// cube: rays from around it.
+  /// "terrain": rays from above it to below. "soup": random triangles in a cube; rays from around
+  /// it.
   std::string mesh = "terrain";
-  /// About so many: a terrain is square.
+  /// Approximate number; a terrain has a square number of cells.
   std::size_t triangles = 100'000;
   std::size_t rays = 4'000;
   std::size_t rounds = 9;
@@ -23,27 +23,27 @@ struct RayRaceOptions {
   bool machine_clock = true;
 };
 
-/// One engine that was asked for one thing in one manner.
+/// Results of one engine for one kind of ray query, single or batched.
 struct RayTiming {
   std::string engine;
   RayWant want = RayWant::closest;
   Asking asking = Asking::single;
-  /// A ray, one entry a round.
+  /// ns per ray, one entry per round.
   std::vector<double> ns{};
-  /// Rays that meet something, and those that do for this engine or for winnow alone or whose t
-  /// differ by more than float makes of them.
+  /// Rays with a hit, and rays whose result differs from winnow's: one of the two has no hit, or t
+  /// differs by more than the rounding of float.
   std::size_t hits = 0;
   std::size_t differ = 0;
 };
 
 struct RayMeasurement {
-  std::vector<RayTiming> timings;  ///< winnow's come first
+  std::vector<RayTiming> timings;  ///< winnow first
   std::size_t triangles = 0;
   double bytes_per_triangle = 0.0;  ///< of winnow
-  double machine_ms = 0.0;          ///< of the MachineClock, before and after, if asked for
+  double machine_ms = 0.0;          ///< of the MachineClock, before and after the race, if enabled
 };
 
-/// All engines in turns. Throws std::runtime_error for a mesh of another name.
+/// Races all engines. Throws std::runtime_error for an unknown mesh.
 [[nodiscard]] RayMeasurement measure_rays(const RayRaceOptions& options);
 
 }  // namespace winnow::bench

@@ -37,7 +37,7 @@ void keep_resident_set_exact() {
 
 std::size_t resident_bytes() {
   give_back_freed();
-  // Summed from the page tables: /proc/self/status lags behind by some pages a thread.
+  // From the page tables: /proc/self/status lags behind by some pages per thread.
   std::ifstream file("/proc/self/smaps_rollup");
   const std::string name = "Anonymous:";
   for (std::string line; std::getline(file, line);) {

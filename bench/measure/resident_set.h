@@ -4,13 +4,13 @@
 
 namespace winnow::bench {
 
-/// From now on the process's resident set follows what it allocates, page by page: large blocks get
-/// pages of their own, which go back to the system when they are freed, and no page is a huge one.
-/// Costs time: not for a process in which something is timed afterwards.
+/// Makes the resident set of the process follow its allocations page by page: large blocks get
+/// pages of their own, which are returned to the system when freed, and huge pages are disabled.
+/// Slows allocations down, so it must not be used in a process that times something afterwards.
 void keep_resident_set_exact();
 
-/// Bytes of memory that the process has written to and the system holds for it, without files
-/// mapped into it; what was freed is given back first. 0 if the system does not tell.
+/// Returns freed memory to the system, then the bytes of the process's resident anonymous memory,
+/// without mapped files. 0 if the system does not provide the number.
 [[nodiscard]] std::size_t resident_bytes();
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Races winnow's Scene and other libraries on scenes of bodies (pile, terrain, balls), and meshes
+// on two tori. bench/rows/scene_rows.cpp calls it.
+
 #include "bench/measure/scene_race.h"
 
 #include "bench/common/timed.h"
@@ -15,7 +18,7 @@ namespace {
 
 constexpr std::size_t kWarming = 2;
 
-/// Makes every pair of both lists single first.
+/// Counts pairs in only one of the lists, after sorting both and removing duplicates.
 std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePairs& b) {
   for (MeshEngine::TrianglePairs* pairs : {&a, &b}) {
     std::sort(pairs->begin(), pairs->end());

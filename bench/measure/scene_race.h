@@ -19,22 +19,22 @@ struct SceneContender {
   int threads = 1;
 };
 
-/// One engine on a scene.
+/// Results of one engine on a scene.
 struct SceneTiming {
   std::string engine;
   int threads = 1;
-  std::vector<double> ms{};  ///< a frame
-  SceneFinds finds{};        ///< in the last frame
-  std::size_t bytes = 0;     ///< that it held then
+  std::vector<double> ms{};  ///< ms per frame
+  SceneFinds finds{};        ///< of the last frame
+  std::size_t bytes = 0;     ///< held after the last frame
 };
 
-/// All contenders on the same frames in turns; two frames more are not timed. Time on one thread
-/// is what the thread computed, on several that of the clock on the wall.
+/// Runs all contenders on the same frames in turns; two further frames before them are not timed.
+/// On one thread the time is CPU time of the thread, on several wall-clock time.
 [[nodiscard]] std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
                                                   std::span<SceneContender> contenders,
                                                   std::size_t frames);
 
-/// One engine on tori.
+/// Results of one engine on two tori.
 struct MeshTiming {
   std::string engine;
   std::vector<double> build_ms{};
@@ -42,28 +42,28 @@ struct MeshTiming {
   /// By torus_poses().
   std::vector<double> collide_ms[4]{};
   std::size_t pairs[4]{};
-  /// Pairs that the first engine did not find, or that it alone found.
+  /// Pairs that only the first engine or only this one found.
   std::size_t differ[4]{};
 };
 
 [[nodiscard]] std::vector<MeshTiming> race_meshes(
     std::span<const std::unique_ptr<MeshEngine>> engines, std::size_t rounds);
 
-/// A race on a scene of the whole pipeline.
+/// Options of a race on a scene of the whole pipeline.
 struct PipelineMeasureOptions {
   std::string scene = "pile";  ///< pile, terrain or balls
-  bool resting = false;        ///< and winnow carries contacts over
+  bool resting = false;        ///< bodies rest, and winnow carries contacts over
   ContactLevel level = ContactLevel::manifold;
   std::vector<int> threads{1, 2};
   bool peers = true;
   std::size_t frames = 9;
-  const BodySet* set = nullptr;  ///< the scene's, if it was made before
-  std::size_t bodies = 0;        ///< of the scene to make; 0: as many as suit it
+  const BodySet* set = nullptr;  ///< the scene's bodies, if already made
+  std::size_t bodies = 0;        ///< number of bodies to make; 0: the scene's default
   std::uint64_t seed = 1;
   bool machine_clock = true;
 };
 
-/// The bodies of a scene, which are the same in each race on it. Takes seconds for the pile.
+/// Makes the bodies of a scene, equal for each race on it. Takes seconds for the pile.
 [[nodiscard]] std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene,
                                                            std::size_t bodies, std::uint64_t seed);
 
@@ -71,13 +71,12 @@ struct PipelineMeasurement {
   std::vector<SceneTiming> timings;
   std::size_t bodies = 0;
   std::size_t triangles = 0;
-  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if asked for
+  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if enabled
 };
 
 [[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);
 
-/// What contacts of a scene cost beside each other, bodies moving a little: by level, and by how
-/// far apart bodies may be.
+/// Options for the cost of a scene's contacts by level and margin, with bodies that move a little.
 struct SceneCostOptions {
   std::string scene = "balls";
   int threads = 1;
@@ -92,15 +91,15 @@ struct SceneCost {
   SceneTiming timing;
 };
 
-/// Of levels distance and manifold.
+/// Measures the levels distance and manifold.
 [[nodiscard]] std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options);
 
 struct MeshMeasurement {
-  std::vector<MeshTiming> timings;  ///< winnow's is the first
+  std::vector<MeshTiming> timings;  ///< winnow first
   double machine_ms = 0.0;
 };
 
-/// Two tori, one thread.
+/// Races all engines on two tori, on one thread.
 [[nodiscard]] MeshMeasurement measure_meshes(std::size_t rounds, bool peers,
                                              bool machine_clock = true);
 

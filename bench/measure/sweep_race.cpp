@@ -17,7 +17,7 @@ namespace {
 /// In sizes of the bodies, which are about 1.
 constexpr double kFarthest = 10.0;
 
-/// A heap, and where its bodies go in a frame.
+/// A heap, and the poses of its bodies at the end of a frame.
 class SweptHeap {
  public:
   explicit SweptHeap(const SweepRaceOptions& options)
@@ -33,7 +33,8 @@ class SweptHeap {
       bodies[i].pose = set_->poses[i];
     }
     need(scene_.add(bodies, keys_), "the bodies");
-    // The kinds of the heap lie one after the other: every so many of all of them are fast.
+    // The kinds of shapes are consecutive in the heap: fast bodies are spread evenly over all of
+    // them.
     for (std::size_t i = 0; i < options.fast; ++i) {
       bullets_[i * options.bodies / options.fast] = 1;
     }

@@ -6,26 +6,26 @@
 
 namespace winnow::bench {
 
-/// Frames of a scene that is collided as it stands, and swept.
+/// Options of a race between `collide` at the poses of a scene and sweeps.
 struct SweepRaceOptions {
   std::size_t bodies = 10'000;
-  std::size_t fast = 1'000;  ///< of them
+  std::size_t fast = 1'000;  ///< fast bodies among them
   int threads = 1;
   std::size_t frames = 9;
   std::uint64_t seed = 1;
 };
 
 struct SweepTiming {
-  std::vector<double> collide_ms{};  ///< all contacts of the bodies where they are
-  std::vector<double> sweep_ms{};    ///< the fast bodies against all others and each other
-  std::vector<double> all_ms{};      ///< the same where all others move a little, too
-  // Of the fast ones in the last frame.
+  std::vector<double> collide_ms{};  ///< all contacts of the bodies at their poses
+  std::vector<double> sweep_ms{};    ///< sweep of the fast bodies against all others and each other
+  std::vector<double> all_ms{};      ///< the same sweep, with all other bodies moving a little
+  // Of the sweep of the fast bodies in the last frame.
   std::size_t pairs = 0;
   std::size_t impacts = 0;
 };
 
-/// A heap of which some bodies fly by up to ten times their size in a frame, in random directions,
-/// while the others tremble. The scene's contacts beside sweeps, in turns.
+/// Times `collide` and sweeps in turns on a heap in which some bodies move by up to ten times their
+/// size per frame, in random directions, while the others jitter.
 [[nodiscard]] SweepTiming measure_sweeps(const SweepRaceOptions& options);
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Measures how a partition's costs change over time: after many removals and insertions, with pair
+// events, in quiet frames, and with many environments. goals/measurements.cpp calls it.
+
 #include "bench/measure/upkeep.h"
 
 #include "bench/common/need.h"
@@ -18,7 +21,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kRounds = 9;
-/// Before them others find the sizes of all buffers.
+/// Untimed rounds before these, in which all buffers reach their sizes.
 constexpr std::size_t kSizingRounds = 2;
 
 template <typename Work>
@@ -33,8 +36,8 @@ double bytes_of(const Partition& partition) {
   return static_cast<double>(footprint.total().reserved - footprint.results.reserved);
 }
 
-/// Removes a random object and inserts another, so many times; pairs are found after a tenth of
-/// the objects each.
+/// Replaces a random object `replacements` times; finds pairs each time a tenth of the objects has
+/// been replaced.
 void churn(Partition& partition, std::vector<Key>& keys, std::vector<Aabb>& boxes,
            std::size_t replacements, PairBuffer& pairs) {
   const Aabb world = world_of(boxes);
@@ -55,7 +58,7 @@ void churn(Partition& partition, std::vector<Key>& keys, std::vector<Aabb>& boxe
   }
 }
 
-/// The frame of a scene, of which some objects take part at a time.
+/// Frames of a scene in which a random share of the objects moves.
 class MovingObjects {
  public:
   explicit MovingObjects(std::size_t objects)
@@ -65,7 +68,7 @@ class MovingObjects {
 
   [[nodiscard]] std::span<const Aabb> boxes() const { return scene_->boxes(); }
 
-  /// The next frame; gives keys and boxes of a random share of the objects.
+  /// Goes to the next frame and returns keys and boxes of a random share of the objects.
   void advance(double share, std::span<const Key> keys, std::vector<Key>& moved,
                std::vector<Aabb>& moved_boxes) {
     scene_->advance();
@@ -88,7 +91,7 @@ class MovingObjects {
   Random random_{4};
 };
 
-/// Many small scenes, all in the same place, frame by frame in one array.
+/// Many small scenes at the same position; the boxes of a frame are in one array.
 class Worlds {
  public:
   Worlds(std::size_t worlds, std::size_t objects_each) {
@@ -154,7 +157,7 @@ std::vector<std::pair<std::string_view, double>> measure_churn(std::string_view 
       for (const Ray& ray : rays) need(one.partition.closest(ray, hit), "rays");
     };
   };
-  // The median over the rounds, so that neighbours in time are compared.
+  // Median of the ratios of each round, whose two measurements are close in time.
   const auto ratio = [&](const auto& work_of) {
     const auto ms = take_turns(2, kRounds, 0, [&](std::size_t, std::size_t i) {
       const auto work = work_of(i == 0 ? worn : fresh);

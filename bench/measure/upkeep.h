@@ -8,27 +8,28 @@
 
 namespace winnow::bench {
 
-// What a partition costs over time, on one thread; on `uniform` unless a scene is named.
+// Costs of a partition over time, on one thread; on `uniform` unless a scene is named.
 
-/// After `operations` single removals and insertions of random objects, in frames of a tenth of the
-/// objects with pairs found after each, over a fresh partition of the same objects: the time of all
-/// "self pairs" anew and of closest hits of single "rays", and "bytes" without results.
+/// Replaces random objects by `operations` / 2 removals and as many insertions; finds pairs after
+/// every tenth of the objects. Returns the ratios of this partition to a new one with the same
+/// objects: time of all "self pairs" without incremental data, time of closest hits of single
+/// "rays", and "bytes" without results.
 [[nodiscard]] std::vector<std::pair<std::string_view, double>> measure_churn(
     std::string_view partition, std::size_t objects, std::size_t operations);
 
-/// Milliseconds of frames in which a share of the objects moves, by share: updating them, and the
-/// pairs that began and ended.
+/// Returns milliseconds of frames in which a share of the objects moves, by share: their update,
+/// and the pairs that began and ended.
 [[nodiscard]] std::vector<std::vector<double>> measure_event_frames(
     std::string_view partition, std::size_t objects, const std::vector<double>& shares);
 
-/// Milliseconds of frames of a scene in which the same objects move in every frame, one frame after
-/// another with nothing between them: what a program pays that has its data in the caches.
+/// Returns milliseconds of consecutive frames in which the same objects move, with nothing in
+/// between: the cost for a program whose data stay in the caches.
 [[nodiscard]] std::vector<double> measure_quiet_frames(std::string_view partition,
                                                        std::string_view scene, std::size_t objects,
                                                        std::size_t frames);
 
-/// Milliseconds of frames of many small worlds in which everything moves: together in one
-/// partition, in which each world is an environment, and apart in a partition for each.
+/// Returns milliseconds of frames of many small worlds in which everything moves: first with all
+/// worlds as environments of one partition, then with one partition per world.
 [[nodiscard]] std::array<std::vector<double>, 2> measure_worlds(std::string_view partition,
                                                                 std::size_t worlds,
                                                                 std::size_t objects_each);

@@ -1,3 +1,6 @@
+// Races bounding volumes (boxes, spheres, k-DOPs, boxes with margins) around the same oriented
+// boxes through broad and narrow phase. bench/rows/volume_rows.cpp calls it.
+
 #include "bench/measure/volume_race.h"
 
 #include <winnow/core/kdop_around.h>
@@ -16,7 +19,7 @@ namespace winnow::bench {
 
 namespace {
 
-/// A volume on a partition of its own.
+/// One kind of volume with its own partition.
 class Contestant {
  public:
   template <typename V>
@@ -40,14 +43,14 @@ class Contestant {
     };
   }
 
-  /// Before the first frame.
+  /// Inserts the volumes, before the first frame.
   void begin(const Solids& solids) {
     make_(solids.when_margins_were_left(margin_));
     need(put_(partition_, keys_), "volumes");
   }
-  /// One frame.
+  /// Runs one frame.
   void run(const Solids& solids, NarrowPhase& narrow, NarrowResult& result, bool timed);
-  /// Against what overlaps by everyone's reports.
+  /// Counts the overlapping pairs that this volume missed; `truth` is the union over all volumes.
   void judge(const std::vector<std::uint64_t>& truth, bool counted);
 
   VolumeRow row;
@@ -70,7 +73,7 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   need(put_(partition_, keys_), "volumes");
   need(partition_.self_pairs(pairs_), "pairs");
   const double broad_ms = broad_clock.ms();
-  // Keys are handed out in order: ids are the objects' numbers.
+  // Keys are given in order, so ids are the indices of the objects.
   std::vector<BodyPair> asked;
   asked.reserve(pairs_.size());
   for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
@@ -104,7 +107,7 @@ void Contestant::judge(const std::vector<std::uint64_t>& truth, bool counted) {
   row.missed += truth.size() - overlapping.size();
 }
 
-// As kdop_around makes its slabs, so that volumes are compared and not the ways of rounding.
+// Rounds like kdop_around, so that volumes are compared and not their rounding.
 Aabb box_of(const OrientedBox& box) {
   Aabb result;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -201,13 +204,13 @@ constexpr std::array<std::string_view, 8> kVolumePartitions{
     "BoundsNSquared", "SweepAndPrune", "FlatGrid",  "HierarchicalGrid",
     "LooseOctree",    "LooseQuadtree", "LinearBvh", "StaticBvh"};
 
-// A fast and a slow way to move: margins are for the latter.
+// A fast and a slow movement; margins are useful for the slow one.
 constexpr double kFast = 0.1;
 constexpr double kSlow = 0.002;
 
 constexpr std::size_t kWatchedFrames = 20;
 
-/// Mean way of the objects from one frame to the next, in mean edges; 0 if nothing can be told.
+/// Mean movement of the objects per frame, in mean edges; 0 if it cannot be computed.
 double step_of(const Recording& recording) {
   const auto& frames = recording.frames;
   double way = 0.0;

@@ -9,9 +9,9 @@
 namespace winnow::oracle {
 namespace {
 
-/// How far a gap computed in double may be from the truth, for directions good to 1e-15.
+/// Error bound of a gap computed in double, for directions accurate to 1e-15.
 constexpr double kRounding = 1e-13;
-/// Products of unit vectors shorter than this are computed again in Number.
+/// Cross products of unit vectors shorter than this are computed again in Number.
 constexpr double kShort = 1e-2;
 
 Vector<Number> unit(const Vector<Number>& v) {
@@ -73,7 +73,7 @@ class Search {
     return result;
   }
 
-  /// The wider gap of a direction and its opposite.
+  /// Returns the wider of the gaps along a direction and its opposite.
   [[nodiscard]] double widest(const Vector<double>& n) const {
     return std::max(gap_along(a_, b_, n).width, gap_along(a_, b_, n * -1.0).width);
   }
@@ -96,7 +96,8 @@ class Search {
     add({widest(n), nullptr, &a, &b});
   }
 
-  /// False only if the arcs of the two edges on the sphere of normals are clear of each other.
+  /// Returns false only if the arcs of the two edges on the Gauss map are clearly apart, so that
+  /// the edges form no face of the Minkowski difference.
   static bool can_make_face(const Polytope::Edge& a, const Vector<double>& along_a,
                             const Polytope::Edge& b, const Vector<double>& along_b) {
     constexpr double kClear = 1e-9;

@@ -1,3 +1,6 @@
+// GJK over all subsets of a simplex, in double and in Number: the point of least norm of the
+// Minkowski difference of two polytopes, with a supporting plane as proof. oracle.cpp calls it.
+
 #include "bench/oracle/min_norm.h"
 
 #include <algorithm>
@@ -10,12 +13,12 @@ namespace {
 template <typename T>
 constexpr bool is_exact = std::is_same_v<T, Number>;
 
-/// Relative determinants below this are zero.
+/// Relative determinants below this count as zero.
 template <typename T>
 T singular() {
   return is_exact<T> ? T(1e-92) : T(1e-22);
 }
-/// Widths that are no more than rounding.
+/// Widths below this are rounding errors.
 template <typename T>
 T negligible() {
   return is_exact<T> ? T(1e-60) : T(1e-14);
@@ -30,7 +33,8 @@ Vector<T> difference(const Polytope& a, const Polytope& b, Simplex::Corner corne
   }
 }
 
-/// The farthest vertex along `sign` * n. Doubles pick those that Number must look at.
+/// Returns the farthest vertex along `sign` * n. Doubles select the candidates that are compared in
+/// Number.
 std::pair<std::uint32_t, Number> extreme(const Polytope& core, const Vector<Number>& n, int sign) {
   const Vector<double> guide = rounded(n * Number(sign));
   double best = -std::numeric_limits<double>::infinity();
@@ -46,8 +50,8 @@ std::pair<std::uint32_t, Number> extreme(const Polytope& core, const Vector<Numb
   return found;
 }
 
-/// The point of the affine hull of up to four points nearest to the origin, if it lies inside of
-/// all of them.
+/// Computes the point of the affine hull of up to four points that is nearest to the origin.
+/// Returns true if it is in the interior of their simplex.
 template <typename T>
 bool nearest_inside(const Vector<T>* w, int count, Vector<T>& nearest) {
   const Vector<T> e[3] = {count > 1 ? w[1] - w[0] : Vector<T>{},
@@ -78,7 +82,8 @@ bool nearest_inside(const Vector<T>* w, int count, Vector<T>& nearest) {
   return true;
 }
 
-/// The nearest point of a simplex, which keeps only the corners that carry it.
+/// Returns the point of the simplex nearest to the origin, and removes the corners that do not
+/// support it.
 template <typename T>
 Vector<T> reduce(const Polytope& a, const Polytope& b, Simplex& simplex) {
   const int count = static_cast<int>(simplex.corner.size());

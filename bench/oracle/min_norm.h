@@ -7,7 +7,7 @@
 
 namespace winnow::oracle {
 
-/// How far two cores are apart along a direction, and the vertices that say so.
+/// The gap between two cores along a direction, and the vertices that bound it.
 template <typename T>
 struct Gap {
   T width{};
@@ -15,11 +15,11 @@ struct Gap {
   std::uint32_t b = 0;
 };
 
-/// min over b of n.b less max over a of n.a, for a direction of length 1.
+/// Returns the minimum of n.b over b minus the maximum of n.a over a, for a unit direction n.
 [[nodiscard]] Gap<double> gap_along(const Polytope& a, const Polytope& b, const Vector<double>& n);
 [[nodiscard]] Gap<Number> gap_along(const Polytope& a, const Polytope& b, const Vector<Number>& n);
 
-/// Up to four vertices of the difference of two cores, b less a.
+/// Up to four vertices of the Minkowski difference b - a of two cores.
 struct Simplex {
   struct Corner {
     std::uint32_t a;
@@ -29,19 +29,20 @@ struct Simplex {
   std::vector<Corner> corner;
 };
 
-/// The point of the difference of two cores that is nearest to the origin.
+/// The point of the Minkowski difference of two cores that is nearest to the origin.
 template <typename T>
 struct Nearest {
   Vector<T> point;
-  /// Its length, and that of the widest gap along it: the truth lies between.
+  /// Length of `point`, and the width of the widest gap found along it. The exact distance is in
+  /// [lower, upper].
   T upper{};
   T lower{};
   bool proven = false;
 };
 
-/// From the simplex given, which must not be empty; it is left where the search ended. In double
-/// the result is a guess; in Number it is proven to 1e-60 of the unit length or says that it is
-/// not. Coordinates are of the order of 1.
+/// Starts from the given simplex, which must not be empty, and stores the last one there. In double
+/// the result is a guess; in Number it is proven to 1e-60 of the unit length, or `proven` is false.
+/// Coordinates must be of the order of 1.
 template <typename T>
 [[nodiscard]] Nearest<T> nearest_point(const Polytope& a, const Polytope& b, Simplex& simplex);
 

@@ -6,8 +6,8 @@
 
 namespace winnow::oracle {
 
-/// 100 decimal digits: what doubles, rotations and small determinants of them need with room to
-/// spare, without memory from the heap.
+/// 100 decimal digits without heap memory: more than enough for doubles, rotations and small
+/// determinants of them.
 using Number = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                              boost::multiprecision::et_off>;
 

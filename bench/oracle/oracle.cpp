@@ -1,3 +1,6 @@
+// Distance and penetration depth of a pair in 100 digits. Calls min_norm for cores apart,
+// least_overlap for cores that overlap, and round_core for polytopes inside cylinders and cones.
+
 #include "bench/oracle/oracle.h"
 
 #include "bench/oracle/least_overlap.h"
@@ -12,12 +15,13 @@
 namespace winnow::oracle {
 namespace {
 
-/// Lengths below this, where the larger of the pair is 1, are 0: no pair of doubles of moderate
-/// range comes closer without touching.
+/// Lengths below this, relative to the larger shape of the pair, count as 0: shapes given by
+/// doubles of moderate range cannot be closer without touching.
 const Number kZero("1e-58");
-/// Directions that are as good to within this part of the sizes are equally good.
+/// Directions whose gaps differ by less than this part of the sizes count as equally good.
 constexpr double kEquallyGood = 1e-9;
-/// Polytopes inside of round shapes come as close as this part of the sizes, in so many rounds.
+/// Error, relative to the sizes, to which polytopes inside round shapes are refined, and the limit
+/// of refinement rounds.
 constexpr double kClosed = 1e-13;
 constexpr int kRounds = 12;
 /// Cosine of 0.1 degrees.
@@ -40,7 +44,7 @@ Vector<Number> difference(const Pose& a, const Pose& b) {
           Number(b.position[2]) - a.position[2]};
 }
 
-/// A power of two that brings lengths up to `length` to the order of 1.
+/// Returns a power of two that scales lengths up to `length` to the order of 1.
 Number scale_for(const Number& length) {
   if (length == 0) return 1;
   int exponent = 0;
@@ -69,7 +73,7 @@ Placed place_pair(Polytope a, const Pose& pose_a, Polytope b, const Pose& pose_b
   return placed;
 }
 
-/// The signed distance of the cores, the direction of it and whether there is no other.
+/// Signed distance of the cores, its direction, and whether that direction is unique.
 struct CoreGap {
   bool proven = false;
   Number width = 0;
@@ -113,7 +117,7 @@ Truth truth_of(const Placed& placed, const CoreGap& gap) {
   return truth;
 }
 
-/// A shape of a pair with a cylinder or a cone, and where its rims are looked at closely.
+/// A shape of a pair with a cylinder or a cone, and the direction near which its rims are refined.
 struct Body {
   ShapeId shape;
   const Pose& pose;
@@ -122,7 +126,7 @@ struct Body {
   [[nodiscard]] Polytope core(const ShapeTables& tables) const {
     return has_polytope(shape.kind()) ? core_of(tables, shape) : inscribed(tables, shape, aim);
   }
-  /// A direction of the world in the frame of the shape.
+  /// Rotates a world direction into the frame of the shape.
   [[nodiscard]] Vector<Number> local(const Vector<Number>& n) const {
     const double* q = pose.orientation;
     const double back[4] = {q[0], -q[1], -q[2], -q[3]};
@@ -130,9 +134,9 @@ struct Body {
   }
 };
 
-/// Polytopes inside the shapes are no closer than these and overlap no more; the gap along any
-/// direction is no wider than their distance. What lies between is closed by looking closer at
-/// where the rims are farthest along the normal.
+/// Polytopes inside the shapes give an upper bound of the distance; the gap of the shapes along any
+/// direction is a lower bound. Each round refines the rims where they are farthest along the
+/// normal, until the bounds agree.
 Truth of_round_shapes(const ShapeTables& tables, Body a, Body b) {
   const Vector<Number> between = difference(a.pose, b.pose);
   for (int round = 0; round < kRounds; ++round) {
@@ -154,7 +158,7 @@ Truth of_round_shapes(const ShapeTables& tables, Body a, Body b) {
   return {};
 }
 
-/// A shape over a half-space; the normal is from the half-space to the shape.
+/// Solves a shape against a half-space; the normal is from the half-space to the shape.
 Truth over_half_space(const ShapeTables& tables, ShapeId shape, const Pose& pose, ShapeId half,
                       const Pose& half_pose) {
   const HalfSpaceShape& plane = tables.half_spaces[half.index()];

@@ -5,30 +5,32 @@
 
 namespace winnow::oracle {
 
-/// The truth about a pair, as far as 100 digits tell: slow, simple, and made of no code of winnow.
+/// Reference result for a pair, computed in 100 digits: slow, simple and independent of winnow's
+/// algorithms.
 struct Truth {
-  /// False for pairs of half-spaces, shapes known by a support function, bad poses, and pairs that
-  /// it could not prove (cylinders and cones that touch are among them). Nothing else is set then.
+  /// False for pairs of half-spaces, user shapes, invalid poses, and pairs that could not be proven
+  /// (e.g. cylinders and cones that touch). All other members are unset then.
   bool known = false;
-  /// They share a point.
+  /// True if the shapes share a point.
   bool overlap = false;
-  /// Minus the penetration depth where they overlap; exactly 0 where they touch.
+  /// Negative by the penetration depth if they overlap; exactly 0 if they touch.
   long double distance = 0.0L;
-  /// The truth may be less by this much: 0 but for cylinders and cones.
+  /// Upper bound of how much less the exact distance may be: 0 except for cylinders and cones.
   double slack = 0.0;
-  /// Unit, from a to b, in the axes of the world.
+  /// Unit length, from a to b, in world axes.
   double normal[3] = {};
-  /// No direction more than 0.1 degrees away is as good to within 1e-9 of the sizes.
+  /// True if no direction more than 0.1 degrees away is equally good to within 1e-9 of the sizes.
   bool normal_unique = false;
-  /// Sum of the radii of balls that hold the shapes: what errors are relative to.
+  /// Sum of the radii of balls that contain the shapes; errors are relative to it.
   double size = 0.0;
 };
 
-/// Distances by the point of least norm of the difference of the cores (Gilbert, Johnson and
-/// Keerthi, 1988, over all subsets of a simplex), proved by the plane that supports it. Depths by
-/// all normals that a face of the difference can have: those of faces, and products of all edges.
-/// Cylinders and cones by polytopes inside of them, refined until a supporting plane proves them.
-/// About 0.1 ms a pair; hulls take longer by the product of their edges.
+/// Distances are computed by GJK over all subsets of a simplex (Gilbert, Johnson, Keerthi 1988),
+/// proven by a supporting plane. Depths are the minimum over all normals that a face of the
+/// Minkowski difference can have: normals of faces, and cross products of all pairs of edges.
+/// Cylinders and cones are replaced by inscribed polytopes that are refined until a supporting
+/// plane proves the result. Slow; for hulls the time grows with the product of their numbers of
+/// edges.
 [[nodiscard]] Truth solve(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                           const Pose& pose_b);
 

@@ -1,3 +1,6 @@
+// Cores of all kinds but cylinder, cone and half-space as polytopes, with the candidates for face
+// normals and edges that least_overlap needs. oracle.cpp calls it.
+
 #include "bench/oracle/polytope.h"
 
 #include <algorithm>
@@ -15,7 +18,7 @@ bool is_zero(const Vec& v) {
   return v.x == 0 && v.y == 0 && v.z == 0;
 }
 
-/// Normals for a core that has no face: a segment along `along`, or a point if that is zero.
+/// Adds normals for a core without faces: a segment along `along`, or a point if `along` is zero.
 void add_normals_around(Polytope& core, const Vec& along) {
   const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (const Vec& axis : axes) {
@@ -51,7 +54,8 @@ Polytope box(const BoxShape& shape) {
   return core;
 }
 
-/// True if the three points lie on a line: doubles cannot be closer to one without being on it.
+/// Returns true if the three points are on a line: points given by doubles cannot be this close to
+/// a line without being on it.
 bool collinear(const Vec& normal, const Vec& side, const Vec& other) {
   return dot(normal, normal) <= dot(side, side) * dot(other, other) * Number(1e-90);
 }
@@ -81,8 +85,8 @@ Polytope triangle(const TriangleShape& shape) {
   return core;
 }
 
-/// The mean normal of a face and those of its corners: a face whose vertices were merged from
-/// several is flat only as far as doubles are.
+/// Adds the mean normal of a face and the normals at its corners: a face whose vertices were merged
+/// is flat only up to rounding.
 void add_face_normals(Polytope& core, const HullShape& shape, const HullFace& face) {
   const auto vertex = [&](std::uint32_t i) -> const Vec& {
     return core.vertex[shape.loop[face.first + i % face.count]];

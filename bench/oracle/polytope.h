@@ -8,12 +8,13 @@
 
 namespace winnow::oracle {
 
-/// The core of a shape: the hull of `vertex`, with every direction that can be the normal of a face
-/// of it (both signs are meant) and of every edge. More directions than there are do no harm.
+/// The core of a shape: the convex hull of `vertex`, with every direction that can be a face normal
+/// (up to sign) and every edge. Extra directions are harmless.
 struct Polytope {
   struct Edge {
     Vector<Number> direction;
-    /// Outward normals beside it; used to pass over pairs of edges that cannot make a face.
+    /// Outward normals of the two faces at the edge; used to skip pairs of edges that cannot form a
+    /// face.
     Vector<double> beside[2];
     bool has_sides = false;
   };
@@ -25,20 +26,20 @@ struct Polytope {
   Number rounding = 0;
 };
 
-/// True for kinds whose core is a polytope.
+/// Returns true for kinds whose core is a polytope.
 [[nodiscard]] bool has_polytope(ShapeKind kind);
 
-/// The core in its own frame. `edge.beside` and `vertex_double` are not set.
+/// Returns the core in the shape's frame. `edge.beside` and `vertex_double` are not set.
 [[nodiscard]] Polytope core_of(const ShapeTables& tables, ShapeId shape);
 
-/// x -> offset + R(orientation) x, all of it then times `scale`.
+/// Transforms x to scale * (offset + R(orientation) x).
 void place(Polytope& core, const double orientation[4], const Vector<Number>& offset,
            const Number& scale);
 
-/// The rotation of a quaternion of any length but zero.
+/// Rotates v by a quaternion of any length but zero.
 [[nodiscard]] Vector<Number> rotate(const double orientation[4], const Vector<Number>& v);
 
-/// Radius about the mean of its vertices, rounding included.
+/// Radius of a ball around the mean of the vertices that contains the core, rounding included.
 [[nodiscard]] Number radius_of(const Polytope& core);
 
 }  // namespace winnow::oracle

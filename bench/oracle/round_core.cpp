@@ -24,11 +24,11 @@ Round round_of(const ShapeTables& tables, ShapeId shape) {
   return {s.radius, s.half_length, s.rounding, true};
 }
 
-/// Points of the unit circle in order, crowded about the direction of (x, y).
+/// Points of the unit circle in order, denser near the direction of (x, y).
 std::vector<Vec> circle(const Vec& aim) {
   const Number size = sqrt(aim.x * aim.x + aim.y * aim.y);
   const Vec to = size == 0 ? Vec{1, 0, 0} : Vec{aim.x / size, aim.y / size, 0};
-  // Tangents of half of the angles to it: a turn by 2 atan t is rational.
+  // Tangents of half the angles to that direction: a rotation by 2 atan t is rational in t.
   std::vector<Number> tangents{0};
   for (int i = 2; i < 24; ++i) tangents.push_back(ldexp(Number(1), -i));
   for (const double t : {0.5, 0.75, 1.0, 1.5, 2.5, 6.0}) tangents.push_back(t);
@@ -72,7 +72,7 @@ Polytope inscribed(const ShapeTables& tables, ShapeId shape, const Vector<Number
   for (std::size_t i = 0; i < count; ++i) {
     const Vec middle = rim[i] + rim[(i + 1) % count];
     const Vec out = middle * (1 / length(middle));
-    // Of a cone it rises as the side does, whose distance from the axis is that of the chord.
+    // A side facet of a cone rises by the height over the distance of its chord from the axis.
     const Number chord = round.radius * length(middle) / 2;
     side.push_back(round.has_apex ? out * (2 * Number(round.half_length)) + up * chord : out);
     core.normal.push_back(side.back());

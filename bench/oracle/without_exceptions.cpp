@@ -1,5 +1,5 @@
-// What Boost would throw ends the program where it is built without exceptions: only wrong use of
-// its numbers would.
+// Boost calls these functions in a build without exceptions. Only wrong use of its numbers leads
+// here, so they end the program.
 
 #include <boost/throw_exception.hpp>
 

@@ -65,7 +65,7 @@ std::string place_of(const Plot& plot) {
 
 void write_plot_page(const std::string& path, const std::string& title, const std::string& body,
                      const std::vector<Plot>& plots) {
-  // Partitions have the same colours on all pages.
+  // All partitions are listed, so that each has the same colour on all pages.
   Json data{{"names", Json::array()}, {"plots", Json::array()}};
   for (const std::string& name : all_partitions()) data["names"].push_back(name);
   for (const Plot& plot : plots) data["plots"].push_back(plot_json(plot));

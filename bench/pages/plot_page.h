@@ -9,24 +9,24 @@ namespace winnow::bench {
 struct PlotPoint {
   double x = 0.0;
   double y = 0.0;
-  std::string note{};  ///< shown where the pointer is
-  std::string row{};   ///< what it was made from, for who reads the page's data
-  /// Ends of the whisker; NaN: there is none.
+  std::string note{};  ///< tooltip
+  std::string row{};   ///< id of the row that gave the point; not displayed
+  /// Ends of the whisker; NaN for none.
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct PlotSeries {
-  std::string name;  ///< one name has one colour on the whole page
+  std::string name;  ///< equal names have one colour on the whole page
   std::vector<PlotPoint> points{};
   bool line = true;
-  std::string x_value{};  ///< names of what x and y are in the rows of the points
+  std::string x_value{};  ///< names of the values x and y in the rows of the points
   std::string y_value{};
-  bool front = false;  ///< a border between points: a thin black line without marks
+  bool front = false;  ///< a Pareto front: a thin dashed line without marks
 };
 
 struct PlotAxis {
-  std::string label;  ///< with its unit
+  std::string label;  ///< includes the unit
   bool log = false;
 };
 
@@ -36,17 +36,17 @@ struct Plot {
   PlotAxis x;
   PlotAxis y;
   std::vector<PlotSeries> series{};
-  /// If there are any, the plot has bars, one for each of these; x is its number.
+  /// If not empty, the plot has one bar, or one stack, per category, and x is the category's index.
   std::vector<std::string> categories{};
-  bool stacked = true;  ///< bars of one category; otherwise they stand beside each other
+  bool stacked = true;  ///< stacks the bars of a category instead of placing them side by side
 };
 
-/// Where a plot is to stand within a page's body.
+/// Returns the HTML element that marks the place of a plot in a page's body.
 [[nodiscard]] std::string place_of(const Plot& plot);
 
-/// Writes one HTML page that needs nothing else: no network, no other file. `body` is HTML and has
-/// a place for each plot. Throws ArgumentError if Chart.js is not installed, saying how to get it,
-/// or the file cannot be written.
+/// Writes one self-contained HTML page (no network, no other files). `body` is HTML with a
+/// `place_of` each plot. Throws ArgumentError if Chart.js is not installed, with the package to
+/// install, or if the file cannot be written.
 void write_plot_page(const std::string& path, const std::string& title, const std::string& body,
                      const std::vector<Plot>& plots);
 

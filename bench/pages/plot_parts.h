@@ -2,12 +2,12 @@
 
 namespace winnow::bench {
 
-// The files of this folder, compiled in so that the tool can be moved.
+// The files of this folder, embedded so that the tool does not depend on its source folder.
 extern const char* const kPlotStyle;
 extern const char* const kPlotScript;
-/// The licence of Chart.js, which goes with every copy.
+/// The licence of Chart.js, which each page must include.
 extern const char* const kChartJsNotice;
-/// Where the library was found when the tool was configured, or where Debian would put it.
+/// The file found at configure time, or its place on Debian.
 extern const char* const kChartJsFile;
 
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
-// Draws every plot of the page's data. Series of one name have one colour in all plots; colours
-// are told apart by the colour-blind too, and each series has a mark of its own.
+// Draws every plot of the page's data; pages/plot_page.cpp writes the data. Series of one name have
+// one colour in all plots. The colours are safe for colour-blind readers, and each series has its
+// own mark.
 
 const data = JSON.parse(document.getElementById("plots").textContent);
 
@@ -16,7 +17,8 @@ for (const plot of data.plots) {
   }
 }
 
-// Names that all pages know have whole lines, others dashed ones where both are in a plot.
+// Partitions, which are listed on all pages, have solid lines; other names have dashed ones if a
+// plot has both.
 function look(name) {
   const known = first.indexOf(name);
   if (known >= 0) return {colour: palette[known % palette.length], mark: marks[known % 8]};
@@ -28,7 +30,7 @@ function dataset(series, plot) {
   const {colour, mark, other} = look(series.name);
   const mixed = plot.series.some((one) => first.includes(one.name));
   if (plot.categories.length > 0) {
-    // Bars of one series are told apart by what they stand for.
+    // Colours the bars of a series by category if the categories are partitions.
     const known = plot.categories.some((name) => first.includes(name));
     const of_category = (point) => palette[first.includes(plot.categories[point.x]) ? 0 : 1];
     return {
@@ -59,8 +61,8 @@ function dataset(series, plot) {
   };
 }
 
-// Of a logarithmic axis: powers of ten, and where there is room 2 and 5 times these, as short as they
-// can be: 20, 1,000, 1e-7.
+// Labels of a logarithmic axis: powers of ten, and with enough room 2 and 5 times these, in their
+// shortest form: 20, 1,000, 1e-7.
 function log_tick(value) {
   const size = Math.abs(value);
   const digit = Math.round(size / 10 ** Math.floor(Math.log10(size) + 1e-9));
@@ -70,7 +72,7 @@ function log_tick(value) {
   return long ? value.toExponential(0).replace("+", "") : value.toLocaleString("en");
 }
 
-// Axes have room for the whiskers.
+// Returns the range of the whiskers, which the axes must include.
 function ends(plot) {
   const points = plot.series.flatMap((series) => series.points);
   const lows = points.map((point) => point.low).filter((low) => low > 0 || !plot.y.log);
@@ -87,7 +89,7 @@ function scale(axis, plot) {
   const category = bars && axis === plot.x;
   const {suggestedMin, suggestedMax} = ends(plot);
   const whiskered = axis === plot.y && !bars && suggestedMin < suggestedMax;
-  // What is nowhere below zero begins there; counts have whole ticks.
+  // Axes without negative values start at zero; axes of integers have integer ticks.
   const values = axis === plot.y && !axis.log
     ? plot.series.flatMap((series) => series.points.map((point) => point.y)) : [];
   const from_zero = values.length > 0 && values.every((y) => y >= 0);
@@ -110,7 +112,7 @@ function described(item) {
   return `${item.dataset.label}: ${point.note || `${point.x}, ${point.y}`}`;
 }
 
-// From the least to the greatest of what was measured.
+// Draws a line from the least to the greatest measured value.
 const whiskers = {
   id: "whiskers",
   afterDatasetsDraw(chart) {
@@ -137,8 +139,8 @@ const whiskers = {
   },
 };
 
-// The wheel zooms about the pointer, dragging moves, a double click shows everything again. The
-// page scrolls on until a plot has been clicked.
+// Zoom: the wheel zooms at the pointer, dragging moves, a double click shows everything again.
+// Until a plot is clicked, the wheel scrolls the page.
 function zoomable(chart) {
   const canvas = chart.canvas;
   let awake = false;
@@ -198,7 +200,7 @@ function zoomable(chart) {
   });
 }
 
-// Marks of a series that lie within the axes; bars that have a height.
+// Counts the marks of a series (points, or ends of bars) that lie within the axes.
 function drawn_of(chart, i) {
   const area = chart.chartArea;
   return chart.getDatasetMeta(i).data.filter((mark) =>
@@ -240,7 +242,7 @@ function draw(plot) {
   counts.plots += 1;
 }
 
-// A plot has no size while its section is folded away.
+// Charts in a folded section have no size and are drawn when it is opened.
 const waiting = new Set(data.plots);
 function draw_open() {
   for (const plot of waiting) {
@@ -248,7 +250,7 @@ function draw_open() {
     waiting.delete(plot);
     draw(plot);
   }
-  // What a test of the page looks at.
+  // Tests of the page read these.
   for (const [name, count] of Object.entries(counts)) document.body.dataset[name] = String(count);
   document.body.dataset.blank = blank.join(" ");
   const card = document.getElementById("recommendation");
@@ -257,7 +259,7 @@ function draw_open() {
   document.body.dataset.beyond = String(document.documentElement.scrollWidth - window.innerWidth);
 }
 
-// A link to a section opens it, and "#all" all of them, as printing does.
+// A link to a section opens it; "#all" and printing open all sections.
 function open_all() {
   for (const folded of document.querySelectorAll("details")) folded.open = true;
   draw_open();

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-// What several adapters need. Adapters report pairs with the smaller row first and only pairs whose
-// boxes overlap, so that every peer pays for the same result.
+// Tools for several adapters. Adapters report only pairs whose boxes overlap, with the smaller row
+// first, so that every library pays for the same result.
 namespace winnow::bench {
 
-/// An adapter that collects its pairs, and times how long it takes to bring boxes in.
+/// An adapter that collects its pairs and measures the time of updating boxes.
 class PairsAdapter : public Engine {
  public:
   [[nodiscard]] std::span<const Pair> pairs() const final { return pairs_; }
@@ -28,8 +28,8 @@ class PairsAdapter : public Engine {
   return a < b ? Pair{a, b} : Pair{b, a};
 }
 
-/// The axes, best to sweep first: by the range of the box centres over the mean extent, which is
-/// the inverse of the share of all boxes that one box meets along the axis.
+/// Returns the axes, the best one for a sweep first: by the range of the box centres over the mean
+/// extent, the inverse of the share of boxes that one box overlaps along the axis.
 [[nodiscard]] inline std::array<int, 3> axes_by_pruning(std::span<const Aabb> boxes) {
   std::array<double, 3> spread{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ class PairsAdapter : public Engine {
   return axes;
 }
 
-/// Mean edge length over all boxes and axes; 0 if there are none.
+/// Mean edge length over all boxes and axes; 0 without boxes.
 [[nodiscard]] inline double mean_edge(std::span<const Aabb> boxes) {
   double sum = 0.0;
   for (const Aabb& box : boxes) {

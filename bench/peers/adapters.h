@@ -9,7 +9,7 @@
 
 #include <memory>
 
-// One factory per adapter; each is defined only if its library was found.
+// One factory per adapter; each is defined only if its library is installed.
 namespace winnow::bench {
 
 [[nodiscard]] std::unique_ptr<Engine> make_bullet();

@@ -1,3 +1,7 @@
+// Adapters of Bullet's two broad phases: dynamic trees (BulletTrees) and sweep and prune
+// (BulletSweep). Bullet's allocator is global, so the bytes of an engine are counted while it
+// works.
+
 #include "bench/common/sample.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/adapters.h"
@@ -21,7 +25,7 @@ namespace {
 using Bytes = std::atomic<std::size_t>;
 
 Bytes nobodys_bytes{0};
-/// Of the engine at work: Bullet's allocator is one for all.
+/// Byte counter of the current engine: Bullet has one global allocator.
 std::atomic<Bytes*> allocated_bytes{&nobodys_bytes};
 
 void* counted_allocate(std::size_t size) {
@@ -35,7 +39,7 @@ void counted_free(void* memory) {
   std::free(memory);
 }
 
-/// Before Bullet allocates anything: its allocator, counted.
+/// Installs the counting allocator; must run before Bullet allocates anything.
 void count_memory() {
   static const bool once = [] {
     btAlignedAllocSetCustom(counted_allocate, counted_free);
@@ -68,14 +72,14 @@ btBroadphaseProxy* make_proxy(btBroadphaseInterface& broad_phase, std::size_t ro
                                  nullptr);
 }
 
-/// What both broad phases have in common: one thread, proxies by row, and bytes.
+/// Common parts of both broad phases: one thread, proxies by row, and bytes.
 class BulletAdapter : public PairsAdapter {
  public:
   BulletAdapter() { allocated_bytes = &bytes_; }
   ~BulletAdapter() override { allocated_bytes = &nobodys_bytes; }
 
   [[nodiscard]] bool is_serial() const final { return true; }
-  /// The broad phase, proxies and the pair cache.
+  /// Bytes of the broad phase, the proxies and the pair cache.
   [[nodiscard]] std::size_t bytes() const final {
     return bytes_ + proxies_.capacity() * sizeof(proxies_[0]);
   }
@@ -86,17 +90,16 @@ class BulletAdapter : public PairsAdapter {
 };
 
 /// Bullet 3 in float: btDbvtBroadphase, two dynamic trees (moving and resting) with a hashed cache
-/// of overlapping pairs; only changed boxes are set. One thread: it has no more.
-/// Best of what was tried: deferred collision (1.3 to 2.5 times faster than one tree query per
-/// moved box), but where the last frame inserted few boxes again (then up to 10 times slower), a
-/// margin of 10 % of the mean edge (twice the usual step), otherwise its defaults; a full clean-up
-/// of the pair cache each frame, or dynamic balancing, cost more than they save. The pair cache is
-/// a superset because of the margin and the gradual clean-up: filtered by the exact boxes that the
-/// proxies keep.
+/// of overlapping pairs. Only changed boxes are set. Bullet supports one thread only.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): deferred collision,
+/// except if the last frame inserted few boxes again; a margin of 10 % of the mean edge, twice the
+/// usual step; otherwise defaults. A full clean-up of the pair cache per frame and dynamic
+/// balancing were slower. Because of the margin and the gradual clean-up, the pair cache is a
+/// superset and is filtered by the exact boxes in the proxies.
 class BulletTrees final : public BulletAdapter {
  public:
-  // Bullet wants each proxy destroyed one by one, which searches the whole pair cache every time;
-  // nothing looks at them any more, so giving back their memory does.
+  // Frees the proxies directly: Bullet's own destruction of a proxy searches the whole pair cache,
+  // and nothing uses the proxies any more.
   ~BulletTrees() override {
     allocated_bytes = &bytes_;
     for (btBroadphaseProxy* proxy : proxies_) btAlignedFree(proxy);
@@ -137,7 +140,7 @@ class BulletTrees final : public BulletAdapter {
     Trees() { m_deferedcollide = true; }
   };
 
-  /// Of the rows that have none.
+  /// Adds proxies for new rows.
   void add_proxies(std::span<const Aabb> boxes) {
     proxies_.reserve(boxes.size());
     for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
@@ -162,7 +165,7 @@ class BulletTrees final : public BulletAdapter {
   btScalar margin_ = 0;
 };
 
-/// A pair cache that keeps its pairs as rows too, so that nobody has to copy them out.
+/// A pair cache that also stores its pairs as rows, so that they need not be copied out.
 class RowPairs final : public btHashedOverlappingPairCache {
  public:
   explicit RowPairs(std::vector<Pair>& rows) : rows_(rows) {}
@@ -179,7 +182,7 @@ class RowPairs final : public btHashedOverlappingPairCache {
     const btBroadphasePair* const pair = findPair(a, b);
     if (pair == nullptr) return nullptr;
     rows_[static_cast<std::size_t>(pair - getOverlappingPairArrayPtr())] = rows_.back();
-    rows_.pop_back();  // the base too fills the gap with the last one
+    rows_.pop_back();  // as the base class does in its own array
     return btHashedOverlappingPairCache::removeOverlappingPair(a, b, dispatcher);
   }
 
@@ -187,18 +190,18 @@ class RowPairs final : public btHashedOverlappingPairCache {
   std::vector<Pair>& rows_;
 };
 
-/// Bullet 3 in float: bt32BitAxisSweep3, which sorts what moved on three axes and adds and removes
-/// the pairs that change, so that a frame costs what happens in it and nothing looks at the other
-/// pairs. One thread. Its coordinates are 31 bits of a world: boxes that are nearer to each other
-/// than those tell are reported. It places objects one by one, each past half of those on each
-/// axis. Best of what was tried: a world four times as wide as the first boxes, and no tree for
-/// rays.
+/// Bullet 3 in float: bt32BitAxisSweep3, which sorts moved boxes on three axes and adds and removes
+/// only pairs that change. Bullet supports one thread only. Coordinates are quantised to 31 bits of
+/// the world; boxes closer than that are reported as well. Each object is inserted singly and
+/// passes half of the others on each axis.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): a world four times
+/// as wide as the first boxes, and no tree for rays.
 class BulletSweep final : public BulletAdapter {
  public:
   ~BulletSweep() override { allocated_bytes = &bytes_; }
 
   [[nodiscard]] std::string name() const override { return "Bullet sweep"; }
-  /// The first frame takes seconds above, and minutes at 100,000.
+  /// The first frame takes seconds for more objects, and minutes for 100,000.
   [[nodiscard]] std::size_t largest() const override { return 5'000; }
 
   void start(std::span<const Aabb> boxes) override {
@@ -235,7 +238,8 @@ class BulletSweep final : public BulletAdapter {
     return true;
   }
 
-  /// What leaves the world is still found, but compared with all that left it.
+  /// Returns false if a box leaves the world: Bullet would still find its pairs, but by testing it
+  /// against all others outside.
   [[nodiscard]] bool has_room_for(std::span<const std::uint32_t> changed_rows,
                                   std::span<const Aabb> all_boxes) const {
     if (all_boxes.size() > handles_) return false;
@@ -265,7 +269,7 @@ class BulletSweep final : public BulletAdapter {
     add_proxies(boxes, watch);
   }
 
-  /// Of the rows that have none.
+  /// Adds proxies for new rows.
   void add_proxies(std::span<const Aabb> boxes, const Stopwatch& watch) {
     proxies_.reserve(boxes.size());
     for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {

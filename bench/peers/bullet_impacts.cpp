@@ -14,8 +14,8 @@ namespace {
 using namespace in_bullet;
 
 /// Bullet's casts of convex shapes, in float and without margins: conservative advancement of both
-/// as they travel and turn, or its sub-simplex cast, which does not turn. It knows motions by their
-/// ends, and so none of more than half a turn.
+/// shapes with translation and rotation, or its sub-simplex cast, without rotation. Motions are
+/// given by their ends, so rotations of more than half a turn are not supported.
 template <typename Cast>
 class BulletImpacts final : public ImpactEngine {
  public:
@@ -25,7 +25,8 @@ class BulletImpacts final : public ImpactEngine {
     return kTurns ? "Bullet continuous" : "Bullet sub-simplex";
   }
   [[nodiscard]] bool takes(const PairKind& kind, PairTurn turn) const override {
-    // It casts convex shapes, of which ellipsoids are none, and the first also onto planes.
+    // Bullet casts convex shapes, but has no ellipsoids; only conservative advancement supports
+    // planes.
     if (kind.a == ShapeKind::ellipsoid || kind.b == ShapeKind::ellipsoid) return false;
     if (!kTurns && kind.b == ShapeKind::half_space) return false;
     return turn == PairTurn::none || (kTurns && turn == PairTurn::little);

@@ -1,3 +1,6 @@
+// Adapter of Bullet's narrow phase: picks, for each pair of kinds and level, the fastest of
+// Bullet's algorithms, and converts its result. peers.cpp makes it through adapters.h.
+
 #include "bench/peers/adapters.h"
 #include "bench/peers/bullet_shapes.h"
 #include "bench/peers/narrow_adapter.h"
@@ -20,10 +23,10 @@ namespace {
 
 using namespace in_bullet;
 
-/// So far apart nothing is: algorithms report the distance of every pair.
+/// A threshold above every distance, so that algorithms report the distance of every pair.
 constexpr btScalar kFar = 1e9F;
 
-/// Margins are nothing where the shape would grow or lose its corners by them.
+/// Margins are 0 if they would enlarge the shape or round its corners.
 std::unique_ptr<btCollisionShape> make_bare_shape(const ShapeTables& tables, ShapeId id) {
   if (id.kind() == ShapeKind::half_space) {
     return make_plane(tables.half_spaces[id.index()]);
@@ -36,7 +39,7 @@ std::unique_ptr<btCollisionShape> make_bare_shape(const ShapeTables& tables, Sha
   return shape;
 }
 
-/// Takes the point that an algorithm or a detector reports and keeps the deepest.
+/// Receives the points that an algorithm or detector reports, and keeps the deepest.
 class Report final : public btManifoldResult {
  public:
   Report(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, btScalar far)
@@ -67,10 +70,11 @@ class Report final : public btManifoldResult {
   btVector3 on_b_{0, 0, 0};
 };
 
-/// Bullet in float. Manifolds by the algorithm that its dispatcher picks for the kinds (and the one
-/// for spheres and boxes, which it keeps but does not pick), into an empty manifold. Verdicts and
-/// distances by closed forms where it has them, else by the GJK and EPA of btGjkEpaSolver2, which
-/// are faster than btGjkPairDetector; verdicts of boxes by its separating axes.
+/// Bullet in float. Manifolds: the algorithm that its dispatcher picks for the kinds (or the one
+/// for spheres and boxes, which the dispatcher has but does not pick), into an empty manifold.
+/// Verdicts and distances: closed forms if Bullet has them, otherwise GJK and EPA of
+/// btGjkEpaSolver2; btGjkPairDetector is slower (measured by `winnow narrow`). Verdicts of boxes:
+/// its SAT.
 class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
  public:
   BulletNarrow() : dispatcher_(&configuration_) {}
@@ -86,7 +90,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
-    // A scaled btMultiSphereShape is none: its farthest points are not those of an ellipsoid.
+    // A scaled btMultiSphereShape does not help: it has other support points than an ellipsoid.
     if (kind.a == ellipsoid || kind.b == ellipsoid) return nullptr;
     if (level == ContactLevel::manifold) return &BulletNarrow::manifold;
     const bool verdict = level == ContactLevel::boolean;
@@ -151,7 +155,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       algorithm_ =
           dispatcher_.findAlgorithm(&a.wrapper, &b.wrapper, manifold_, BT_CONTACT_POINT_ALGORITHMS);
     }
-    // Some algorithms bring a manifold of their own.
+    // Some algorithms use a manifold of their own.
     btManifoldArray own;
     algorithm_->getAllContactManifolds(own);
     written_ = own.size() > 0 ? own[0] : manifold_;
@@ -225,7 +229,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     detect(detector, pair, level, answer);
   }
 
-  /// The lowest point, as btConvexPlaneCollisionAlgorithm finds it.
+  /// Finds the lowest point, as btConvexPlaneCollisionAlgorithm does.
   template <ContactLevel level>
   void over_plane(const BodyPair& pair, NarrowAnswer& answer) {
     const auto& plane = shape_of<btStaticPlaneShape>(pair.b);
@@ -247,7 +251,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     detect(detector, pair, ContactLevel::boolean, answer);
   }
 
-  /// What of a shape its core does not have: a capsule's radius.
+  /// Returns the radius around the core, which a capsule has.
   [[nodiscard]] btScalar rounding_of(std::uint32_t body) const {
     return shape_of<btConvexShape>(body).getMargin();
   }
@@ -282,7 +286,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       btGjkEpaSolver2::Penetration(&shape_of<btConvexShape>(pair.a), a,
                                    &shape_of<btConvexShape>(pair.b), b,
                                    b.getOrigin() - a.getOrigin(), results);
-      // It is left in the axes of a.
+      // The normal is in the axes of a.
       to_b = a.getBasis() * -results.normal;
       on_a = results.witnesses[0];
       distance = results.distance;

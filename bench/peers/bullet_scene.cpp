@@ -16,13 +16,13 @@ namespace {
 
 using namespace in_bullet;
 
-/// Of hulls, which are made smaller by as much: with it GJK alone answers shallow contacts, and the
-/// expanding polytope only deep ones. Also by how much boxes in the trees are larger.
+/// Margin of hulls, which are shrunk by it: GJK then suffices for shallow contacts, and EPA is
+/// needed only for deep ones. Also the margin of boxes in the trees.
 constexpr btScalar kMargin = 0.005F;
 
-/// Bullet 3 in float: a btCollisionWorld over btDbvtBroadphase with the algorithms and margins that
-/// it uses by default, meshes as btBvhTriangleMeshShape with quantised nodes. It keeps pairs and
-/// manifolds from frame to frame always.
+/// Bullet 3 in float: a btCollisionWorld over btDbvtBroadphase with its default algorithms and
+/// margins; meshes are btBvhTriangleMeshShape with quantised nodes. It always keeps pairs and
+/// manifolds between frames.
 class BulletScene final : public SceneEngine {
  public:
   BulletScene()
@@ -30,7 +30,7 @@ class BulletScene final : public SceneEngine {
     broadphase_.m_deferedcollide = true;
   }
   ~BulletScene() override {
-    // Each by itself: taking an object out of the world looks through all pairs that there are.
+    // Removes the pairs first: removing an object searches all pairs in the cache.
     btOverlappingPairCache& pairs = *broadphase_.getOverlappingPairCache();
     for (int last = pairs.getNumOverlappingPairs() - 1; last >= 0; --last) {
       const btBroadphasePair pair = pairs.getOverlappingPairArray()[last];

@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <memory>
 
-/// Shapes and poses as Bullet has them, in float.
+/// Conversion of shapes and poses to Bullet's types, in float.
 namespace winnow::bench::in_bullet {
 
 inline btVector3 to_bullet(const double* v) {
@@ -34,7 +34,7 @@ inline std::unique_ptr<btStaticPlaneShape> make_plane(const HalfSpaceShape& half
                                               static_cast<btScalar>(half.offset));
 }
 
-/// A convex shape of a program's own, as Bullet takes it.
+/// A user shape as Bullet's custom convex shape.
 class LensShape final : public btConvexInternalShape {
  public:
   explicit LensShape(const Lens& lens) : lens_(lens) {
@@ -63,8 +63,8 @@ class LensShape final : public btConvexInternalShape {
   const Lens& lens_;
 };
 
-/// Hulls are made smaller by the margin that they then have. That of two balls is the smaller one's
-/// radius, which Bullet takes off both.
+/// Makes a shape. Hulls are shrunk by `hull_margin` and then get it as margin. The margin of a
+/// tapered capsule is its smaller radius, which Bullet subtracts from both.
 inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id,
                                                  double hull_margin) {
   const std::uint32_t i = id.index();

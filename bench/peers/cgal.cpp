@@ -2,7 +2,7 @@
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/adapters.h"
 
-// Its parallel version is compiled in only on request.
+// CGAL compiles its parallel version only with this macro.
 #define CGAL_LINKED_WITH_TBB
 #include <tbb/enumerable_thread_specific.h>
 
@@ -38,14 +38,13 @@ struct BoxTraits {
   static ID id(Box_parameter box) { return box.row; }
 };
 
-/// CGAL: box_self_intersection_d, closed, on float boxes by value (15 % faster than by pointer). It
-/// keeps nothing between frames. With more than one thread its parallel version is tried too, which
-/// does twice the work in more tasks: the first three frames run sequential, parallel, sequential,
-/// and the faster one goes on, until there are twice as many boxes.
-/// Best of what was tried: a cutoff of 4 sqrt(n) (400 at 10k, 1,265 at 100k; its default of 10
-/// takes 2.5 times as long on 100k uniform boxes), and the axes in such an order that the one it
-/// sweeps, its first, prunes most and the one it divides, its last, prunes next (the other way
-/// round a wall takes 5 times as long).
+/// CGAL: box_self_intersection_d, closed, on float boxes by value. It keeps no data between frames.
+/// With more than one thread its parallel version, which does more work in total, is tried too: the
+/// first three frames run sequentially, in parallel and sequentially, and the faster version is
+/// used from then on, until the number of boxes has doubled.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): boxes by value, not
+/// by pointer; a cutoff of 4 sqrt(n) instead of 10; and an order of axes in which the first, which
+/// is swept, prunes most and the last, which is divided, prunes second most.
 class CgalEngine final : public PairsAdapter {
  public:
   explicit CgalEngine(int threads) : serial_(threads < 2), decided_(serial_) {}
@@ -54,7 +53,7 @@ class CgalEngine final : public PairsAdapter {
 
   void start(std::span<const Aabb> boxes) override {
     axes_ = axes_by_pruning(boxes);
-    std::swap(axes_[1], axes_[2]);  // the second best last
+    std::swap(axes_[1], axes_[2]);  // the second best axis is the last
     find_pairs(boxes);
   }
 
@@ -66,7 +65,7 @@ class CgalEngine final : public PairsAdapter {
     find_pairs(all_boxes);
   }
 
-  /// At the height of a search: the boxes, and the copies that CGAL makes of them.
+  /// At the peak of a search: the boxes and CGAL's copies of them.
   [[nodiscard]] std::size_t bytes() const override {
     return boxes_.capacity() * sizeof(Box) * (parallel_ ? 10 : 2);
   }
@@ -134,7 +133,7 @@ class CgalEngine final : public PairsAdapter {
   std::array<int, 3> axes_{0, 1, 2};
   bool serial_;
   bool decided_;
-  std::size_t decided_for_ = 0;  // boxes
+  std::size_t decided_for_ = 0;  // number of boxes
   bool parallel_ = false;
   double parallel_ms_ = 0.0;
 };

@@ -14,13 +14,13 @@ namespace winnow::bench {
 namespace {
 
 /// Embree 3: rtcCollide of a scene with itself; the boxes are one user geometry. Building and
-/// colliding run on the threads of the calling arena. The device setting `threads=N` is left alone
-/// on purpose: it would cap the threads of every TBB user in the process.
-/// Best of what was tried: a dynamic scene of low build quality, committed every frame; medium
-/// quality doubles the frame, refitting is 10 to 20 % slower and wears off as objects move. It has
-/// nothing that costs less where few objects move, or are new.
-/// rtcCollide reports each pair in both orders and where primitives share a leaf also others:
-/// filtered.
+/// colliding run on the threads of the calling arena. The device setting `threads=N` is not used,
+/// as it would limit the threads of every TBB user in the process.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): a dynamic scene of
+/// low build quality, committed every frame. Medium quality was slower, and so was refitting, which
+/// gets worse as objects move. Embree has no cheaper update for few moved or new objects.
+/// rtcCollide reports each pair in both orders, and other pairs of primitives that share a leaf;
+/// the callback filters them.
 class EmbreeEngine final : public PairsAdapter {
  public:
   EmbreeEngine() : device_(rtcNewDevice(nullptr)) {
@@ -68,7 +68,7 @@ class EmbreeEngine final : public PairsAdapter {
     find_pairs();
   }
 
-  /// What the device says it holds.
+  /// Bytes according to the device.
   [[nodiscard]] std::size_t bytes() const override {
     return static_cast<std::size_t>(bytes_.load());
   }

@@ -1,3 +1,6 @@
+// Adapter of Embree for queries on boxes: rays, boxes, balls and nearest neighbours, each query by
+// a call of its own. peers.cpp makes it through adapters.h; measure/query_race times it.
+
 #include "bench/peers/adapters.h"
 
 #include <embree3/rtcore.h>
@@ -17,7 +20,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Four floats, of which the last is not used: one register.
+/// Four floats in one register; the last one is unused.
 using Four = float __attribute__((vector_size(16)));
 
 struct PaddedBox {
@@ -38,7 +41,7 @@ bool overlap(const PaddedBox& a, const PaddedBox& b) noexcept {
          b.min[1] <= a.max[1] && a.min[2] <= b.max[2] && b.min[2] <= a.max[2];
 }
 
-/// Of a point from a box.
+/// Returns the squared distance of a point from a box.
 double squared_distance(const PaddedBox& box, const Eigen::Vector3f& point) noexcept {
   double sum = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -50,9 +53,9 @@ double squared_distance(const PaddedBox& box, const Eigen::Vector3f& point) noex
   return sum;
 }
 
-/// What the callbacks need of the one ray that is under way.
+/// Data of the current ray for the callbacks.
 struct RayContext {
-  RTCIntersectContext context;  // first: the callbacks get its address
+  RTCIntersectContext context;  // first, because the callbacks get its address
   Four origin;
   Four inverse;              // of the direction
   std::vector<Found>* hits;  // null: the ray is shortened to the hit
@@ -61,14 +64,14 @@ struct RayContext {
     rtcInitIntersectContext(&context);
     origin = padded(ray.origin.data());
     for (int axis = 0; axis < 3; ++axis) {
-      // The least slope that Embree knows; no infinity times zero.
+      // The least slope that Embree uses; avoids infinity times zero.
       const float d = ray.direction[axis];
       inverse[axis] = 1.0F / (std::abs(d) < 1e-18F ? std::copysign(1e-18F, d) : d);
     }
     inverse[3] = 0.0F;
   }
 
-  /// Where the ray enters the box; infinity if it does not within [near_t, far_t].
+  /// Returns where the ray enters the box, or infinity if it does not within [near_t, far_t].
   [[nodiscard]] float enter(const PaddedBox& box, float near_t, float far_t) const noexcept {
     const Four a = (box.min - origin) * inverse;
     const Four b = (box.max - origin) * inverse;
@@ -80,16 +83,14 @@ struct RayContext {
   }
 };
 
-/// Embree 3: the boxes are one user geometry whose callbacks test slabs in float. Every question is
-/// a call of its own: there is no faster way to ask many.
-/// Best of what was tried (100,000 unit cubes, one thread): high build quality (medium 0 to 3 %
-/// slower, low 10 %, compact 10 to 25 %); robust (within 3 % of not robust, and then nothing is
-/// missed); single rays, which the callbacks meet with an inverse direction prepared once: streams
-/// (rtcIntersect1M) and packets (rtcIntersect16) of rays that have nothing to do with each other
-/// take 2.4 to 3 times as long. All hits: collected by a callback that does not shorten the ray,
-/// from rtcIntersect1, which is 10 % faster at it than rtcOccluded1, and sorted. Boxes:
-/// rtcPointQuery made to search a box and not the ball around it, which is 2 to 3 times as fast and
-/// as fast as rtcCollide with a scene of all the boxes, built for the purpose at low quality.
+/// Embree 3: the boxes are one user geometry whose callbacks test slabs in float. Every query is
+/// one call.
+/// Settings, the best of those tried on 100,000 unit cubes and one thread (measured by `winnow
+/// queries`): high build quality; robust mode, which was as fast and misses nothing; single rays,
+/// for which the callbacks get an inverse direction (streams and packets of incoherent rays were
+/// slower). All hits are collected by a callback of rtcIntersect1 that does not shorten the ray,
+/// and sorted. Box queries use rtcPointQuery, made to search a box instead of the ball around it;
+/// rtcCollide with a scene of all query boxes was not faster.
 class EmbreeQueries final : public QueryEngine {
  public:
   EmbreeQueries() : device_(rtcNewDevice(nullptr)) {
@@ -191,7 +192,7 @@ class EmbreeQueries final : public QueryEngine {
     return found;
   }
 
-  /// Answers one question; what is found is in `hits`.
+  /// Runs one query; the results are in `hits`.
   std::span<const Found> ask(const QuestionSet& set, std::size_t i, Hits& hits) {
     hits.clear();
     if (!set.rays.empty()) {
@@ -235,8 +236,8 @@ class EmbreeQueries final : public QueryEngine {
     }
   }
 
-  /// Calls `accept(query, row)` for every object whose box may be within the radius; it gives true
-  /// if it made the radius smaller.
+  /// Calls `accept(query, row)` for every object whose box may be within the radius; `accept`
+  /// returns true if it reduced the radius.
   template <typename Accept>
   void search(const Eigen::Vector3f& center, float radius, RTCPointQueryContext& context,
               Accept accept) const {
@@ -253,11 +254,11 @@ class EmbreeQueries final : public QueryEngine {
     search(center, radius, context, accept);
   }
 
-  /// The context says that the scene is an instance, scaled about the centre by factors that are
-  /// not the same on all axes: Embree then searches the box around the ball as it is scaled.
+  /// The query context describes the scene as an instance that is scaled about the centre, by
+  /// different factors on the axes: Embree then searches the bounding box of the scaled ball.
   void find_in_box(const Aabb& box, Hits& hits) const {
     const Eigen::Vector3f center = 0.5F * (box.min + box.max);
-    // Larger by more than rounding: what is found is tested exactly.
+    // Enlarged by more than rounding; candidates are tested exactly.
     const float slack = 1e-6F * center.cwiseAbs().maxCoeff() + 1e-30F;
     const Eigen::Vector3f half = 1.00001F * (as_eigen(box.max) - center).array() + slack;
     const float radius = half.maxCoeff();
@@ -286,7 +287,7 @@ class EmbreeQueries final : public QueryEngine {
     });
   }
 
-  /// Keeps the best so far sorted by insertion; the radius shrinks to the last of them.
+  /// Keeps the best results sorted by insertion; the radius shrinks to the last of them.
   void find_nearest(const Eigen::Vector3f& point, std::size_t count, Hits& hits) const {
     constexpr float kFar = std::numeric_limits<float>::infinity();
     search(point, kFar, [&](RTCPointQuery& query, unsigned row) {

@@ -11,10 +11,10 @@ namespace winnow::bench {
 namespace {
 
 /// Embree 3: a triangle geometry of high build quality, in one of its two modes: fast, which may
-/// miss where rays meet edges and vertices, or robust. Single rays by rtcIntersect1 and
-/// rtcOccluded1, many by the stream of rays of the same (rtcIntersect1M, rtcOccluded1M), which of
-/// what Embree has for rays that have nothing to do with each other is the fastest that takes rays
-/// as they come. All hits of one mesh are the closest one.
+/// miss hits at edges and vertices, or robust. Single rays use rtcIntersect1 and rtcOccluded1.
+/// Batches use streams (rtcIntersect1M, rtcOccluded1M), the fastest of Embree's functions for
+/// incoherent rays that takes rays in any order (measured by measure/ray_race). As there is one
+/// mesh, all hits are the closest one.
 class EmbreeRays final : public RayEngine {
  public:
   explicit EmbreeRays(bool robust)

@@ -11,8 +11,8 @@
 namespace winnow::bench {
 namespace {
 
-/// A shape that is nothing but its box, so that the box reaches the tree exactly: the object stands
-/// at the origin and FCL adds a zero translation.
+/// A shape that consists of its box only, so that the tree gets exactly that box: the object is at
+/// the origin, and FCL adds a zero translation.
 class BoxShape final : public fcl::CollisionGeometry<float> {
  public:
   explicit BoxShape(const Aabb& box) { set(box); }
@@ -42,16 +42,14 @@ bool collect(Object* a, Object* b, void* pairs) {
   return false;
 }
 
-/// FCL: DynamicAABBTreeCollisionManager, in float because its templates allow it (10-20 % faster
-/// than the double that the library is built for). One thread: it has no more.
-/// Best of what was tried: refitting the whole tree, even where 5 % moved (update of the changed
-/// objects by re-insertion costs 1.1 to 2.3 times as much), and building it anew as soon as the
-/// time lost to its ageing since the last build has reached what a build takes. Where few moved
-/// they are inserted again, and so are objects that left the place they had: refitted they would
-/// take the upper nodes along (then a search takes up to 600 times as long). Where those are many
-/// the tree is built anew. Of its other managers, at 1,000 and 3,000 objects, the array of nodes
-/// takes 1.1 to 6 times as long, the interval tree 10 times, and the two sweeps 0.3 to 0.9 times
-/// where hardly anything moves and 5 to 1,000 times where all does.
+/// FCL: DynamicAABBTreeCollisionManager, in float, which its templates allow and which is faster
+/// than the double of its library. FCL supports one thread only.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): refits the whole
+/// tree, and rebuilds it once the time lost to its degradation exceeds the time of a build. If few
+/// objects moved, they are inserted again instead. Objects that left their last box are always
+/// inserted again, because refitting them would enlarge the upper nodes; if they are many, the tree
+/// is rebuilt. FCL's other managers were slower, except its two sweeps in scenes in which hardly
+/// anything moves.
 class FclEngine final : public PairsAdapter {
  public:
   [[nodiscard]] std::string name() const override { return "FCL tree"; }
@@ -88,8 +86,8 @@ class FclEngine final : public PairsAdapter {
     find_pairs();
   }
 
-  /// At least: objects, shapes, nodes and the entries of the tree's hash table, without what the
-  /// allocator adds.
+  /// A lower bound: objects, shapes, nodes and the entries of the tree's hash table, without
+  /// overhead of the allocator.
   [[nodiscard]] std::size_t bytes() const override {
     constexpr std::size_t table_entry = sizeof(Tree::DynamicAABBTable::value_type) + 16;
     return objects_.size() *
@@ -98,7 +96,7 @@ class FclEngine final : public PairsAdapter {
   }
 
  private:
-  /// Of the rows that have none.
+  /// Adds objects for new rows.
   void add_objects(std::span<const Aabb> boxes) {
     shapes_.reserve(boxes.size());
     objects_.reserve(boxes.size());

@@ -1,3 +1,6 @@
+// Adapter of FCL's narrow phase: calls its solver's functions for each pair of kinds and level, and
+// converts the results. peers.cpp makes it through adapters.h.
+
 #include "bench/peers/adapters.h"
 #include "bench/peers/fcl_shapes.h"
 #include "bench/peers/narrow_adapter.h"
@@ -23,10 +26,10 @@ using TriangleTests = fcl::detail::Intersect<double>;
 using TriangleDistances = fcl::detail::TriangleDistance<double>;
 using Corners = std::array<Vector, 3>;
 
-/// FCL in double, the type its library is built for, by the functions of its solvers that its
-/// collide() and distance() end in: closed forms where it has them, else GJK and EPA of libccd or
-/// of its own. FCL has no GJK for two triangles: those go to its triangle functions, which know no
-/// depth. Pairs on which the solver of libccd throws count as overlapping.
+/// FCL in double, the type that its library is built for. Calls the solver functions at the end of
+/// FCL's collide() and distance(): closed forms if it has them, otherwise GJK and EPA of libccd or
+/// of its own. FCL has no GJK for two triangles, so these use its triangle functions, which give no
+/// depth. Pairs for which the libccd solver throws count as overlapping.
 template <typename Solver>
 class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
  public:
@@ -38,7 +41,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
-    // FCL has no tapered capsules, and takes no shapes of a program's own.
+    // FCL has no tapered capsules and does not support user shapes.
     for (const ShapeKind missing : {tapered_capsule, support}) {
       if (kind.a == missing || kind.b == missing) return nullptr;
     }
@@ -107,7 +110,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     }
   }
 
-  /// Of a shape and one that does not come before it.
+  /// Selects the function for a shape A and a second kind, which is not before A in order.
   template <typename A>
   static Answerer with_second(ShapeKind b, ContactLevel level) {
     switch (b) {
@@ -150,7 +153,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     return *static_cast<const Shape*>(body.geometry);
   }
 
-  /// Calls a function of the solver that gives a verdict.
+  /// Calls a solver function that returns a verdict; true if it throws.
   template <typename Question>
   static bool ask(Question&& question) {
     try {
@@ -169,7 +172,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     write_vector(answer.normal, n.x(), n.y(), n.z());
   }
 
-  /// EPA of the solver "indep" gives depths below zero, and normals in the axes of a.
+  /// EPA of the solver "indep" returns negative depths, and normals in the axes of a.
   static void put_right(fcl::ContactPoint<double>& contact, const Transform& a) {
     if (contact.penetration_depth >= 0.0) return;
     contact.penetration_depth = -contact.penetration_depth;
@@ -203,14 +206,14 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
                                             wanted ? &contact.normal : nullptr);
     });
     if (!wanted || !overlap) return overlap;
-    // Of triangles EPA's normals go from b to a.
+    // EPA's normals of triangles point from b to a.
     if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
     contacts->push_back(contact);
     return true;
   }
 
-  // The solver's functions of two shapes, or of a shape and a triangle, of which A or B is the
-  // corners.
+  // Calls the solver's function for two shapes, or for a shape and a triangle; the triangle's type
+  // is Corners.
 
   template <typename A, typename B>
   bool intersect(const Body& a, const Body& b, Contacts* contacts) {
@@ -311,7 +314,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   std::vector<std::shared_ptr<Geometry>> geometries_;
   std::vector<Body> bodies_;
   Contacts contacts_;
-  /// Null. Where the compiler knows that, it warns of code of FCL that is not reached then.
+  /// Always null. If the compiler could see that, it would warn about unreachable code of FCL.
   Contacts* no_contacts_ = nullptr;
 };
 

@@ -15,7 +15,7 @@ using namespace in_fcl;
 using Object = fcl::CollisionObject<double>;
 using Mesh = fcl::BVHModel<fcl::OBBRSS<double>>;
 
-/// No pair has more contacts.
+/// Above the number of contacts of any pair.
 constexpr std::size_t kMostContacts = 100'000;
 
 std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
@@ -33,8 +33,8 @@ std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
   return model;
 }
 
-/// FCL in double, the type its library is built for: its dynamic AABB tree, and collide() with all
-/// contacts; meshes with OBBRSS trees. It keeps nothing of a pair.
+/// FCL in double, the type that its library is built for: its dynamic AABB tree, and collide() with
+/// all contacts; meshes have OBBRSS trees. It keeps no data per pair.
 class FclScene final : public SceneEngine {
  public:
   [[nodiscard]] std::string name() const override { return "FCL"; }

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-/// Shapes and poses as FCL has them, in double.
+/// Conversion of shapes and poses to FCL's types, in double.
 namespace winnow::bench::in_fcl {
 
 using Vector = fcl::Vector3<double>;
@@ -29,7 +29,7 @@ using EllipsoidGeometry = fcl::Ellipsoid<double>;
 using HalfSpaceGeometry = fcl::Halfspace<double>;
 using HullGeometry = fcl::Convex<double>;
 
-/// Null for what is no solid.
+/// Returns null for a shape that is not a solid.
 inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
   switch (id.kind()) {

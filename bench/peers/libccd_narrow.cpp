@@ -1,3 +1,6 @@
+// Adapter of libccd: support functions for winnow's shapes, and its GJK with EPA and its MPR on
+// them. peers.cpp makes it through adapters.h.
+
 #include "bench/peers/adapters.h"
 #include "bench/peers/narrow_adapter.h"
 #include "bench/scenes/lens.h"
@@ -11,11 +14,11 @@
 namespace winnow::bench {
 namespace {
 
-/// A body as the support functions read it.
+/// A body, as the support functions read it.
 struct CcdBody {
   double turn[9];  // rotation, by columns
   double position[3];
-  double size[3];  // half lengths of a box; radii and half length of the round ones
+  double size[3];  // half lengths of a box; radii and half length of round shapes
   const Lens* lens;
   const double* vertex[3];  // columns of coordinates
   std::uint32_t vertices;
@@ -44,7 +47,8 @@ void add_radius(const ccd_vec3_t& direction, double radius, ccd_vec3_t& point) {
   for (int i = 0; i < 3; ++i) point.v[i] += factor * direction.v[i];
 }
 
-// Support points: of the body, in a direction of any length, both in world coordinates.
+// Support functions: the support point of a body in a direction of any length, both in world
+// coordinates.
 
 void of_sphere(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const CcdBody& body = *static_cast<const CcdBody*>(object);
@@ -141,7 +145,7 @@ void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poin
   to_world(body, at, *point);
 }
 
-/// All shapes measured contain their frame's origin.
+/// All shapes in the race contain the origin of their frame.
 void center_of(const void* object, ccd_vec3_t* center) {
   std::copy_n(static_cast<const CcdBody*>(object)->position, 3, center->v);
 }
@@ -169,7 +173,7 @@ ccd_support_fn support_of(ShapeKind kind) {
   }
 }
 
-/// `corners` of triangles have room for nine more.
+/// `corners` must have room for nine more values, which a triangle uses.
 CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
                   std::vector<double>& corners) {
   CcdBody body{};
@@ -225,9 +229,9 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
   return body;
 }
 
-/// libccd in double with support functions of our own. It has verdicts and one contact of pairs
-/// that overlap, by GJK and EPA or by MPR, and no distance of those that do not. Its own
-/// tolerances; iterations bounded, so that it ends.
+/// libccd in double with support functions defined here. It computes verdicts and, for overlapping
+/// pairs, one contact, by GJK and EPA or by MPR; it gives no distances of separate pairs. Default
+/// tolerances, with bounded iterations so that it terminates.
 class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
  public:
   explicit LibccdNarrow(bool portals) : portals_(portals) {
@@ -286,7 +290,7 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
   bool portals_;
   ccd_t ccd_;
   std::vector<CcdBody> bodies_;
-  std::vector<double> corners_;  // by triangles, columns of coordinates
+  std::vector<double> corners_;  // by triangle, columns of coordinates
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace winnow::bench {
 
-/// What adapters of other libraries share: a function that answers one pair, chosen by kind and
-/// level, and room for the answers.
+/// Base of narrow-phase adapters: Adapter::answerer selects a function for one pair by kind and
+/// level, and this class calls it for each pair and stores the answers.
 template <typename Adapter>
 class NarrowAdapter : public NarrowEngine {
  public:

@@ -1,3 +1,5 @@
+// Adapter of ODE's sweep-and-prune space as a broad phase. peers.cpp makes it through adapters.h.
+
 #include "bench/common/sample.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/adapters.h"
@@ -29,10 +31,10 @@ void counted_free(void* memory, dsizeint size) {
   std::free(memory);
 }
 
-/// The library as a whole, and the one class of geom used here.
+/// Initialises ODE as a whole, and registers the geom class of boxes.
 class Library {
  public:
-  /// Made at the first call, closed at exit.
+  /// Created at the first call, closed at exit.
   static const Library& get() {
     static const Library library;
     return library;
@@ -76,12 +78,12 @@ std::uint32_t row_of(dGeomID geom) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)));
 }
 
-/// ODE in double: the sweep-and-prune space. Its own box geoms compute bounds from centre and half
-/// length, which rounds; a geom class with a box as its data gives them exactly. One thread: its
-/// spaces have no more.
-/// Best of what was tried: sweep and prune, its axes ordered by what they prune. The hash space
-/// takes 1.3 to 2.7 times as long (on unit boxes at 10k, on mixed sizes at 100k), the quadtree
-/// space 1.1 to 15 times at 10k. What few objects do costs little, but each search is a whole one.
+/// ODE in double: the sweep-and-prune space. ODE's own box geoms compute bounds from centre and
+/// half length, with rounding, so a geom class with a box as its data gives exact bounds. ODE's
+/// spaces support one thread only.
+/// Settings, the best of those tried (measured by `winnow throughput --peers`): sweep and prune,
+/// with its axes ordered by how much they prune. The hash space and the quadtree space were slower.
+/// Updates of few objects are cheap, but each search covers all objects.
 class OdeEngine final : public PairsAdapter {
  public:
   OdeEngine() { Library::get(); }
@@ -91,7 +93,7 @@ class OdeEngine final : public PairsAdapter {
 
   [[nodiscard]] std::string name() const override { return "ODE SAP"; }
   [[nodiscard]] bool is_serial() const override { return true; }
-  /// A sweep along one axis: over a second a frame above.
+  /// It sweeps along one axis: a frame with more objects takes over a second.
   [[nodiscard]] std::size_t largest() const override { return 100'000; }
 
   void start(std::span<const Aabb> boxes) override {
@@ -117,13 +119,13 @@ class OdeEngine final : public PairsAdapter {
     find_pairs(all_boxes);
   }
 
-  /// What ODE allocated, of all ODE engines alive.
+  /// Bytes allocated by ODE, for all ODE engines together.
   [[nodiscard]] std::size_t bytes() const override {
     return allocated_bytes + geoms_.capacity() * sizeof(geoms_[0]);
   }
 
  private:
-  /// Of the rows that have none.
+  /// Adds geoms for new rows.
   void add_geoms(std::span<const Aabb> boxes) {
     geoms_.reserve(boxes.size());
     for (std::size_t i = geoms_.size(); i < boxes.size(); ++i) {

@@ -12,28 +12,28 @@
 
 namespace winnow::bench {
 
-// The other libraries that the tool was built with; none if without.
+// Engines of other libraries; all functions return none if the tool was built without them.
 
-/// The engines of other libraries found when this was built, in the order in which reports list
-/// them, each with its best settings for at most `threads` threads.
+/// Broad-phase engines, in the order in which reports list them, each with its best settings for at
+/// most `threads` threads.
 [[nodiscard]] std::vector<std::unique_ptr<Engine>> make_peers(int threads);
 
-/// The same of those that answer questions, for any number of threads.
+/// Engines for queries on boxes, for any number of threads.
 [[nodiscard]] std::vector<std::unique_ptr<QueryEngine>> make_query_peers();
 
-/// The same of those that answer pairs of bodies. They use one thread.
+/// Narrow-phase engines. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers();
 
-/// The same of those that say when moving bodies meet. They use one thread.
+/// Engines for times of impact. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<ImpactEngine>> make_impact_peers();
 
-/// The same of those that find the contacts of whole scenes. They use one thread.
+/// Engines for contacts of whole scenes. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<SceneEngine>> make_scene_peers();
 
-/// The same of those that take rays through a triangle mesh. They use one thread.
+/// Engines for rays at a triangle mesh. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<RayEngine>> make_ray_peers();
 
-/// The same of those that collide triangle meshes. They use one thread.
+/// Engines that collide triangle meshes. They use one thread.
 [[nodiscard]] std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers();
 
 }  // namespace winnow::bench

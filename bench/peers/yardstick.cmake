@@ -1,6 +1,6 @@
-# The yardstick: a folder with the prototype of a blocked sweep (sg3.h) to measure partitions
-# against, which needs AVX-512. Without the folder there is none, and nothing else changes. Like the
-# other libraries it is built for this machine, in a shared library that shows one function.
+# The yardstick: a prototype of a blocked sweep (sg3.h) in a separate folder, which needs AVX-512,
+# to measure partitions against. Without that folder it is left out. Like the other libraries it is
+# built for this machine, in a shared library that exports one function.
 set(WINNOW_YARDSTICK "${PROJECT_SOURCE_DIR}/../shared/yardstick" CACHE PATH
     "A folder with the prototype to measure partitions against, if there is one")
 
@@ -14,7 +14,7 @@ check_cxx_source_compiles("
 unset(CMAKE_REQUIRED_FLAGS)
 
 if(NOT WINNOW_NATIVE_AVX512 OR CMAKE_CROSSCOMPILING OR NOT EXISTS ${WINNOW_YARDSTICK}/sg3.h)
-  add_library(winnow_yardstick STATIC yardstick.cpp)  # which makes none
+  add_library(winnow_yardstick STATIC yardstick.cpp)  # its factory returns null
   target_link_libraries(winnow_yardstick PUBLIC winnow::pipeline PRIVATE winnow_flags)
   return()
 endif()

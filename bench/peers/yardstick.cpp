@@ -15,10 +15,9 @@ namespace {
 
 static_assert(sizeof(::Box) == sizeof(Aabb) && sizeof(Pair) == sizeof(u64));
 
-/// Addresses for every pair that there may be: the prototype writes without looking whether there
-/// is room.
+/// Reserves addresses for all possible pairs: the prototype writes without checking capacity.
 std::unique_ptr<AddressRange> room_for_pairs(std::size_t objects) {
-  constexpr std::size_t kSlack = 64;  // vectors are stored whole
+  constexpr std::size_t kSlack = 64;  // the prototype stores whole vectors
   constexpr std::size_t kMost = std::size_t{1} << 40U;
   const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMost);
   return std::make_unique<AddressRange>((pairs + kSlack) * sizeof(u64));
@@ -85,9 +84,9 @@ class YardstickEngine final : public Engine {
   }
 
   int threads_;
-  std::unique_ptr<tbb::task_arena> arena_;  // where there are more threads than it can use
+  std::unique_ptr<tbb::task_arena> arena_;  // used if there are more threads than it supports
   SG4<true> sweep_;
-  Outs found_;  // of which only the ends of the pairs are used
+  Outs found_;  // only the ends of the pairs are used
   std::array<std::unique_ptr<AddressRange>, kMostThreads> room_;
   std::size_t objects_ = 0;
   mutable std::vector<Pair> joined_;

@@ -9,9 +9,9 @@ namespace winnow::bench {
 
 inline constexpr std::string_view kYardstickName = "yardstick";
 
-/// A blocked sweep that keeps nothing from frame to frame, a prototype for AVX-512: what any
-/// structure has to be worth. It uses at most two threads, which write pairs to an array each. Null
-/// if the tool was built without the folder with the prototype, see WINNOW_YARDSTICK.
+/// A prototype of a blocked sweep for AVX-512 that keeps no data between frames: any structure
+/// should be faster. It uses at most two threads, each with its own array of pairs. Returns null if
+/// the tool was built without the folder of the prototype, see WINNOW_YARDSTICK.
 [[nodiscard]] std::unique_ptr<Engine> make_yardstick(int threads);
 
 }  // namespace winnow::bench

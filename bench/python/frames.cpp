@@ -1,10 +1,10 @@
-// What race.py measures, in C++: the same frames by the same calls.
+// The C++ counterpart of race.py: the same frames by the same calls.
 //
 // Usage: winnow_python_frames boxes|worlds FILE OBJECTS
 //
 // FILE holds frames of OBJECTS boxes, six floats each, or of OBJECTS positions of balls of radius
-// 0.5, ten in each environment, three doubles each. Prints the median milliseconds of a frame and
-// how many pairs or contacts the last one had.
+// 0.5, ten per environment, three doubles each. Prints the median milliseconds of a frame and the
+// number of pairs or contacts of the last one.
 
 #include <winnow/winnow.h>
 #include "bench/common/need.h"
@@ -33,7 +33,7 @@ std::vector<T> read(const char* path) {
   return values;
 }
 
-/// The median time of all frames but the first.
+/// Returns the median time of all frames but the first.
 template <typename Frame>
 double median_ms(std::size_t frames, Frame&& frame) {
   std::vector<double> times;

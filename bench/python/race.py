@@ -1,8 +1,8 @@
 """Usage: race.py [FRAMES]
 
-Times the Python package against scipy's cKDTree, open3d's search within a radius, and the same frames
-in C++, which FRAMES, by default winnow_python_frames of build/ci, runs. Prints median milliseconds of
-a frame.
+Times the Python package against scipy's cKDTree, open3d's fixed-radius search, and the same frames in
+C++. FRAMES is the C++ program, by default winnow_python_frames in build/ci. Prints the median
+milliseconds of a frame.
 """
 
 import os
@@ -42,7 +42,7 @@ def row(what, ours, theirs, name):
 
 
 def box_frames(count, frames):
-    """Unit boxes, two objects' room for each, that all move: (frames, n, 6) float32."""
+    """Unit boxes that all move, in a volume of two units per box: (frames, n, 6) float32."""
     random = np.random.default_rng(count)
     lower = random.uniform(0, (2 * count) ** (1 / 3), (count, 3))
     steps = random.normal(scale=0.05, size=(frames, count, 3)).cumsum(axis=0)
@@ -50,7 +50,7 @@ def box_frames(count, frames):
 
 
 def box_pairs_of_a_tree(boxes):
-    """By centres no farther apart than the largest boxes may be on each axis."""
+    """Finds centres no farther apart on any axis than the largest box edge, then tests the boxes."""
     lower, upper = boxes[:, :3], boxes[:, 3:]
     pairs = cKDTree((lower + upper) / 2).query_pairs(
         (upper - lower).max() * 1.000001, p=np.inf, output_type="ndarray"
@@ -61,7 +61,7 @@ def box_pairs_of_a_tree(boxes):
 
 
 def neighbours_by_open3d(points, radius):
-    """Of each point those in a radius, itself among them."""
+    """Returns for each point the points within the radius, itself included."""
     points = open3d.Tensor(points)
     search = open3d.nns.NearestNeighborSearch(points)
     search.fixed_radius_index(radius)
@@ -164,7 +164,7 @@ def worlds_in_python(values):
 
 
 def race_cpp(program, rounds=5):
-    """Alternately, so that what else the machine does meets both."""
+    """Alternates the two, so that other load on the machine affects both alike."""
     random = np.random.default_rng(7)
     worlds = random.uniform(0, 3, (10_000, 3)) + random.normal(0, 0.02, (60, 10_000, 3))
     cases = [

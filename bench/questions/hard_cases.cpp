@@ -8,7 +8,7 @@
 namespace winnow::bench {
 namespace {
 
-/// NaN for what is no number, which no comparison below accepts.
+/// Returns NaN if the value is not a number; every comparison below then fails.
 double number(const Json& value) {
   double result = std::nan("");
   static_cast<void>(read_number(value, result));
@@ -23,7 +23,8 @@ Eigen::Vector3d vector(const Json& value) {
   return {number(element(value, 0)), number(element(value, 1)), number(element(value, 2))};
 }
 
-/// The largest length that a shape is made of.
+/// Returns the shape's size, to which errors are relative: the sum of its lengths, or the distance
+/// of its farthest vertex from the origin.
 double size_of(const Json& shape) {
   double size = 0.0;
   for (const char* name : {"rounding", "radius", "half_length"}) {
@@ -50,12 +51,12 @@ std::string fault_of_normal(const Json& expect, const Json& answer) {
   return n.cross(expected).norm() <= kNormalError && n.dot(expected) > 0.0 ? "" : "normal";
 }
 
-/// Numbers of the answer against what is true and allowed.
+/// Compares distance, overlap, error bound and normal of an answer with the expected values.
 std::string fault_of_numbers(const Json& question, const Json& answer, double promised,
                              CaseVerdict& verdict) {
   const Json& expect = member(question, "expect");
   const double truth = number(member(expect, "distance"));
-  // The truth in the file is rounded to the nearest double, at least.
+  // The expected distance in the file is itself rounded to the nearest double.
   const double slack = tolerance(expect) + 0x1p-52 * std::abs(truth);
   const double scale =
       size_of(member(question, "a")) + size_of(member(question, "b")) + std::abs(truth);

@@ -8,33 +8,37 @@
 
 namespace winnow::bench {
 
-/// Hard cases are questions whose answers are known by reasoning, as `winnow query` takes them,
-/// with one more member: "expect" holds a "status" other than ok, or what the answer is: "overlap",
-/// "distance" and "normal" (where it is unique) of a pair, "hit", "t" and "normal" of a ray, with a
-/// "tolerance" where these had to be rounded by more than doubles are.
+/// Hard cases are queries in the format of `winnow query` whose results are known independently of
+/// the library. Each has one more member, "expect": either a "status" other than ok, or the result.
+/// The result is "overlap", "distance" and (if unique) "normal" of a pair; "hit", "t" and "normal"
+/// of a ray; and a "tolerance" if the values had to be rounded by more than double precision
+/// rounds.
 
-// Faults of a verdict.
+// Values of CaseVerdict::fault.
 inline constexpr const char* kContactLost = "contact lost";
 inline constexpr const char* kFalseContact = "false contact";
 
-/// How the answer to a hard case was.
+/// Result of comparing an answer with the expectation of a hard case.
 struct CaseVerdict {
-  /// What is wrong; empty if nothing is: the id, the status, the verdict, the distance, the error
-  /// bound, or a normal that is not unit or more than 0.01 degrees off.
+  /// Name of the first member that is wrong: id, status, overlap, distance, error bound, or a
+  /// normal that is not of unit length or is more than 0.01 degrees off. Empty if all are right.
   std::string fault;
-  /// Of the distance, relative to sizes and distance; NaN: there is none.
+  /// Error of the distance, relative to the sizes of both shapes plus the distance. NaN if there is
+  /// none.
   double error = std::numeric_limits<double>::quiet_NaN();
-  /// The same over the most that is allowed.
+  /// Error of the distance divided by the largest allowed error. NaN if there is none.
   double over_allowed = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// `promised` is the largest error of a distance that is right, relative to sizes and distance.
+/// Compares an answer with the expectation in its question. `promised` is the largest allowed error
+/// of a distance, relative to the sizes of both shapes plus the distance.
 [[nodiscard]] CaseVerdict judge_case(const Json& question, const Json& answer, double promised);
 
-/// What a tier promises.
+/// Returns the largest error that a tier guarantees, in the units of `judge_case`.
 [[nodiscard]] double promised_error(NarrowTier tier);
 
-/// The same with a and b exchanged where there are both, which turns the normals expected.
+/// Returns the questions with a and b swapped and expected normals negated; questions that lack
+/// either shape are copied unchanged.
 [[nodiscard]] Json exchanged(const Json& questions);
 
 }  // namespace winnow::bench

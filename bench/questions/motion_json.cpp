@@ -10,13 +10,14 @@
 namespace winnow::bench {
 namespace {
 
-/// "0x1.8p+1" with or without a sign; nothing before or behind it.
+/// Reads a hexadecimal number such as "0x1.8p+1", with or without a sign, that fills the whole
+/// text.
 bool read_hexadecimal(std::string_view text, double& out) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   if (!text.starts_with("0x") && !text.starts_with("0X")) return false;
   text.remove_prefix(2);
-  // What follows is neither a second sign nor the name of an infinity.
+  // std::from_chars would accept a second sign or the name of an infinity here.
   if (text.empty() || std::string_view("0123456789abcdefABCDEF.").find(text[0]) == text.npos) {
     return false;
   }

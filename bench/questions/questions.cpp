@@ -1,3 +1,7 @@
+// Answers the queries of a JSON file (`winnow query`). Rays and motions are answered one by one as
+// they are read; pairs that do not move are collected and answered together by one
+// NarrowPhase::collide.
+
 #include "bench/questions/questions.h"
 
 #include <winnow/pipeline/time_of_impact.h>
@@ -13,7 +17,7 @@ Json list(double x, double y, double z) {
   return Json::array({number_to_json(x), number_to_json(y), number_to_json(z)});
 }
 
-/// The bodies and pairs of all questions about pairs, and where their answers go.
+/// Collects the bodies and pairs of all questions and stores each answer in its question's row.
 class Questionnaire {
  public:
   explicit Questionnaire(std::size_t count) : answers_(count) {}

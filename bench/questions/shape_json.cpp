@@ -1,3 +1,6 @@
+// Reads shapes, poses, motions and rays of JSON queries and adds the shapes to the pools.
+// questions.cpp calls these functions; shape_json.h states the format.
+
 #include "bench/questions/shape_json.h"
 
 #include <algorithm>
@@ -22,7 +25,7 @@ bool read_numbers(const Json& value, std::span<double> out) {
   return true;
 }
 
-/// Reads members of one object and remembers whether all were there and of the right type.
+/// Reads members of one object and records whether all were present and of the right type.
 class ShapeReader {
  public:
   explicit ShapeReader(const Json& object) : object_(object), good_(object.is_object()) {}
@@ -69,7 +72,7 @@ Status add(ShapePool& pool, const ShapeReader& reader, const Shape& shape, Shape
   return reader.good() ? pool.add(shape, id) : Status::invalid_argument;
 }
 
-/// A length with a rounding on top; a negative rounding is no shape, whatever the length.
+/// Adds the rounding radius to a length. A negative rounding gives NaN, which the pool rejects.
 double rounded(double length, double rounding) {
   return rounding >= 0.0 ? length + rounding : kNan;
 }
@@ -85,7 +88,7 @@ Status add_triangle(ShapePool& pool, ShapeReader& reader, double rounding, Shape
   return pool.add(shape, id);
 }
 
-/// What has a radius.
+/// Adds a shape that is defined by a radius: a sphere, or a kind with a half length as well.
 Status add_round(const std::string& type, ShapePool& pool, ShapeReader& reader, double rounding,
                  ShapeId& id) {
   const double radius = reader.number("radius");
@@ -106,7 +109,8 @@ Status add_mesh(const Json& value, ShapeReader& reader, CompositePool& composite
     if (!triangle.is_array() || triangle.size() != 3) return Status::invalid_argument;
     for (const Json& corner : triangle) {
       if (!corner.is_number_unsigned()) return Status::invalid_argument;
-      // No vertex has a number that does not fit.
+      // Vertex numbers beyond 32 bits are clamped; no mesh has that many vertices, so the pool
+      // rejects them.
       const auto number = std::min<std::uint64_t>(corner.get<std::uint64_t>(), ~0U);
       corners.push_back(static_cast<std::uint32_t>(number));
     }
@@ -170,7 +174,7 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   return add_round(type, pool, reader, rounding, id);
 }
 
-/// What the member `name` says of a pose; the rest stays as it is.
+/// Overwrites the parts of `pose` that the member `name` contains and keeps the others.
 Status read_pose(const Json& shape, const char* name, Pose& pose) {
   if (!shape.contains(name)) return Status::ok;
   ShapeReader reader(shape[name]);
@@ -180,7 +184,7 @@ Status read_pose(const Json& shape, const char* name, Pose& pose) {
   return pose.is_valid() ? Status::ok : Status::invalid_pose;
 }
 
-/// What a compound may be made of.
+/// Adds any shape that may be a child of a compound.
 Status add_child(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
   ShapeReader reader(value);
   const std::string type = reader.text("type");
@@ -204,7 +208,7 @@ Status add_compound(const Json& value, ShapePool& pool, CompositePool& composite
   return composites.add_compound(children, id);
 }
 
-/// A convex shape, or a composite one.
+/// Adds a convex or composite shape.
 Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
   const bool is_compound = ShapeReader(value).text("type") == "compound";
   return is_compound ? add_compound(value, pool, composites, id)

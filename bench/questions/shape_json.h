@@ -10,31 +10,32 @@
 
 namespace winnow::bench {
 
-/// A shape of a file of questions: it is added to the pool, and `pose` is what the member of that
-/// name says (the identity where it or a part of it is missing). `invalid_argument` where a member
-/// is missing or of the wrong type, a hull has no point or the type is unknown; else what the pool
-/// says of the shape; else `invalid_pose`. Unless `ok`, `id` and `pose` mean nothing.
+/// Reads a shape, adds it to the pool and reads its "pose"; missing parts of the pose are the
+/// identity. Returns `invalid_argument` if a member is missing or of the wrong type, a hull has no
+/// point or the type is unknown; else the pool's status if it rejects the shape; else
+/// `invalid_pose` if the pose is invalid. `id` and `pose` are valid only if the status is `ok`.
 [[nodiscard]] Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose);
 
-/// True of a shape that says where it goes.
+/// Returns whether a shape has an "end_pose".
 [[nodiscard]] bool has_end_pose(const Json& value);
 
-/// The same with a motion from "pose" to "end_pose" by the shorter way around; what the latter does
-/// not say is as at the start, and without it the shape stands. It may be composite as well, and is
-/// added to `composites`: {"type": "mesh", "v": points, "triangles": three numbers each},
+/// As `read_shape`, for a shape that moves from "pose" to "end_pose" and rotates the shorter way.
+/// Missing parts of "end_pose" are copied from "pose"; without it the shape does not move. The
+/// shape may also be composite, and is then added to `composites`:
+/// {"type": "mesh", "v": points, "triangles": three numbers each},
 /// {"type": "height_field", "heights": rows of numbers, "spacing": two numbers, or 1},
 /// {"type": "compound", "children": shapes with poses}.
 [[nodiscard]] Status read_moving_shape(const Json& value, ShapePool& pool,
                                        CompositePool& composites, ShapeId& id, RigidMotion& motion);
 
-/// {"origin", "direction", "max_t"}; without max_t the ray has no end. `invalid_argument` where a
-/// member is missing or of the wrong type.
+/// Reads {"origin", "direction", "max_t"}; without max_t the ray is infinite. Returns
+/// `invalid_argument` if a member is missing or of the wrong type.
 [[nodiscard]] Status read_ray(const Json& value, ShapeRay& ray);
 
-/// A number, or "nan", "inf" or "-inf". False for anything else.
+/// Reads a number, or "nan", "inf" or "-inf". Returns false for anything else.
 [[nodiscard]] bool read_number(const Json& value, double& out);
 
-/// A number as JSON can say it: infinities and NaN become "inf", "-inf" and "nan".
+/// Converts a number to JSON, which has no infinities or NaN: they become "inf", "-inf" and "nan".
 [[nodiscard]] Json number_to_json(double value);
 
 }  // namespace winnow::bench

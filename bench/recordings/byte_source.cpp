@@ -22,7 +22,7 @@ class FileSource final : public ByteSource {
     }
     file_.reset(std::fopen(path.c_str(), "rb"));
     if (!file_) throw RecordingError(path + ": cannot be opened: " + std::strerror(errno));
-    // Something that is not a plain file (a pipe) has no size; reading then tells.
+    // A pipe has no size; `size_` then stays empty and reading finds the end.
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (!error) size_ = bytes;
     start_size_ = std::fread(start_.data(), 1, start_.size(), file_.get());
@@ -56,7 +56,7 @@ class FileSource final : public ByteSource {
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
   std::optional<std::uint64_t> size_;
-  // The file's first bytes, read ahead to see what it is: a pipe cannot be rewound.
+  // The first bytes are read ahead to detect the file type, since a pipe cannot be rewound.
   std::array<unsigned char, kMagic.size()> start_{};
   std::size_t start_size_ = 0;
   std::size_t start_used_ = 0;

@@ -16,19 +16,20 @@ class ByteSource {
   ByteSource& operator=(const ByteSource&) = delete;
   virtual ~ByteSource() = default;
 
-  /// Fills `out`; less than its size only at the end of the file. Throws RecordingError.
+  /// Fills `out` and returns the number of bytes, less than its size only at the end of the file.
+  /// Throws RecordingError.
   virtual std::size_t read(std::span<std::byte> out) = 0;
-  /// The whole size in bytes, if known before reading.
+  /// Returns the whole size in bytes, if it is available before reading.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
 
  protected:
   ByteSource() = default;
 };
 
-/// Opens a file; one that starts like an .xz is decompressed. Throws RecordingError.
+/// Opens a file and decompresses it if it has the magic bytes of xz. Throws RecordingError.
 [[nodiscard]] std::unique_ptr<ByteSource> open_bytes(const std::string& path);
 
-/// The decompressing one; throws RecordingError if built without liblzma.
+/// Wraps a source of xz data. Throws RecordingError if built without liblzma.
 [[nodiscard]] std::unique_ptr<ByteSource> make_xz_source(std::unique_ptr<ByteSource> compressed,
                                                          const std::string& path);
 

@@ -15,7 +15,7 @@ namespace winnow::bench {
 static_assert(std::endian::native == std::endian::little && std::numeric_limits<float>::is_iec559,
               "recordings are read and written as they lie in memory");
 
-/// Where things stand in a recording.
+/// Byte offsets and sizes of an .aabbs file.
 inline constexpr std::size_t kTextSize = 128;
 inline constexpr std::size_t kObjectsAt = 256;
 inline constexpr std::size_t kStepsAt = 260;

@@ -1,3 +1,7 @@
+// Converts a recording of a program's calls (winnow::Recorder) into frames of boxes or contacts.
+// read_recording() and read_contacts() in reader.cpp call it. The calls are played twice: first to
+// find the partition or scene with the most objects, then to read its boxes at each frame's end.
+
 #include <winnow/pipeline/replay.h>
 #include "bench/recordings/recording.h"
 
@@ -8,7 +12,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Plays a program's recording and takes the boxes of the partition or scene that holds the most
+/// Plays a program's recording and reads the boxes of the partition or scene that holds the most
 /// objects.
 class ProgramReader {
  public:
@@ -37,7 +41,8 @@ class ProgramReader {
     throw RecordingError(path_ + ": " + what);
   }
 
-  /// Whether frames are told, and which world holds the most.
+  /// Plays the recording once. Finds the world that holds the most objects, and whether the
+  /// recording marks frames; if not, each query for all pairs or contacts ends a frame.
   void play_once() {
     RecordingPlayer player(bytes_);
     std::size_t most = 0;
@@ -91,7 +96,7 @@ class ProgramReader {
     if (contacts == nullptr || contacts->level() != ContactLevel::manifold) return found;
     for (std::size_t pair = 0; pair < contacts->size(); ++pair) {
       BodyDefinition body;
-      // One that was removed since.
+      // The body was removed after the contacts were computed.
       if (player.scene(world_)->body(contacts->a()[pair], body) != Status::ok) continue;
       const std::uint32_t last = contacts->manifold_first()[pair + 1];
       for (std::uint32_t m = contacts->manifold_first()[pair]; m < last; ++m) {
@@ -114,7 +119,7 @@ class ProgramReader {
     }
   }
 
-  /// A row is an id; one of no object is left empty.
+  /// Stores each object's box in the row of its id. Rows without an object stay empty.
   void take_boxes(const RecordingPlayer& player, std::vector<Aabb>& frame) const {
     const auto put = [&](ObjectId id, const Aabb& box) {
       if (frame.size() <= id) frame.resize(id + std::size_t{1});
@@ -139,7 +144,7 @@ class ProgramReader {
     }
   }
 
-  /// Rows without an object become points beside all that there is, no two at one place.
+  /// Replaces each row without an object by a distinct point outside the bounds of all boxes.
   void park_absent() {
     Aabb& world = recording_.world;
     std::size_t rows = 0;
@@ -156,7 +161,7 @@ class ProgramReader {
     }
     int along = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      // What is infinite in every frame.
+      // All boxes of all frames are infinite along this axis.
       if (!(world.min[axis] <= world.max[axis])) world.min[axis] = world.max[axis] = 0.0F;
       if (extent(axis) > extent(along)) along = axis;
     }

@@ -1,3 +1,6 @@
+// Reads .aabbs recordings, which it checks against their header, and passes recordings of programs
+// to program_reader.cpp. Commands of the bench tool call read_recording().
+
 #include "bench/recordings/byte_source.h"
 #include "bench/recordings/layout.h"
 #include "bench/recordings/recording.h"
@@ -11,8 +14,8 @@
 namespace winnow::bench {
 namespace {
 
-/// Bytes of a whole file with this many frames, or the largest number if that is beyond 64 bits.
-/// Both counts come from 31 bits, so their product fits.
+/// Returns the size in bytes of a file with this many frames, or the largest number if that exceeds
+/// 64 bits. Both counts have 31 bits, so their product does not overflow.
 std::uint64_t file_size(std::uint64_t objects, std::uint64_t frames) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
   const std::uint64_t boxes = frames * objects;
@@ -26,8 +29,8 @@ class Reader {
   Recording read() {
     read_header();
     check_size();
-    // The file has `steps_` frames or one more; where its size is not known in advance, its end
-    // tells which.
+    // A file has either `steps_` or `steps_ + 1` frames. If its size is not available in advance,
+    // its end decides.
     for (std::uint64_t f = 0; f <= steps_; ++f) {
       std::vector<Aabb> boxes = read_frame(f);
       if (boxes.empty()) break;
@@ -104,9 +107,10 @@ class Reader {
     }
   }
 
-  /// Empty at the end of the file.
+  /// Returns an empty vector at the end of the file.
   std::vector<Aabb> read_frame(std::uint64_t frame) {
-    // In portions, so that a header that promises too much costs no more memory than the file.
+    // Reads in portions, so that a wrong count in the header cannot allocate more than the file's
+    // size.
     constexpr std::uint64_t kPortion = 4096;
     std::vector<std::byte> portion(kPortion * kBoxSize);
     std::vector<Aabb> boxes;
@@ -137,10 +141,10 @@ class Reader {
   Recording recording_;
   std::uint64_t objects_ = 0;
   std::uint64_t steps_ = 0;
-  std::uint64_t offset_ = 0;  // of the next byte to read
+  std::uint64_t offset_ = 0;  // offset of the next byte to read
 };
 
-/// Looks into plain files alone: what is read of a pipe is gone.
+/// Checks plain files only, because bytes read from a pipe could not be read again.
 bool is_program(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;

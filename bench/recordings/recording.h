@@ -23,9 +23,10 @@ namespace winnow::bench {
 //   byte 304  box[N]     the first frame, then F more; files with F frames in all exist too
 // A box is 8 floats: min x y z and one not used, max x y z and one not used.
 //
-// Or what a program recorded of itself (winnow::Recorder; pipeline/CONTRACT.md has the format).
+// The other format is a program's recording of its own calls (winnow::Recorder); see
+// pipeline/FORMATS.md.
 
-/// What is wrong with a file, and where.
+/// The message names the file and what is wrong with it.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,30 +36,30 @@ struct Recording {
   std::string scene;
   std::string object_type;
   Aabb world;
-  /// Each as large as the one before or larger: that of a program grows with the objects that it
-  /// has at a time. A row whose object is gone is a point beside the world until another gets it.
+  /// Sizes never decrease: in a program's recording, a frame has a row for each id used so far. A
+  /// row without an object is a point outside the world's other boxes until an object gets its id.
   std::vector<std::vector<Aabb>> frames;
 
-  /// How a program's recording was played.
+  /// Statistics of playing a program's recording.
   struct Program {
     std::uint64_t calls = 0;
     std::uint64_t questions = 0;
-    std::uint64_t differences = 0;  ///< questions that were not answered as recorded
+    std::uint64_t differences = 0;  ///< queries whose results differ from the recorded ones
     bool is_whole = false;          ///< the recording was closed
   };
   std::optional<Program> program;
 
-  /// Of the last frame.
+  /// Returns the number of rows of the last frame.
   [[nodiscard]] std::size_t objects() const noexcept {
     return frames.empty() ? 0 : frames.back().size();
   }
 };
 
-/// Reads a whole .aabbs file, or what a program recorded; either may be an .xz if built with
-/// liblzma. Throws RecordingError.
+/// Reads a whole .aabbs file or a program's recording; either may be compressed with xz if built
+/// with liblzma. Throws RecordingError.
 [[nodiscard]] Recording read_recording(const std::string& path);
 
-/// What a program recorded, as frames of boxes: its calls are played twice. Throws RecordingError.
+/// Plays a program's recording twice and returns its boxes as frames. Throws RecordingError.
 [[nodiscard]] Recording read_program(const std::string& path, std::span<const std::byte> bytes);
 
 /// A point at which two bodies of a scene touch.
@@ -67,23 +68,24 @@ struct RecordedContact {
   Vec3f normal;  ///< unit, from one body to the other
 };
 
-/// The contacts that a program was last told of by the end of each frame of `read_recording`, with
-/// bodies where they stand there: of a scene asked at level manifold. No frames of an .aabbs file.
-/// Throws RecordingError.
+/// Returns, for each frame of `read_recording`, the contacts that the scene had computed last by
+/// the frame's end, at level manifold, at the bodies' poses of that time. Returns no frames for an
+/// .aabbs file. Throws RecordingError.
 [[nodiscard]] std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path);
 
-/// The same of what a program recorded.
+/// As above, for the bytes of a program's recording.
 [[nodiscard]] std::vector<std::vector<RecordedContact>> read_program_contacts(
     const std::string& path, std::span<const std::byte> bytes);
 
-/// The .aabbs and .winnow files of a folder, .xz or not, by name; none if the folder is not there.
+/// Returns the .aabbs and .winnow files of a folder, including .xz ones, sorted by name; none if
+/// the folder does not exist.
 [[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
 
 /// Writes the source's current frame and `steps` more. Throws RecordingError.
 void write_recording(const std::string& path, FrameSource& source, const std::string& object_type,
                      std::size_t steps);
 
-/// A recording that is shown from its first frame on. It must outlive the source.
+/// Returns a source that plays the recording from its first frame. The recording must outlive it.
 [[nodiscard]] std::unique_ptr<FrameSource> play(const Recording& recording);
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Compares two reports value by value; `compare` in compare.h states the rule. commands/compare.cpp
+// prints the result.
+
 #include "bench/report/compare.h"
 
 #include "bench/common/table.h"
@@ -13,7 +16,7 @@ namespace {
 
 enum class CompareUnit { figure, time, rate };
 
-/// "ms", "ns/pair" are times, "1/s", "GB/s" rates.
+/// Classifies a unit: "ms" and "ns/pair" are times, "1/s" and "GB/s" are rates, others are figures.
 CompareUnit unit_kind(const std::string& unit) {
   const std::size_t slash = unit.find('/');
   const std::string over = unit.substr(0, slash);
@@ -22,11 +25,11 @@ CompareUnit unit_kind(const std::string& unit) {
                                                                      : CompareUnit::figure;
 }
 
-/// A value as a cost: of rates, the time that one takes.
+/// A value as a cost, of which less is better. Values of which more is better are inverted.
 struct Cost {
   double best = 0.0;
   double median = 0.0;
-  bool steady = true;  ///< can be told from noise
+  bool steady = true;  ///< enough samples to distinguish a change from noise
 };
 
 constexpr std::size_t kFewestSamples = 5;
@@ -56,12 +59,12 @@ ChangeVerdict verdict_of(const Cost& before, const Cost& after, double threshold
   return ratio > threshold || ratio < 1.0 / threshold ? ChangeVerdict::noise : ChangeVerdict::same;
 }
 
-/// Text of a value that tells which pairs were found.
+/// Returns whether the value is a hash of the pairs found.
 bool is_fingerprint(const Json& column) {
   return column["name"].get<std::string>().find("fingerprint") != std::string::npos;
 }
 
-/// Whether a value was computed from those of other rows.
+/// Returns whether the value was computed from values of other rows.
 bool is_derived(const Json& row, const std::string& name) {
   if (!row.contains("from")) return false;
   const Json& from = row["from"];
@@ -101,7 +104,7 @@ class Comparing {
   const Results& after_;
   CompareOptions options_;
   bool same_questions_ = true;
-  bool quick_ = false;  // one of them, so that times say nothing
+  bool quick_ = false;  // a report made with --quick has no comparable times
   std::map<std::string, const Json*> old_rows_;
   std::size_t matched_ = 0;
   ReportComparison found_;
@@ -183,7 +186,8 @@ class Comparing {
     found_.changes.push_back(std::move(change));
   }
 
-  /// Of a time, zero is too little to be measured, and says nothing.
+  /// Handles a value that is zero in a report. A time of zero was too short to be measured, so it
+  /// gives no verdict.
   void add_zero(Change change, const Json& column) {
     if (change.before != change.after) {
       if (unit_kind(change.unit) != CompareUnit::figure) return;

@@ -6,8 +6,8 @@
 
 namespace winnow::bench {
 
-/// A table of a report as CSV (RFC 4180): a column a key and a value, three (min, median, max)
-/// where a row has a spread.
+/// Formats a report's table as CSV (RFC 4180), with one column for each key and value. A value with
+/// a spread has three columns (min, median, max).
 [[nodiscard]] std::string to_csv(const Json& table);
 
 }  // namespace winnow::bench

@@ -1,3 +1,7 @@
+// Evaluates the blocks of layout.json over the results: selects rows, groups them and returns
+// tables and plots as parts. page.cpp and markdown.cpp format the parts; layout.h states the
+// language.
+
 #include "bench/report/layout.h"
 
 #include "bench/common/sample.h"
@@ -37,7 +41,7 @@ bool is_figure(const Part& part) {
   return part.kind == Part::Kind::table || part.kind == Part::Kind::plot;
 }
 
-/// Marks the best of each column in which there are several.
+/// Marks the best cell of each column that has at least two numbers.
 void mark_best(CellTable& table, bool less) {
   for (std::size_t c = 1; c < table.header.size(); ++c) {
     Cell* best = nullptr;
@@ -53,7 +57,7 @@ void mark_best(CellTable& table, bool less) {
   }
 }
 
-/// More series than this cannot be told apart in one plot.
+/// Largest number of series that a reader can tell apart in one plot.
 constexpr std::size_t kMostSeries = 12;
 
 double median_height(const PlotSeries& series) {
@@ -62,7 +66,7 @@ double median_height(const PlotSeries& series) {
   return median_of(heights);
 }
 
-/// Keeps the series that do best, in their order, and says so.
+/// Keeps the kMostSeries best series in their order and adds that to the title.
 void thin_out(Plot& plot, bool more_is_better) {
   const std::size_t all = plot.series.size();
   if (all <= kMostSeries) return;
@@ -83,7 +87,7 @@ void thin_out(Plot& plot, bool more_is_better) {
   plot.title += ": the best " + grouped(kMostSeries) + " of " + grouped(all);
 }
 
-/// The series of the points of which no other has both less x and less y.
+/// Returns the Pareto front: the points that no other point beats in both x and y.
 PlotSeries pareto_front(const std::vector<PlotSeries>& series) {
   std::vector<PlotPoint> points;
   for (const PlotSeries& one : series) {
@@ -147,7 +151,7 @@ class Evaluation {
     to.push_back({Part::Kind::command, kOnPage, (*rows.front())["command"]});
   }
 
-  /// The scope with every combination of what "each" binds.
+  /// Returns the scope once for each combination of the values that "each" binds.
   [[nodiscard]] std::vector<Json> bindings(const Json& block, const Json& scope) const {
     std::vector<Json> all{scope};
     const Json each = block.value("each", Json::object());
@@ -197,7 +201,8 @@ class Evaluation {
     return results_.rows(name, where);
   }
 
-  /// A value of a row (null: "-"), or its key, as its column says; spreads show their median.
+  /// Returns the cell of a row's value or key ("-" if the row is null), formatted by its column. A
+  /// spread is shown by its median.
   [[nodiscard]] Cell cell(const std::string& table, const Json* row,
                           const std::string& value) const {
     const Json* column = results_.column(table, value);
@@ -322,7 +327,7 @@ class Evaluation {
                 column["value"]);
   }
 
-  /// The row of another table with the keys of this one.
+  /// Returns the row of another table that has the same keys.
   [[nodiscard]] const Json* joined(const std::string& other, const Json& row, Json where) const {
     const Json* table = results_.table(other);
     if (table == nullptr) return nullptr;
@@ -341,7 +346,7 @@ class Evaluation {
         const Json* peer = nullptr;
         for (const Json* row : rows_of(words[0], bound, entry)) {
           const std::string name = (*row)[words[1]];
-          if (name == kYardstickName) continue;  // which is no library
+          if (name == kYardstickName) continue;  // the yardstick is not a library
           const Json*& least = is_peer(name) ? peer : own;
           if (row->value("right", "yes") != "yes" || !row->contains(words[2])) continue;
           if (!is_peer(name) && entry.value("own", name) != name) continue;
@@ -406,7 +411,8 @@ class Evaluation {
     to.push_back({Part::Kind::plot, targets_of(block), "", {}, std::move(plot)});
   }
 
-  /// To the last series; rows without x or y, or not above 0 on a logarithmic axis, are left out.
+  /// Adds points to the last series. Skips rows without x or y, and values not above 0 on a
+  /// logarithmic axis.
   void add_points(Plot& plot, const std::string& table, const RowList& rows, const std::string& x,
                   const std::string& y) const {
     PlotSeries& series = plot.series.back();

@@ -10,14 +10,14 @@
 
 namespace winnow::bench {
 
-/// One cell of a table. Where it shows a value of a row, it says of which.
+/// One cell of a table. A cell that shows a value names its row and the value.
 struct Cell {
   std::string text;
   std::string row{};
   std::string value{};
-  double number = std::numeric_limits<double>::quiet_NaN();  ///< of the value, if it is one
+  double number = std::numeric_limits<double>::quiet_NaN();  ///< the value, if it is a number
   bool best = false;
-  bool words = false;  ///< set flush left, and broken into lines
+  bool words = false;  ///< text, set flush left and wrapped
 };
 
 struct CellTable {
@@ -26,10 +26,10 @@ struct CellTable {
   std::vector<std::vector<Cell>> rows{};
 };
 
-/// Where a part is shown.
+/// Outputs in which a part is shown.
 enum PartTarget : unsigned { kOnPage = 1, kInResults = 2, kOnTerminal = 4 };
 
-/// What a reader sees, piece by piece.
+/// One piece of a rendered report.
 struct Part {
   enum class Kind { heading, paragraph, command, table, plot };
   Kind kind = Kind::paragraph;
@@ -39,41 +39,40 @@ struct Part {
   Plot plot{};
 };
 
-/// What is shown of the results is described in layout.json: sections, each with "id" and "title",
-/// and "open" if it is not folded away, and a block "readme". A block is an object with any of
+/// layout.json describes which results are shown: sections, each with "id" and "title" and "open"
+/// if it is unfolded at first, and a block "readme". A block is an object with any of
 ///
-///   "heading", "text"   left out if the block has other contents, and these show nothing
+///   "heading", "text"   left out if the block has other contents and these are all empty
 ///   "show": [blocks]
-///   "pivot": "TABLE DOWN ACROSS VALUE...": for each value a table, a row for each DOWN, a column
-///     for each ACROSS; "caption" (the value's heading is "{label}"); the best of each column is
-///     marked unless "best" is false; "most": VALUE adds the greatest of each row
+///   "pivot": "TABLE DOWN ACROSS VALUE...": a table for each value, with a row for each DOWN and a
+///     column for each ACROSS; "caption" (the value's heading is "{label}"); the best cell of each
+///     column is marked unless "best" is false; "most": VALUE adds the greatest of each row
 ///   "rows": TABLE: its rows as they are; "columns": keys, values, {"of": TABLE, "value", "label",
 ///     "where"} for a value of the row of another table with the same keys, and {"all": KEY,
-///     "label"} for all that "once": [names] made one row of; without columns, everything
-///   "plot": "TABLE SERIES X Y...": points, joined by lines unless "dots": a series for each text
-///     of the key SERIES, or, if that is "-", for each Y; whiskers where values are spreads; "log":
-///     axes that are logarithmic, "x" and "y": their labels, "front": true for the border that no
-///     point lies below; "title"
-///   "bars": the same, a bar for each X, stacked if SERIES is "-" or with "stacked": true
-///   "least": [{"what", "of": "TABLE ENGINE VALUE", "unit", "own"}]: in each line the least of
-///     winnow (or of its engine "own") and of other libraries
-///   "command": TABLE: how the first row is measured again
-///   "to": those of "page", "results" and "terminal" where tables and plots are shown, and with
-///     them their headings and texts; default: the page
-///   "each": {KEY: SOURCE, ...}: the block once for each combination; a source is a list of values
-///     or "TABLE", the texts of the key among its rows, or "TABLE min", "max", "first"; or a list
-///     of objects
-///   "where": members of the rows of any table that the block names
+///     "label"} for the KEYs of all rows that "once": [names] merged into one; default: all
+///   "plot": "TABLE SERIES X Y...": points, joined by lines unless "dots": a series for each value
+///     of the key SERIES, or, if that is "-", for each Y; whiskers if values are spreads; "log":
+///     axes that are logarithmic, "x" and "y": their labels, "front": true for the Pareto front;
+///     "title"
+///   "bars": as "plot", with a bar for each X, stacked if SERIES is "-" or "stacked" is true
+///   "least": [{"what", "of": "TABLE ENGINE VALUE", "unit", "own"}]: in each line the least value
+///     of winnow (or of its engine "own") and of other libraries
+///   "command": TABLE: the command that measures the first row again
+///   "to": the targets, among "page", "results" and "terminal", that show tables and plots with
+///     their headings and texts; default: the page
+///   "each": {KEY: SOURCE, ...}: repeats the block for each combination; a source is a list of
+///     values, or "TABLE", which gives the key's values in its rows, or "TABLE min", "TABLE max" or
+///     "TABLE first"; "each" may also be a list of objects
+///   "where": required members of the rows of all tables that the block names
 ///
-/// What "each" of this block and those about it has bound is filled into texts as "{KEY}", and
-/// narrows down the rows of tables that have such a key; "isa" is bound to the active instruction
-/// set, and "where" undoes that with null.
+/// The values that "each" binds, in this block and those around it, replace "{KEY}" in texts and
+/// select the rows of tables that have this key. "isa" is bound to the active instruction set; a
+/// null in "where" removes a binding.
 extern const char* const kLayoutJson;
 
 [[nodiscard]] const Json& layout();
 
-/// All parts of a block, of results of which any part may be missing. `id`: what the ids of plots
-/// begin with.
+/// Evaluates a block. Any part of the results may be missing. The ids of plots begin with `id`.
 [[nodiscard]] std::vector<Part> parts_of(const Results& results, const Json& block,
                                          const std::string& id);
 

@@ -18,7 +18,8 @@ std::string line_of(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-/// The best of each column is bold; a caption stands where the first column is headed.
+/// Formats a table. The best cell of each column is bold; a caption replaces the header of the
+/// first column.
 std::string markdown_of(const CellTable& table) {
   std::vector<std::string> header = table.header;
   if (!table.caption.empty()) header.front() = table.caption;
@@ -48,8 +49,8 @@ std::string run_text(const Results& results) {
   const Json& machine = results.document()["machine"];
   std::string text;
   for (const std::string fact : {"processor", "cores", "isa", "commit"}) {
-    text += (text.empty() ? "" : ", ") + key_text(machine.value(fact, Json("unknown"))) +
-            (fact == "cores" ? " cores" : "");
+    text += (text.empty() ? "" : ", ") + std::string(fact == "commit" ? "commit " : "") +
+            key_text(machine.value(fact, Json("unknown"))) + (fact == "cores" ? " cores" : "");
   }
   return "One run of `bench/run --with-peers report` (" + text + ")";
 }
@@ -59,11 +60,10 @@ std::string run_text(const Results& results) {
 std::string results_markdown(const Results& results) {
   std::string text =
       "# Results\n\n" + run_text(results) +
-      ", written by `bench/run results` from `bench/results/results.json`, in which every figure "
-      "is a row. Other libraries are Debian packages at their best settings and with `-O3 "
-      "-march=native`; the yardstick is a blocked sweep that keeps nothing from frame to frame. "
-      "Times "
-      "are medians; the best of a column is bold.\n\n";
+      ". `bench/run results` generates this page from `bench/results/results.json`, which has a "
+      "row for every figure. Other libraries are Debian packages, run at their best settings and "
+      "with `-O3 -march=native`. The yardstick is a blocked sweep without state between frames. "
+      "Times are medians; the best value of a column is bold.\n\n";
   for (const Json& section : layout()["sections"]) {
     const std::string shown_parts = markdown_of(parts_of(results, section, section["id"]));
     if (shown_parts.empty()) continue;
@@ -80,11 +80,11 @@ std::string with_figures(const std::string& text, const Results& results) {
   const std::size_t end = text.find(kFiguresEnd, from);
   if (end == std::string::npos) throw ArgumentError("figures without an end: " + kFiguresEnd);
   const std::string table = markdown_of(parts_of(results, layout()["readme"], ""));
-  if (table.empty()) throw ArgumentError("the results have no frames to show");
+  if (table.empty()) throw ArgumentError("the results have no frames");
   return text.substr(0, from) + run_text(results) +
-         ".\nOf other libraries, at their best settings, Embree uses all threads, and CGAL where "
-         "that is faster; the\nyardstick is a blocked sweep that keeps nothing from frame to "
-         "frame:\n\n" +
+         ".\nOther libraries run at their best settings: Embree on all threads, CGAL too if that "
+         "is faster, the others on\none. The yardstick is a blocked sweep without state between "
+         "frames.\n\n" +
          table + text.substr(end);
 }
 

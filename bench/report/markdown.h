@@ -6,14 +6,15 @@
 
 namespace winnow::bench {
 
-/// bench/RESULTS.md: what the layout shows of a report in results, in Markdown.
+/// Returns bench/RESULTS.md: the parts that the layout shows in the target "results".
 [[nodiscard]] std::string results_markdown(const Results& results);
 
-/// A text with the layout's "readme" between "<!-- figures -->" and "<!-- end -->"; as it is if it
-/// has no such place. Throws ArgumentError if the place has no end, or there are no frames to show.
+/// Replaces the text between "<!-- figures -->" and "<!-- end -->" by the layout's "readme".
+/// Returns the text unchanged if it has no such markers. Throws ArgumentError if the end marker is
+/// missing or the results have no frames to show.
 [[nodiscard]] std::string with_figures(const std::string& text, const Results& results);
 
-/// What the layout shows of a report on a terminal, what is missing, and problems.
+/// Prints the parts that the layout shows on a terminal, then missing measurements and problems.
 void print_summary(const Results& results);
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// Writes index.html of a report: the recommendation, the circumstances of the run and one folded
+// section for each section of layout.json, with the data of the plots.
+
 #include "bench/report/page.h"
 
 #include "bench/common/table.h"
@@ -48,7 +51,7 @@ std::string html_of(const CellTable& table) {
   return html + "</tbody></table></div>\n";
 }
 
-/// Plots that follow each other stand beside each other where the page is wide enough.
+/// Places consecutive plots side by side if the page is wide enough.
 PageParts page_of(std::vector<Part> parts) {
   PageParts page;
   bool in_plots = false;
@@ -104,7 +107,7 @@ std::string steps_left(const Json& document, const std::string& id) {
   return "";
 }
 
-/// The files that have every row of a section's tables.
+/// Lists the CSV files that have every row of the section's tables.
 std::string files_of(const Json& document, const std::string& id) {
   std::string files;
   for (const Json& table : document["tables"]) {
@@ -119,7 +122,7 @@ std::string files_of(const Json& document, const std::string& id) {
   return element("h3", "Every row") + "<ul class=\"files\">\n" + files + "</ul>\n";
 }
 
-/// The answer, before everything else.
+/// Returns the recommendation, which opens the page.
 std::string card_of(const Recommendation& recommendation) {
   const std::pair<const char*, const std::string&> lines[] = {
       {"because", recommendation.because},
@@ -151,7 +154,8 @@ constexpr const char* kWords =
     "by bench/run scenes; the tiers of the narrow phase are robust (each answer certified in "
     "double, or solved again, the default) and reference (each pair solved by itself).";
 
-/// A line that says where and when, and how much is amiss; behind it, all of that.
+/// Returns one line about the machine, the run and the number of warnings; it unfolds into all
+/// details.
 std::string circumstances(const Json& document) {
   const Json& machine = document["machine"];
   std::string line;
@@ -176,7 +180,7 @@ std::string circumstances(const Json& document) {
          "</details>\n";
 }
 
-/// Folded away, unless it is what the page begins with.
+/// Returns a folded section; the layout's "open" unfolds it.
 std::string folded(const Json& section, const std::string& html) {
   return std::string("<details class=\"section\"") + (section.value("open", false) ? " open" : "") +
          "><summary>" + element("h2", section["title"]) + "</summary>\n" + html + "</details>\n";

@@ -1,3 +1,7 @@
+// Plans the report's sections about partitions: for each scene and size, which races run, with how
+// many frames, and an estimate of the time. report.cpp runs the steps; bench/rows has the
+// measurements.
+
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/report/section.h"
@@ -22,10 +26,10 @@ namespace {
 
 constexpr std::size_t kLargestForPeers = 150'000;
 constexpr std::size_t kLargestForMemory = 150'000;
-/// Above it the structures of all instruction sets would fill the memory if they raced at once.
+/// With more objects, the structures of all instruction sets at once would exceed the memory.
 constexpr std::size_t kLargestForOneRace = 300'000;
 
-/// The greatest number of objects asked for that is not above `most`, or the least there is.
+/// Returns the largest requested number of objects up to `most`, or the smallest requested.
 std::size_t objects_up_to(const ReportOptions& options, std::size_t most) {
   std::size_t chosen = options.objects.front();
   for (const std::size_t objects : options.objects) {
@@ -34,7 +38,7 @@ std::size_t objects_up_to(const ReportOptions& options, std::size_t most) {
   return chosen;
 }
 
-/// Where nothing was asked for, a few of the main scenes stand for all.
+/// Returns the requested scenes. If they are the default ones, only those named in `few`.
 std::vector<NamedScene> few_scenes(const ReportOptions& options,
                                    std::initializer_list<std::string_view> few) {
   std::vector<std::string> names;
@@ -52,7 +56,7 @@ std::string named(const NamedScene& scene, std::size_t objects) {
   return scene.name + ", " + grouped(objects) + " objects";
 }
 
-/// Calls it with each scene and each of its sizes: recordings have one.
+/// Calls visit(scene, objects) for each scene and size; a recording has only one size.
 template <typename Visit>
 void each_size(const ReportOptions& options, const std::vector<NamedScene>& scenes, Visit visit) {
   for (const NamedScene& scene : scenes) {
@@ -63,7 +67,7 @@ void each_size(const ReportOptions& options, const std::vector<NamedScene>& scen
   }
 }
 
-/// Frames that give a steady median in little time.
+/// Returns the number of frames whose median is stable at little cost.
 std::size_t throughput_frames(const ReportOptions& options, std::size_t objects) {
   if (options.quick) return 4;
   if (objects <= 2'000) return 31;
@@ -75,7 +79,7 @@ std::size_t frames_of_slow(const ReportOptions& options, std::size_t objects) {
   return options.quick || objects > 20'000 ? kFingerprintFrames : 6;
 }
 
-/// One race, or one for each instruction set where all would be too much.
+/// Runs one race of all instruction sets, or one race each if there are too many objects.
 void race_partitions(Results& results, const ReportOptions& options, const NamedScene& scene,
                      std::size_t objects, const std::vector<std::string>& partitions,
                      std::size_t frames, bool yardstick) {
@@ -97,7 +101,7 @@ void race_partitions(Results& results, const ReportOptions& options, const Named
   }
 }
 
-/// Partitions that suit any size first, then those that take longer.
+/// Measures partitions without a size limit first, then the slower ones.
 void measure_throughput(Results& results, const ReportOptions& options, const NamedScene& scene,
                         std::size_t objects) {
   const Partitions partitions = partitions_for({"all"}, objects);
@@ -118,7 +122,8 @@ void measure_throughput(Results& results, const ReportOptions& options, const Na
   }
 }
 
-/// With as many threads as may be, beside a partition whose pairs theirs must equal.
+/// Measures other libraries with the most threads, beside a partition whose pairs theirs must
+/// equal.
 void measure_peers(Results& results, const ReportOptions& options, const NamedScene& scene,
                    std::size_t objects) {
   add_frame_race(results, scene,
@@ -142,12 +147,12 @@ void measure_keys(Results& results, std::size_t objects, bool quick) {
   }
 }
 
-/// Races of volumes on the settings and scenes, in the partition where all volumes are compared.
+/// Returns the races of volumes, in the partition in which all volumes are compared.
 std::vector<VolumeQuestion> volume_questions(const ReportOptions& options) {
   VolumeQuestion asked{.objects = objects_up_to(options, 10'000), .seed = options.seed};
   asked.frames = options.quick ? 2 : volume_frames(asked.objects);
   std::vector<VolumeQuestion> all;
-  // Boxes of built-in scenes lie upright: one of them stands for all.
+  // All boxes of built-in scenes are axis-aligned, so that one scene represents all.
   for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
     all.push_back(asked);
     all.back().setting = "scene";
@@ -163,14 +168,14 @@ std::vector<VolumeQuestion> volume_questions(const ReportOptions& options) {
 }
 
 void add_volume_step(ReportSteps& steps, const VolumeQuestion& asked, const std::string& table) {
-  constexpr double kEach = 3e-5;  // seconds of an object in a frame
+  constexpr double kEach = 3e-5;  // seconds for each object and frame
   steps.push_back(
       {(asked.setting == "scene" ? asked.scene.name : asked.setting) + " in " + asked.partition,
        kEach * static_cast<double>(asked.objects) * static_cast<double>(asked.frames + 1),
        [=](Results& results) { add_volumes(results, asked, table); }});
 }
 
-/// Where nothing was asked for, all scenes.
+/// Measures the requested scenes; all scenes if the default ones are requested.
 void plan_every_scene(const ReportOptions& options, ReportSteps& steps) {
   std::vector<std::string> names;
   for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
@@ -244,7 +249,8 @@ ReportSteps plan_throughput(const ReportOptions& options) {
   return steps;
 }
 
-/// Memory depends little on the scene: an even one and one of many sizes.
+/// Measures two scenes, one with equal sizes and one with mixed sizes: memory depends little on the
+/// scene.
 ReportSteps plan_memory(const ReportOptions& options) {
   ReportSteps steps;
   const auto scenes = few_scenes(options, {"uniform", "mixed"});
@@ -290,7 +296,7 @@ ReportSteps plan_volumes(const ReportOptions& options) {
   }
   VolumeQuestion cubes = *std::find_if(
       all.begin(), all.end(), [](const VolumeQuestion& one) { return one.setting == "cubes"; });
-  // Ways of objects in a frame, in edges, at which margins are compared.
+  // Distances an object moves in a frame, in edge lengths, at which margins are compared.
   for (const double step : {0.001, 0.003, 0.01, 0.03, 0.1}) {
     if (options.quick && step != 0.001 && step != 0.1) continue;
     cubes.step = step;
@@ -299,7 +305,7 @@ ReportSteps plan_volumes(const ReportOptions& options) {
   return steps;
 }
 
-/// Sizes that are all alike, and sizes that are not.
+/// Measures a scene with equal sizes and scenes with different sizes.
 ReportSteps plan_queries(const ReportOptions& options) {
   const std::size_t objects = objects_up_to(options, 100'000);
   ReportSteps steps;

@@ -1,3 +1,6 @@
+// Plans the report's sections about the pipeline: narrow phase, hard cases, continuous collision
+// detection and scene races. report.cpp runs the steps; bench/rows has the measurements.
+
 #include "bench/questions/hard_case_files.h"
 #include "bench/report/section.h"
 #include "bench/rows/accuracy_rows.h"
@@ -17,7 +20,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Of a quick report two.
+/// Keeps only two kinds in a quick report.
 std::vector<PairKind> reported(std::span<const PairKind> all, bool quick) {
   std::vector<PairKind> kinds;
   for (const PairKind& kind : all) {
@@ -39,14 +42,15 @@ void measure_narrow_times(Results& results, const ReportOptions& options, const 
   add_pair_times(results, asked);
 }
 
-/// The oracle takes milliseconds a pair of hulls.
+/// Returns how many pairs are compared with the oracle, which takes milliseconds for a pair of
+/// hulls.
 std::size_t judged_pairs(const PairKind& kind, bool quick) {
   if (kind.hull_vertices > 16) return quick ? 4 : 60;
   if (kind.hull_vertices > 0) return quick ? 10 : 500;
   return quick ? 60 : 2000;
 }
 
-/// By gap: of something round, something flat, something large.
+/// Measures errors by gap for a rounded pair, a flat one and a large one.
 void measure_narrow_errors(Results& results, const ReportOptions& options, const PairKind& kind) {
   AccuracyOptions asked{.kind = kind, .peers = options.peers, .runs = 5};
   asked.set.pairs = judged_pairs(kind, options.quick);
@@ -64,7 +68,7 @@ void measure_hard_cases(Results& results, bool peers) {
   add_hard_case_totals(results);
 }
 
-/// What gets harder from 1 to 10^last, on which kinds of pairs.
+/// A parameter that makes queries harder, from 1 to 10^last, and the kinds of pairs it applies to.
 struct StabilityCurve {
   const char* name;
   std::vector<const char*> kinds;
@@ -107,7 +111,7 @@ void measure_stability(Results& results, const ReportOptions& options, const Sta
   }
 }
 
-/// The races on one scene; `bodies` 0: as many as suit it.
+/// Runs the races on one scene; `bodies` 0 chooses the scene's default number.
 void measure_scene(Results& results, const ReportOptions& options, const std::string& scene,
                    std::size_t bodies) {
   const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, bodies, options.seed);

@@ -1,3 +1,6 @@
+// Computes the recommendation at the top of a report: ranks the partitions by the geometric mean of
+// their frame times relative to the fastest of each race, and formats the sentences.
+
 #include "bench/report/recommendation.h"
 
 #include "bench/common/table.h"
@@ -17,11 +20,11 @@ namespace {
 
 constexpr const char* kRanking = "advice_ranking";
 constexpr const char* kChoosesItself = "AutoPartition";
-// Closer than this, another run may tell otherwise.
+// A ratio below this may be reversed by another run.
 constexpr double kTooClose = 1.05;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// One partition over all races.
+/// Results of one partition over all races.
 struct Record {
   std::string partition;
   std::size_t races = 0;
@@ -42,13 +45,12 @@ std::string plain(double value) {
   return shown(value, "number");
 }
 
-/// The same scene, objects and threads.
+/// Returns the key of a race: scene, objects and threads.
 std::string race_of(const Json& row) {
   return key_text(row["scene"]) + "/" + key_text(row["objects"]) + "/" + key_text(row["threads"]);
 }
 
-/// Of those that ran in every race, the one that chooses by itself apart from the others, which are
-/// in order.
+/// Partitions that ran in every race, best first. AutoPartition is kept apart in `chooser`.
 struct Standings {
   std::vector<Record> chosen;
   std::optional<Record> chooser;
@@ -102,7 +104,7 @@ std::string because(const Record& best, const std::vector<const Json*>& rows) {
   return text + " (" + where + ")";
 }
 
-/// "0.21 to 1.3"
+/// Formats the range of a value over rows, for example "0.21 to 1.3".
 std::string range_of(const std::vector<const Json*>& rows, const std::string& value) {
   double low = kNone;
   double high = -kNone;
@@ -118,7 +120,7 @@ std::string range_of(const std::vector<const Json*>& rows, const std::string& va
   return from == to ? from : from + " to " + to;
 }
 
-/// Rows of the most objects on the fewest threads.
+/// Keeps the rows with the most objects and the fewest threads.
 std::vector<const Json*> largest(std::vector<const Json*> rows) {
   const auto keep = [&](const std::string& key, const auto& better) {
     const auto values = distinct(rows, key);
@@ -153,8 +155,8 @@ bool is_library(const Json& row) {
   return is_peer(name) && name != kYardstickName;
 }
 
-/// The fastest other library of each scene beside the partition, at the most objects that others
-/// were measured at.
+/// Compares the partition with the fastest other library of each scene, at the largest number of
+/// objects that other libraries were measured with.
 std::string others(const Results& results, const std::string& take) {
   auto of_others = results.rows("throughput", {{"isa", results.document()["machine"]["isa"]}});
   std::erase_if(of_others, [](const Json* row) { return !is_library(*row); });

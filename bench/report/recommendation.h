@@ -7,20 +7,21 @@
 
 namespace winnow::bench {
 
-/// What a report says to who reads nothing else: which partition to take for all scenes that were
-/// measured, and why. Sentences without a full stop; empty where there is nothing to say.
+/// Summary of a report: the partition to use for all measured scenes, and why. The members are
+/// sentences without a full stop, empty if there is nothing to report.
 struct Recommendation {
   std::string take;     ///< the partition
-  std::string because;  ///< how often it was the fastest, and how far behind it ever was
-  std::string price;    ///< frame, first frame and memory at the most objects on the fewest threads
-  std::string next;     ///< the one that comes after it, and by how much
-  std::string varying;  ///< how far behind the one is that chooses by itself
-  std::string others;   ///< other libraries beside it, fastest of each scene
-  std::string code;     ///< the line that makes it
+  std::string because;  ///< how often it was the fastest, and its largest ratio to the fastest
+  std::string price;  ///< times of a frame and of the first frame, and memory, for the most objects
+                      ///< on the fewest threads
+  std::string next;   ///< the second best partition, and by how much it is slower
+  std::string varying;  ///< how much slower AutoPartition is
+  std::string others;   ///< the fastest other library of each scene, compared
+  std::string code;     ///< the line of code that creates the partition
 };
 
-/// Of the table of advice: the partition whose frames take the least multiple of the fastest one's,
-/// in the geometric mean over all races. None if no race was run.
+/// Returns the partition whose frame times, relative to the fastest of each race, have the least
+/// geometric mean over all races. Returns nothing if no race was run.
 [[nodiscard]] std::optional<Recommendation> recommend(const Results& results);
 
 }  // namespace winnow::bench

@@ -1,3 +1,7 @@
+// Runs the steps of a report and writes its files again and again, so that an interrupted run
+// leaves a valid report of what has been measured. Sections come from sections.cpp, the page from
+// page.cpp.
+
 #include "bench/report/report.h"
 
 #include "bench/common/errors.h"
@@ -25,8 +29,8 @@ namespace {
 constexpr double kSecondsBetweenWrites = 5.0;
 constexpr double kQuickSecondsBetweenWrites = 0.5;
 
-/// Files that are written beside those that they replace, all of them at once: whatever ends the
-/// process, what is there belongs together.
+/// Writes files under temporary names and renames all of them at the end, so that the files on disk
+/// belong together even if the process ends early.
 class FreshFiles {
  public:
   explicit FreshFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -37,7 +41,7 @@ class FreshFiles {
     for (const std::string& name : names_) std::filesystem::remove(fresh(name), ignored);
   }
 
-  /// Where to write a file of this name.
+  /// Returns the temporary path of a file and registers it for `replace`.
   std::filesystem::path add(const std::string& name) {
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
     return fresh(name);
@@ -56,7 +60,7 @@ class FreshFiles {
     drop(name);
     throw ArgumentError("cannot write " + (folder_ / name).string() + ": " + fault);
   }
-  /// The last one first.
+  /// Renames all files, the last one first.
   void replace() {
     std::string fault;
     for (; !names_.empty(); names_.pop_back()) {
@@ -79,7 +83,7 @@ class FreshFiles {
   std::vector<std::string> names_;
 };
 
-/// One row a line, so that versions of the document can be compared.
+/// Formats the document with one row per line, so that versions can be compared with diff.
 std::string document_text(const Json& document) {
   const auto line = [](const Json& json) {
     return json.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -111,7 +115,8 @@ std::string document_text(const Json& document) {
 
 std::sig_atomic_t volatile g_asked_to_stop = 0;
 
-/// While it lives, SIGINT and SIGTERM ask the report to stop; a second one ends the process.
+/// While an object of this class exists, the first SIGINT or SIGTERM stops the report after the
+/// current step; a second one ends the process.
 class StopSignals {
  public:
   StopSignals() {
@@ -162,7 +167,7 @@ std::vector<PlannedSection> planned(const ReportOptions& options,
   return all;
 }
 
-/// Says so if times of this run are worth little: others used the machine, or its speed changed.
+/// Adds a warning if other processes used the machine or its speed changed during the run.
 void note_disturbances(const OtherWork& others, Results& results) {
   constexpr double kBusy = 0.1;
   constexpr double kOtherSpeed = 1.2;
@@ -198,7 +203,7 @@ void write_report(const std::string& folder, Results& results) {
   std::filesystem::create_directories(folder, failed);
   Json& document = results.document();
   FreshFiles files(folder);
-  // What matters most comes first, should there be no room for all.
+  // The most important file is written first, in case the disk is full.
   files.write("results.json", document_text(document));
   try {
     write_report_page(files.add("index.html").string(), results);

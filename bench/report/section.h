@@ -13,48 +13,49 @@
 
 namespace winnow::bench {
 
-/// What a report is about.
+/// Scope of a report.
 struct ReportOptions {
   std::vector<NamedScene> scenes;
   std::vector<std::size_t> objects;  ///< of built-in scenes, ascending
-  std::vector<int> threads;          ///< ascending; the first is 1 unless asked otherwise
+  std::vector<int> threads;          ///< ascending; the first is 1 by default
   std::vector<Isa> isas;             ///< narrowest first; the last one is the active one
-  bool peers = true;                 ///< other libraries too, where the tool has them
-  bool yardstick = true;             ///< the yardstick too, where the tool has it
-  /// Few and small measurements: every part of the report in some seconds, none of it steady.
+  bool peers = true;                 ///< measure other libraries too, if the tool has them
+  bool yardstick = true;             ///< measure the yardstick too, if the tool has it
+  /// Few and small measurements: every part of the report in seconds, with unstable times.
   bool quick = false;
   std::uint64_t seed = 1;
 };
 
-/// A piece of the work: it adds rows to the results. One that throws is noted as a problem, and the
-/// report goes on.
+/// A unit of work that adds rows to the results. If it throws, the report notes the problem and
+/// continues.
 struct ReportStep {
-  std::string what;      ///< for the progress: "mixed, 10,000 objects"
-  double seconds = 1.0;  ///< about how long it takes, for the time left
+  std::string what;      ///< shown as progress: "mixed, 10,000 objects"
+  double seconds = 1.0;  ///< estimate, for the time left
   std::function<void(Results&)> run;
 };
 using ReportSteps = std::vector<ReportStep>;
 
-/// A part of the report: what is measured. What is shown of it stands in layout.json.
+/// A section of the report: declares its tables and plans its measurements. layout.json describes
+/// how its results are shown.
 struct ReportSection {
   std::string_view id;
   void (*declare)(Results&);
   ReportSteps (*plan)(const ReportOptions&);
 };
 
-/// All of them, in the order of the page.
+/// Returns all sections in the order of the page.
 [[nodiscard]] std::span<const ReportSection> report_sections() noexcept;
 
-// Of partitions.
+// Sections about partitions.
 [[nodiscard]] ReportSteps plan_throughput(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_memory(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_volumes(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_queries(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_advice(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_ranks(const ReportOptions& options);
-// Of what tries to break it.
+// Section about tests that try to break the library.
 [[nodiscard]] ReportSteps plan_trust(const ReportOptions& options);
-// Of the pipeline.
+// Sections about the pipeline.
 [[nodiscard]] ReportSteps plan_narrow(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_stability(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_motion(const ReportOptions& options);

@@ -1,3 +1,6 @@
+// Checks that every figure of a report's page follows from results.json: parses the table cells and
+// the plot data, and recomputes derived values. bench/goals calls trace_page().
+
 #include "bench/report/trace.h"
 
 #include "bench/pages/html.h"
@@ -17,7 +20,7 @@ bool alike(double a, double b, double tolerance) {
   return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
 }
 
-/// The exponent of the power law through points, by least squares of logarithms.
+/// Returns the exponent of the power law through the points, by least squares of logarithms.
 double exponent_of(const std::vector<double>& xs, const std::vector<double>& ys) {
   const auto mean_log = [](const std::vector<double>& values) {
     double sum = 0.0;
@@ -35,7 +38,7 @@ double exponent_of(const std::vector<double>& xs, const std::vector<double>& ys)
   return over / under;
 }
 
-/// By the rule, see `derived`; NaN if there is none of that name.
+/// Recomputes a derived value by its rule (see `derived`); NaN if there is no such rule.
 double derived_again(const std::string& rule, const std::vector<const Json*>& rows,
                      const std::string& field) {
   std::vector<double> values;
@@ -90,7 +93,7 @@ class Tracing {
       }
     }
     for (const auto& [id, known] : rows_) {
-      const Json from = known.row->value("from", Json::array());  // one value's, or a list of such
+      const Json from = known.row->value("from", Json::array());  // one value, or a list of values
       for (const Json& one : from.is_array() ? from : Json::array({from})) {
         check_rule(id, *known.row, one);
       }
@@ -132,7 +135,7 @@ class Tracing {
            "a table shows \"" + text + "\" as " + name + " of " + id);
   }
 
-  /// With its spread or without.
+  /// Returns whether `text` shows the value, with its spread or without.
   static bool is_shown(const Json& row, const Json& columns, const std::string& name,
                        const std::string& text) {
     const auto column = std::find_if(columns.begin(), columns.end(),

@@ -1,3 +1,7 @@
+// Rows about pairs of shapes: the time and the error of the narrow phase for each kind of pair,
+// level and engine. bench/commands, bench/goals and bench/report call these functions;
+// bench/measure takes the times.
+
 #include "bench/rows/accuracy_rows.h"
 
 #include <winnow/simd/isa.h>
@@ -125,7 +129,7 @@ std::string narrow_command(const NarrowMeasurement& measured, const NarrowMeasur
          (options.seed == 1 ? "" : " --seed " + std::to_string(options.seed));
 }
 
-/// Of the other libraries that are right the fastest; null if there is none.
+/// Returns the fastest of the other libraries whose answers are right; null if there is none.
 const NarrowTiming* best_peer(const NarrowMeasurement& measured, ContactLevel level) {
   const NarrowTiming* best = nullptr;
   for (const NarrowTiming& timing : measured.timings) {
@@ -135,7 +139,7 @@ const NarrowTiming* best_peer(const NarrowMeasurement& measured, ContactLevel le
   return best;
 }
 
-/// Adds the row of one engine; its id.
+/// Adds the row of one engine and returns its id.
 std::string add_timing(Results& results, const NarrowMeasurement& measured,
                        const NarrowTiming& timing, const std::string& command, PairKeys keys) {
   const bool manifold = timing.level == ContactLevel::manifold;

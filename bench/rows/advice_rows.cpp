@@ -10,7 +10,8 @@ namespace {
 
 constexpr const char* kChooser = "AutoPartition";
 
-/// The second that is not AutoPartition; null if there is none.
+/// Returns the best of the ranking that is neither AutoPartition nor the advised partition; null if
+/// there is none.
 const Advised* next_best(const Advice& advice) {
   const auto at =
       std::find_if(advice.ranking.begin(), advice.ranking.end(), [&](const Advised& one) {
@@ -19,7 +20,7 @@ const Advised* next_best(const Advice& advice) {
   return at == advice.ranking.end() ? nullptr : &*at;
 }
 
-/// What is advised for a scene, and how it is found out again.
+/// Keys of the scene that is advised on, and the command that repeats the measurement.
 struct AdvicePlace {
   Json keys;
   std::string command;

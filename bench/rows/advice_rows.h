@@ -11,10 +11,10 @@
 
 namespace winnow::bench {
 
-/// advice, and advice_ranking.
+/// Declares advice and advice_ranking.
 void declare_advice(Results& results);
 
-/// Throws std::runtime_error after adding its rows if not all found the same pairs.
+/// Adds the rows. Throws std::runtime_error after that if not all partitions found the same pairs.
 Advice add_advice(Results& results, const NamedScene& scene, std::size_t objects,
                   std::uint64_t seed, const std::vector<std::string>& partitions,
                   std::size_t frames, int threads);

@@ -17,7 +17,7 @@ std::string barrier_command(const BarrierQuestion& asked) {
   return text;
 }
 
-/// Steps of a simulation, timed one by one.
+/// Returns the time of each step of a simulation in milliseconds.
 template <typename Simulation>
 std::vector<double> run(Simulation& simulation, std::size_t steps) {
   std::vector<double> ms;

@@ -8,21 +8,22 @@
 
 namespace winnow::bench {
 
-/// Something fast of which nothing may pass through anything.
+/// A simulation of fast motion in which nothing may tunnel through anything.
 struct BarrierQuestion {
   std::string scene = "funnel";  ///< see barrier_names()
   std::size_t steps = 200;
-  /// Bodies, or vertices along an edge of the cloth; 0: as many as suit it.
+  /// Number of bodies, or of vertices along an edge of the cloth; 0 chooses a size that suits the
+  /// scene.
   std::size_t size = 0;
   int threads = 1;
 };
 
-/// barriers.
+/// Declares barriers.
 void declare_barriers(Results& results);
-/// Runs one. False if something passed through.
+/// Runs one simulation and adds its row. Returns false if something tunnelled.
 bool add_barrier(Results& results, const BarrierQuestion& asked);
 
-/// "funnel", "blade", "cloth".
+/// Returns "funnel", "blade", "cloth".
 [[nodiscard]] std::vector<std::string> barrier_names();
 
 }  // namespace winnow::bench

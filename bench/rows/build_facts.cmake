@@ -1,5 +1,5 @@
-# Writes build_facts.cpp anew if something in it has changed: as a script at every build (-DSOURCE,
-# -DOUT and the facts), because the commit may be another one.
+# Rewrites build_facts.cpp if its contents have changed. Runs as a script in every build (-DSOURCE,
+# -DOUT and the facts), because the commit may have changed.
 execute_process(COMMAND git -C ${SOURCE} -c safe.directory=* rev-parse --short=12 HEAD
                 OUTPUT_VARIABLE WINNOW_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE
                 RESULT_VARIABLE failed ERROR_QUIET)

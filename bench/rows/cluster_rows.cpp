@@ -13,7 +13,7 @@
 namespace winnow::bench {
 namespace {
 
-/// How many boxes are in a unit of volume, and how long the edges of one are in the mean.
+/// Number of boxes in a unit of volume, and their mean edge length.
 struct BoxSpread {
   double density;
   double edge;
@@ -43,7 +43,7 @@ std::string cluster_command(const ClusterQuestion& asked, std::uint32_t ranks) {
          std::to_string(ranks);
 }
 
-/// Of objects that are beyond any machine.
+/// Adds the ghosts that the formula predicts for sizes that no single machine can hold.
 void add_model(Results& results, const ClusterQuestion& asked, const BoxSpread& spread) {
   struct Size {
     std::uint64_t objects;
@@ -54,7 +54,7 @@ void add_model(Results& results, const ClusterQuestion& asked, const BoxSpread& 
     const auto objects = static_cast<double>(size.objects);
     const auto ranks = static_cast<double>(size.ranks);
     const double ghosts = ghosts_by_formula(objects, ranks, spread.density, spread.edge);
-    // What a ghost that moved takes to tell: its name, its box and whom it belongs to.
+    // Bytes to send for a ghost that moved: its name, its box and its owner.
     constexpr double kGhostBytes = sizeof(BodyName) + sizeof(Aabb) + sizeof(std::uint8_t);
     const double own = objects / ranks;
     results.add("cluster_model", {{"scene", asked.scene.name},

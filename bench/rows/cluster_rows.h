@@ -9,26 +9,26 @@
 
 namespace winnow::bench {
 
-/// A scene on virtual ranks of this process: what they hold and send is counted, and is that of as
-/// many processes.
+/// A scene on virtual ranks within this process. The counts of objects held and bytes sent equal
+/// those with one process for each rank.
 struct ClusterQuestion {
   NamedScene scene;
   std::size_t objects = 20'000;
   std::size_t frames = 6;
-  std::vector<std::uint32_t> ranks;  ///< ascending; the first is 1, to which others are compared
+  std::vector<std::uint32_t> ranks;  ///< ascending; the first is 1, the reference
   std::uint64_t seed = 1;
-  /// Objects are spread evenly, so that the formula of ghosts holds; it tells of 1e9 as well.
+  /// The objects are spread evenly, so that the formula for ghosts holds, also for 1e9 objects.
   bool is_uniform = false;
 };
 
-/// cluster_runs, cluster_model.
+/// Declares cluster_runs and cluster_model.
 void declare_cluster_runs(Results& results);
-/// Throws std::runtime_error if some number of ranks finds other pairs than one.
+/// Adds the rows. Throws std::runtime_error if a number of ranks finds other pairs than one rank.
 void add_cluster_runs(Results& results, const ClusterQuestion& asked);
 
-/// Ghosts of each body of its own that a rank has, if `ranks` share a cube in which `objects` boxes
-/// of edge `edge` are spread evenly, `density` of them in a unit of volume: a rank's cube, grown by
-/// half an edge to all sides, less itself.
+/// Returns the number of ghosts for each body that a rank owns, if `ranks` ranks share a cube with
+/// `objects` evenly spread boxes of edge `edge`, `density` of them in a unit of volume. The ghosts
+/// are in the rank's cube grown by half an edge on all sides, minus the cube itself.
 [[nodiscard]] double ghosts_by_formula(double objects, double ranks, double density, double edge);
 
 }  // namespace winnow::bench

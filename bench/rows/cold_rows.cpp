@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-// A partition's first frame on touched memory.
+// Returns the median time of a partition's first frame on pages that were used before.
 double touched_ms(const ColdRace& race, const std::string& partition) {
   const auto one = std::ranges::find_if(race.frames, [&](const ColdFrames& frames) {
     return frames.partition == partition && frames.memory == kTouched;

@@ -7,7 +7,7 @@
 namespace winnow::bench {
 namespace {
 
-/// A document found not to be a report.
+/// Thrown if a document is not a report.
 struct ReportFault {
   std::string what;
 };
@@ -73,7 +73,7 @@ void check_row(const Json& table, const Json& row, const std::string& table_text
 void check_table(const Json& table) {
   const std::string name = demand_member(table, "name", is_text, "a table");
   const std::string where = "table \"" + name + "\"";
-  // A file is named after it.
+  // CSV files are named after the table.
   demand(!name.empty() &&
              name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos,
          where + " has a name that is not of small letters");

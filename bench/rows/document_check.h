@@ -6,9 +6,8 @@
 
 namespace winnow::bench {
 
-/// What keeps a JSON document from being a report (see Results), in a few words; empty if nothing
-/// does. After that whoever reads it may rely on all members that every report has, and on their
-/// types.
+/// Returns why a JSON document is not a report (see Results), in a few words; empty if it is one.
+/// In that case all members that every report has are present and of the right type.
 [[nodiscard]] std::string fault_of_report(const Json& document);
 
 inline constexpr const char* kReportFormat = "winnow report 1";

@@ -10,7 +10,8 @@
 namespace winnow::bench {
 namespace {
 
-/// Of the frames after which a partition has settled; of fewer, of those after the first.
+/// Returns the spread of the frames after a partition has settled; if there are none, of the frames
+/// after the first.
 Spread settled_spread(const Run& run) {
   const auto settled = run.settled_ms();
   return settled.empty() ? run.frame_spread() : spread_of(settled);

@@ -13,14 +13,14 @@ struct EverySceneQuestion {
   std::size_t objects = 10'000;
   std::uint64_t seed = 1;
   int threads = 1;
-  bool yardstick = true;    ///< beside, where the tool was built with it
-  std::size_t frames = 61;  ///< the first one included
+  bool yardstick = true;    ///< measure the yardstick too, if the tool was built with it
+  std::size_t frames = 61;  ///< including the first one
 };
 
-/// every_scene: the median, the worst and the first frame of partitions side by side.
+/// Declares every_scene: the median, worst and first frame of all partitions.
 void declare_every_scene(Results& results);
-/// Of all partitions that suit any size. Throws std::runtime_error after that if not all found the
-/// same pairs.
+/// Adds the rows of all partitions without a size limit. Throws std::runtime_error after that if
+/// not all found the same pairs.
 void add_every_scene(Results& results, const EverySceneQuestion& asked);
 
 }  // namespace winnow::bench

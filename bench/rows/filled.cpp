@@ -6,7 +6,7 @@
 namespace winnow::bench {
 namespace {
 
-/// The value that a text stands for which is "{member}" and nothing else; null if it is not.
+/// Returns the value of "{member}" if that is the whole text; otherwise null.
 const Json* whole_member(const std::string& text, const Json& object) {
   if (text.size() < 3 || text.front() != '{' || text.back() != '}') return nullptr;
   const auto at = object.find(text.substr(1, text.size() - 2));

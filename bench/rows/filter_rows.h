@@ -10,12 +10,14 @@
 
 namespace winnow::bench {
 
-/// The scenes that the cost of filters is given for.
+/// The scenes for which the cost of filters is measured.
 inline const std::vector<std::string> kFilterScenes{"uniform", "mixed"};
 
-/// filters: questions to partitions whose objects have filters beside those without, see FilterRow.
+/// Declares filters: queries on partitions whose objects have filters, compared with partitions
+/// without filters; see FilterRow.
 void declare_filters(Results& results);
-/// On one thread. Throws std::runtime_error after adding rows if an answer was wrong.
+/// Adds the rows, measured on one thread. Throws std::runtime_error after that if an answer was
+/// wrong.
 void add_filters(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
                  const std::vector<std::string>& partitions, std::size_t rounds = 15);
 

@@ -1,3 +1,7 @@
+// Rows about granular flow: the time of each phase, one summary row for a flow, and samples over
+// time. bench/commands, bench/goals and bench/report call these functions; bench/simulation runs
+// the flow.
+
 #include "bench/rows/flow_rows.h"
 
 #include <winnow/simd/isa.h>
@@ -13,7 +17,7 @@ namespace {
 
 constexpr std::pair<const char*, FlowShape> kFlowShapes[] = {
     {"spheres", FlowShape::spheres}, {"mixed", FlowShape::mixed}, {"boxes", FlowShape::boxes}};
-/// Steps of a flow that are kept.
+/// Number of steps of a flow that get a row.
 constexpr std::size_t kFlowRows = 200;
 
 Json with_keys(const FlowQuestion& asked, Json row) {
@@ -26,7 +30,7 @@ Json with_keys(const FlowQuestion& asked, Json row) {
   return row;
 }
 
-/// Of the second half, when bodies lie upon each other.
+/// Adds the times of the second half of the flow, when bodies touch each other.
 void add_phases(Results& results, const FlowQuestion& asked, const FlowHistory& history) {
   std::vector<std::pair<Json, std::string>> added;
   double sum = 0.0;

@@ -9,7 +9,7 @@
 
 namespace winnow::bench {
 
-/// One flow, of which rows are made.
+/// Parameters of a flow.
 struct FlowQuestion {
   std::string shape = "mixed";  ///< see flow_shape_names()
   std::size_t objects = 500;
@@ -19,19 +19,19 @@ struct FlowQuestion {
   std::size_t check = 0;  ///< see FlowRun
 };
 
-/// phases, flows and flow (one row in so many steps).
+/// Declares phases, flows and flow (samples of the steps at equal intervals).
 void declare_flows(Results& results);
-/// flow_checks: memory, and contacts against those of all pairs.
+/// Declares flow_checks: memory, and a comparison of the contacts with a test of all pairs.
 void declare_flow_checks(Results& results);
 
 [[nodiscard]] FlowOptions flow_options(const FlowQuestion& asked);
-/// Of one that has run; its checks, if they are declared.
+/// Adds the rows of a flow that has run, and of its checks if they are declared.
 void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run);
-/// Runs it.
+/// Runs a flow and adds its rows.
 void add_flow(Results& results, const FlowQuestion& asked);
 
 [[nodiscard]] std::vector<std::string> flow_shape_names();
-/// Throws std::invalid_argument if there is none of the name.
+/// Throws std::invalid_argument if there is no shape of this name.
 [[nodiscard]] FlowShape flow_shape_named(const std::string& name);
 
 }  // namespace winnow::bench

@@ -1,3 +1,7 @@
+// Rows about frames of partitions: races of update and self_pairs, the ratios derived from them
+// (SIMD, threads, growth with size), costs of keys, and the limit set by memory. bench/commands,
+// bench/goals and bench/report call these functions; bench/measure takes the times.
+
 #include "bench/rows/frame_rows.h"
 
 #include "bench/common/sample.h"
@@ -50,7 +54,7 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
            {"frames", run.frame_ms.size()},
            {"fingerprint", throughput_fingerprint(run)},
            {"command", std::move(command)}};
-  if (run.median_update_ms() > 0.0) {  // not every library can tell
+  if (run.median_update_ms() > 0.0) {  // some libraries do not time the update separately
     row["update_ms"] = to_value(update_ms);
     row["update_share"] = run.median_update_ms() / median_of(ms);
   }
@@ -62,7 +66,7 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
   results.add("throughput", std::move(row));
 }
 
-/// What is needed of a row: rows themselves do not stay where they are while others are added.
+/// A copy of a row's members, because adding rows invalidates pointers to rows.
 struct ThroughputTime {
   std::string id;
   Json objects;
@@ -98,7 +102,7 @@ const ThroughputTime* time_where(const std::vector<ThroughputTime>& times,
   return at == times.end() ? nullptr : &*at;
 }
 
-/// The first of the machine's instruction sets, narrowest first, that was measured.
+/// Returns the narrowest instruction set of this machine that was measured.
 Json narrowest_isa(const Results& results, const std::vector<ThroughputTime>& times) {
   for (const Json& isa : results.document()["machine"]["isas"]) {
     if (time_where(times, [&](const ThroughputTime& one) { return one.isa == isa; })) return isa;
@@ -227,7 +231,7 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
             "bench/run throughput" + command(run, run.engine));
   }
   for (const Run& run : measured.peers()) {
-    // Beside a partition whose pairs theirs must equal.
+    // A library is raced beside a partition, whose pairs it must equal.
     const std::string beside =
         measured.partition_runs > 0 ? measured.runs.front().engine : std::string("LinearBvh");
     add_run(results, scene, measured, run, distance_ns,

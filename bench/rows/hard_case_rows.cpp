@@ -1,3 +1,7 @@
+// Rows about hard cases: counts the right and wrong answers of winnow's tiers and of other
+// libraries. bench/commands, bench/goals and bench/report call these functions; judge_case() in
+// bench/questions compares single answers.
+
 #include "bench/rows/hard_case_rows.h"
 
 #include "bench/common/errors.h"
@@ -24,23 +28,24 @@
 namespace winnow::bench {
 namespace {
 
-/// What other libraries are held to, of the size: some compute in float.
+/// Largest allowed error of other libraries relative to the size, since some compute in float.
 constexpr double kPeersError = 1e-4;
 
-/// How one engine did on some hard cases.
+/// Results of one engine for a family of hard cases.
 struct HardCaseTally {
   std::string engine;
   std::size_t right = 0;
   std::size_t wrong = 0;
-  std::size_t wrong_verdicts = 0;  ///< of them
-  std::size_t not_taken = 0;       ///< it has no such shapes, or no rays
-  /// Of distances: relative to sizes and distance, and over what is allowed. NaN: there is none.
+  std::size_t wrong_verdicts = 0;  ///< wrong answers whose overlap or hit is wrong
+  std::size_t not_taken = 0;       ///< cases with shapes, or rays, that the engine does not support
+  /// Largest error of a distance, relative to sizes and distance, and as a multiple of the allowed
+  /// error. NaN if there is none.
   double worst_error = std::numeric_limits<double>::quiet_NaN();
   double worst_over_allowed = std::numeric_limits<double>::quiet_NaN();
-  std::map<std::string, std::size_t> faults{};  ///< how often what was wrong
+  std::map<std::string, std::size_t> faults{};  ///< number of wrong answers by fault
 
   void add(const CaseVerdict& verdict);
-  /// "contact lost 3, distance 2".
+  /// Formats the counts of faults, for example "contact lost 3, distance 2".
   [[nodiscard]] std::string faults_text() const;
 };
 
@@ -60,11 +65,11 @@ std::string HardCaseTally::faults_text() const {
   return text;
 }
 
-/// A case as other libraries can be asked it.
+/// A hard case in a form that other libraries accept.
 struct PeerCase {
   PairSet set;
-  double sign = 1.0;          ///< -1: a and b stand the other way round
-  bool around_origin = true;  ///< both shapes contain it
+  double sign = 1.0;          ///< -1 if a and b are swapped
+  bool around_origin = true;  ///< both shapes contain the origin of their frames
 };
 
 const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
@@ -74,7 +79,8 @@ const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
   return nullptr;
 }
 
-/// Of shapes with corners: whether the origin lies within the bounds of these.
+/// Returns whether the origin is within the bounds of the shape's vertices; true for shapes without
+/// vertices.
 bool is_around_origin(const Json& shape) {
   if (!shape.contains("v")) return true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,7 +99,7 @@ bool is_around_origin(const Json& shape) {
   return true;
 }
 
-/// Throws unless the members are there that are read without asking.
+/// Throws unless the case has all members that are read without a check.
 void check_case(const Json& question) {
   const auto fail = [&](const std::string& what) {
     throw ArgumentError("not a hard case, " + what + ": " + question.dump().substr(0, 200));
@@ -110,7 +116,7 @@ void check_case(const Json& question) {
   if (!is_miss && !expect->contains(is_ray ? "t" : "distance")) fail("without a number");
 }
 
-/// Nothing where other libraries have no such case.
+/// Returns null if other libraries do not support the case.
 std::unique_ptr<PeerCase> peer_case(const Json& question) {
   if (!question.contains("a") || !question.contains("b")) return nullptr;
   if (question["expect"].contains("status")) return nullptr;
@@ -122,7 +128,7 @@ std::unique_ptr<PeerCase> peer_case(const Json& question) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Json& shape = question[i == 0 ? "a" : "b"];
     if (read_shape(shape, set.pool, set.shapes[i], set.poses[i]) != Status::ok) return nullptr;
-    // They would be asked about it without its rounding.
+    // Other libraries have no rounding.
     if (shape.contains("rounding")) return nullptr;
     made->around_origin = made->around_origin && is_around_origin(shape);
   }
@@ -152,7 +158,7 @@ CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& qu
     return {.fault = "exception"};
   }
   const NarrowAnswer answer = engine.answer(0);
-  // Without distances it knows only of a pair that is apart that it is.
+  // An engine without distances reports only that the pair is separate, so only that is compared.
   if (!tells_distance && !question["expect"]["overlap"].get<bool>()) {
     return {.fault = answer.overlap ? kFalseContact : ""};
   }
@@ -164,7 +170,7 @@ void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
   for (const auto& peer : make_narrow_peers()) peers.push_back({.engine = peer->name()});
   for (const Json& question : questions) {
     const auto asked = peer_case(question);
-    // They are started once.
+    // An engine can be started only once.
     const auto fresh = make_narrow_peers();
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const bool needs_origin = peers[i].engine.starts_with("libccd");

@@ -6,16 +6,17 @@
 
 namespace winnow::bench {
 
-/// hard_cases, and hard_cases_all, which sums them up.
+/// Declares hard_cases, and hard_cases_all with its sums.
 void declare_hard_cases(Results& results);
 
-/// Adds how winnow's tiers, each held to what it promises, and other libraries, held to 1e-4 of the
-/// size, did on the cases of a family. Those are asked without roundings, rays and bad input,
-/// and libccd, which starts from it, only about shapes that contain their origin; what an engine
-/// throws is wrong. Throws ArgumentError if one of these is no hard case.
+/// Adds the results of winnow's tiers, each with its guaranteed error, and of other libraries, with
+/// an allowed error of 1e-4 of the size, for the cases of a family. Other libraries get no
+/// roundings, rays or bad input. libccd starts from the shapes' origins and therefore gets only
+/// shapes that contain their origin. An exception counts as a wrong answer. Throws ArgumentError if
+/// a question is not a hard case.
 void add_hard_cases(Results& results, const std::string& family, const Json& questions, bool peers);
 
-/// Sums of the rows that are there.
+/// Adds the sums of the rows added so far.
 void add_hard_case_totals(Results& results);
 
 }  // namespace winnow::bench

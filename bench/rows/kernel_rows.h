@@ -7,10 +7,10 @@
 
 namespace winnow::bench {
 
-/// kernels.
+/// Declares kernels.
 void declare_kernels(Results& results);
 
-/// Of those whose names contain the text, on every instruction set.
+/// Adds the kernels whose names contain the text, on every instruction set.
 void add_kernels(Results& results, std::size_t rounds, const std::string& text = "");
 
 }  // namespace winnow::bench

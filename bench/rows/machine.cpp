@@ -18,7 +18,7 @@
 namespace winnow::bench {
 namespace {
 
-/// What stands behind `name` in a file of lines "name : value" or "name=value".
+/// Returns the value of `name` in a file of lines "name : value" or "name=value".
 std::string line_of(const char* path, const std::string& name) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

@@ -43,7 +43,7 @@ void add_held(Results& results, const Json& keys, const Held& held, const std::s
   };
   add_check(kByFootprint, total.reserved);
   add_check(kByResource, held.outstanding);
-  if (held.resident != 0) add_check(kByResident, held.resident);  // else the system does not tell
+  if (held.resident != 0) add_check(kByResident, held.resident);  // 0: not reported by the system
 }
 
 void derive_ratio(Results& results, const Json& keys, const std::string& command) {
@@ -128,7 +128,7 @@ void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t
   for (Json row : run_own(arguments)) {
     const std::string id = row["id"];
     const std::string table = id.substr(0, id.find('/'));
-    // It is derived anew: the other process may know the scene by another name.
+    // The ratio is derived again below, since the other process may name the scene differently.
     if (table == "memory_ratio") continue;
     row.erase("id");
     row["scene"] = scene.name;

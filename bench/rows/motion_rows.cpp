@@ -10,7 +10,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Logarithmic axes have no 0.
+/// Plots replace smaller gaps by this value, because logarithmic axes have no 0.
 constexpr double kLeastGapShown = 1e-12;
 
 std::string impacts_command(const ImpactRaceOptions& options) {

@@ -7,19 +7,19 @@
 
 namespace winnow::bench {
 
-// What moves between two frames: when it meets what.
+// Continuous collision detection: times of impact of moving shapes, features and scenes.
 
-/// impacts, feature_impacts, swept_scenes.
+/// Declares impacts, feature_impacts and swept_scenes.
 void declare_motion(Results& results);
 
-/// A race on moving pairs of one kind.
+/// Runs a race on moving pairs of one kind.
 ImpactMeasurement add_impacts(Results& results, const ImpactRaceOptions& options);
 
-/// Features of meshes in steps of each sort.
+/// Adds times of impact of mesh features for each kind of step.
 void add_feature_impacts(Results& results, std::size_t pairs, std::size_t rounds,
                          std::uint64_t seed);
 
-/// A scene's sweeps beside its contacts.
+/// Adds the sweeps of a scene, compared with its contacts.
 void add_swept_scene(Results& results, const SweepRaceOptions& options);
 
 }  // namespace winnow::bench

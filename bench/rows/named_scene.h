@@ -11,29 +11,29 @@
 
 namespace winnow::bench {
 
-/// A built-in scene, or a recording, as rows and the commands that measure them again name it.
+/// A built-in scene or a recording, with the name that rows use and the argument that commands use.
 struct NamedScene {
   std::string name;
-  std::string argument{};  ///< how a command names it: the scene, or the file
+  std::string argument{};  ///< a command's argument: the scene's name or the file's path
   std::shared_ptr<const Recording> recording{};
 
   [[nodiscard]] bool is_recording() const noexcept { return recording != nullptr; }
-  /// A recording has its own number, whatever is asked for.
+  /// Returns the number of objects; a recording has a fixed number.
   [[nodiscard]] std::size_t objects(std::size_t asked) const;
-  /// From the first frame on. Throws ArgumentError if there is no such scene.
+  /// Returns the scene from its first frame. Throws ArgumentError if there is no such scene.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t objects, std::uint64_t seed) const;
-  /// How the options of commands name it: " --scene ...", and what else a built-in one needs.
+  /// Returns the command options of the scene: " --scene ...", and size and seed of a built-in one.
   [[nodiscard]] std::string words(std::size_t objects, std::uint64_t seed) const;
 };
 
-/// Scenes and recordings, each once. Rows of two are told apart by their names: a recording whose
-/// own is taken has its file's besides. Throws ArgumentError or RecordingError.
+/// Returns the scenes and recordings without duplicates. Their names are distinct: if a recording's
+/// name is taken, its file name is appended. Throws ArgumentError or RecordingError.
 [[nodiscard]] std::vector<NamedScene> named_scenes(const std::vector<std::string>& arguments);
 
-/// A word as a shell takes it for one.
+/// Quotes a word for a shell if necessary.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// A command, by which other libraries are installed first.
+/// Returns a command that installs the other libraries first.
 [[nodiscard]] std::string with_peers(const std::string& command);
 
 }  // namespace winnow::bench

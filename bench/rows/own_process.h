@@ -10,10 +10,10 @@
 
 namespace winnow::bench {
 
-/// A folder of its own name, gone with this.
+/// A temporary folder with a unique name, removed by the destructor.
 class TemporaryFolder {
  public:
-  /// Throws std::runtime_error.
+  /// Throws std::runtime_error if the folder cannot be created.
   TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -25,28 +25,29 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// This tool once more in a process of its own, which ends with this. What it prints is dropped,
-/// but for errors, and what a terminal's interrupt asks of this process is not asked of it; `quiet`
-/// drops errors, too, and lets interrupts through.
+/// Runs this tool in a second process, which the destructor kills. Its standard output is dropped.
+/// By default it has its own process group, so that an interrupt from the terminal does not reach
+/// it; with `quiet`, it stays in this group and its errors are dropped as well.
 class OwnProcess {
  public:
-  /// A subcommand and its options. Throws std::runtime_error if it cannot be started.
+  /// Starts the tool with a subcommand and its options. Throws std::runtime_error if it cannot
+  /// start.
   explicit OwnProcess(std::vector<std::string> arguments, bool quiet = false);
   OwnProcess(const OwnProcess&) = delete;
   OwnProcess& operator=(const OwnProcess&) = delete;
   ~OwnProcess() { kill(); }
 
-  /// Exit status once it has ended; -1 if a signal ended it.
+  /// Waits for the end and returns the exit status; -1 if a signal ended it.
   int wait();
   void kill();
   [[nodiscard]] bool runs();
 
  private:
-  pid_t process_ = 0;  // 0: it has ended
+  pid_t process_ = 0;  // 0 after the process has ended
 };
 
-/// What such a process writes with --json. Throws std::runtime_error if it cannot be run or wrote
-/// nothing, whatever its exit status.
+/// Runs the tool with --json and returns what it wrote, whatever its exit status. Throws
+/// std::runtime_error if it cannot start or wrote nothing.
 [[nodiscard]] Json run_own(std::vector<std::string> arguments);
 
 }  // namespace winnow::bench

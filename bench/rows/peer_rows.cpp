@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Frames of a race that a library is judged by.
+/// The frames of a race by which a library is compared.
 struct JudgedFrames {
   std::size_t first = 1;
   std::size_t count = 0;
@@ -42,7 +42,7 @@ struct JudgedFrames {
   }
 };
 
-/// Of the partitions on so many threads; null if none ran all of the frames.
+/// Returns the fastest partition with this many threads; null if none ran all of these frames.
 const Run* best_of(const Measurement& raced, int threads, const JudgedFrames& frames) {
   const Run* best = nullptr;
   for (const Run& run : raced.partitions()) {

@@ -6,13 +6,14 @@
 
 namespace winnow::bench {
 
-/// beside_peers: other libraries over the best partition of the same race, in the frames that both
-/// ran: the median, or the mean where the scene grows, or the one frame that a library gave up.
+/// Declares beside_peers: other libraries relative to the best partition of the same race, in the
+/// frames that both ran. Compares the median, the mean if the scene grows, or the one frame in
+/// which the library was aborted for taking too long.
 void declare_beside_peers(Results& results);
 
-/// Races on a scene, whose name and recording go into the options. A library that was given up is
-/// told by what it had taken by then: at least so many times the best. Throws std::runtime_error
-/// after that if not all found the same pairs.
+/// Runs a race on a scene, whose name and recording are written to the options. An aborted library
+/// is compared by its time until then, which is a lower bound. Throws std::runtime_error after that
+/// if not all found the same pairs.
 Measurement add_beside_peers(Results& results, const NamedScene& scene, MeasureOptions options);
 
 }  // namespace winnow::bench

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kReading = "reading all boxes once";
 
-/// Sets of one kind differ in how much they find.
+/// Returns the kind of a query set: the first word of its name, but "ray any" as a whole. Sets of
+/// one kind differ in how many objects they find.
 std::string query_kind_of(const std::string& set) {
   if (set == "ray any") return set;
   return set.substr(0, set.find(' '));

@@ -8,16 +8,16 @@
 
 namespace winnow::bench {
 
-/// queries, and frusta.
+/// Declares queries and frusta.
 void declare_queries(Results& results);
 
-/// Races on the first frame of a scene, whose name and recording go into the options, and adds a
-/// row for each run that answered. Throws std::runtime_error after that if a question was refused,
-/// or if not all found the same.
+/// Runs a race of queries on the first frame of a scene, whose name and recording are written to
+/// the options, and adds a row for each run that returned answers. Throws std::runtime_error after
+/// that if a query was refused or not all engines found the same.
 QueryMeasurement add_queries(Results& results, const NamedScene& scene,
                              QueryMeasureOptions options);
 
-/// Frusta beside reading every box. Throws Refusal.
+/// Adds frustum queries compared with reading every box. Throws Refusal.
 void add_frusta(Results& results, std::size_t objects, std::size_t rounds);
 
 }  // namespace winnow::bench

@@ -5,10 +5,10 @@
 
 namespace winnow::bench {
 
-/// mesh_rays, ray_meshes.
+/// Declares mesh_rays and ray_meshes.
 void declare_mesh_rays(Results& results);
 
-/// A race of rays through a mesh.
+/// Runs a race of ray casts against a mesh.
 RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options);
 
 }  // namespace winnow::bench

@@ -1,3 +1,6 @@
+// The document of a report: tables, rows and their ids, and the formatting of values. Commands and
+// bench/rows add rows; bench/report reads them. document_check.cpp validates documents from files.
+
 #include "bench/rows/results.h"
 
 #include <winnow/simd/isa.h>

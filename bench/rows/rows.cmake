@@ -1,4 +1,5 @@
-# What a report says of the build: facts known now, and the commit whenever the tool is built.
+# Facts about the build for reports: versions from the configuration, and the commit from each
+# build.
 set(winnow_dependencies "")
 foreach(library Eigen3 TBB nlohmann_json)
   if(${library}_VERSION)

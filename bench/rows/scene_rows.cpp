@@ -1,3 +1,7 @@
+// Rows about whole scenes: races from poses to contact points against other libraries, levels of
+// contact, memory and margins, and meshes. bench/commands, bench/goals and bench/report call these
+// functions.
+
 #include "bench/rows/scene_rows.h"
 
 #include <winnow/simd/isa.h>

@@ -8,20 +8,20 @@
 
 namespace winnow::bench {
 
-/// whole_scenes, scene_ratios, scene_levels, scene_costs, tori, mesh_builds.
-/// Levels are told apart by scene and level alone, or by motion and threads as well.
+/// Declares whole_scenes, scene_ratios, scene_levels, scene_costs, tori and mesh_builds. The keys
+/// of levels are scene and level, and with `levels_by_setting` also motion and threads.
 void declare_scenes(Results& results, bool levels_by_setting = false);
 
-/// A race on a scene of the whole pipeline, up to contact points.
+/// Runs a race on a scene of the whole pipeline, up to contact points.
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options);
-/// winnow alone, up to a level.
+/// Measures only winnow, up to a level.
 void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level);
-/// winnow alone: bytes of contacts, and what a margin costs.
+/// Measures only winnow: bytes of contacts, and the cost of a margin.
 void add_scene_costs(Results& results, const SceneCostOptions& options);
-/// Two tori: contacts, and the tree that finds them.
+/// Measures two tori: their contacts, and building the tree that finds them.
 MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock);
 
-/// "pairs", "boolean", "distance", "manifold".
+/// Returns "pairs", "boolean", "distance", "manifold".
 [[nodiscard]] std::vector<std::string> scene_level_names();
 
 }  // namespace winnow::bench

@@ -10,7 +10,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Simulated time in which springs take up the weight.
+/// Simulated seconds in which the contact springs take up the weight.
 constexpr double kSettling = 1.0;
 
 std::string command_of(const StandingQuestion& asked) {

@@ -8,7 +8,7 @@
 
 namespace winnow::bench {
 
-/// What stands drifts by less than this, of edges of about 1, once it has settled.
+/// A stable structure with edges of about 1 drifts by less than this after it has settled.
 inline constexpr double kStandingDrift = 0.02;
 
 struct StandingQuestion {
@@ -18,13 +18,13 @@ struct StandingQuestion {
   int threads = 1;
 };
 
-/// standing: structures that a solver keeps upright.
+/// Declares standing: structures that a solver keeps upright.
 void declare_standing(Results& results);
-/// Lets one stand. False if it did not.
+/// Simulates one structure and adds its row. Returns false if it moved too far.
 bool add_standing(Results& results, const StandingQuestion& asked);
 
 [[nodiscard]] std::vector<std::string> standing_names();
-/// Throws std::invalid_argument if there is none of the name.
+/// Throws std::invalid_argument if there is no structure of this name.
 [[nodiscard]] StandingScene standing_named(const std::string& name);
 
 }  // namespace winnow::bench

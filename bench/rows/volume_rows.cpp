@@ -76,7 +76,7 @@ void add_volumes(Results& results, const VolumeQuestion& asked, const std::strin
                                                            .objects = asked.objects,
                                                            .seed = asked.seed});
   const std::string what = asked.setting == "scene" ? asked.scene.name : made.what;
-  // As the command spells it.
+  // Rounded as the command's text, so that the command repeats the same measurement.
   const double step = std::stod(key_text(asked.step < 0.0 ? made.step : asked.step));
   const std::size_t count = made.solids.size();
   const std::string again = volumes_command(asked, step);

@@ -10,25 +10,25 @@
 
 namespace winnow::bench {
 
-/// Where all volumes are compared.
+/// The partition in which all volumes are compared.
 inline constexpr const char* kVolumesPartition = "LinearBvh";
 
 /// A race of volumes on one setting.
 struct VolumeQuestion {
   std::string setting{};  ///< see volume_setting_names()
-  NamedScene scene{};     ///< of the setting "scene"
+  NamedScene scene{};     ///< for the setting "scene"
   std::size_t objects = 10'000;
   std::uint64_t seed = 1;
   std::string partition = kVolumesPartition;
-  double step = -1.0;  ///< below 0: the setting's own
+  double step = -1.0;  ///< negative: the setting's own step
   std::size_t frames = 9;
 };
 
-/// volumes, and margins.
+/// Declares volumes and margins.
 void declare_volumes(Results& results);
 
-/// Adds a row for each volume; to `margins` only those of boxes. Throws std::runtime_error after
-/// that if a volume missed pairs that overlap.
+/// Adds a row for each volume; `margins` gets only rows of boxes. Throws std::runtime_error after
+/// that if a volume missed overlapping pairs.
 void add_volumes(Results& results, const VolumeQuestion& asked,
                  const std::string& table = "volumes");
 

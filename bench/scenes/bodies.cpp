@@ -30,7 +30,7 @@ void drift(Body& body, const Walls& walls) noexcept {
       c = c < low ? low + (low - c) : high - (c - high);
       body.velocity[axis] = -body.velocity[axis];
     }
-    // Between walls closer than one step a reflection can still be outside.
+    // If the walls are closer together than one step, a reflection can leave the centre outside.
     body.centre[axis] = std::clamp(c, low, high);
   }
 }
@@ -88,7 +88,7 @@ BodyScene::BodyScene(std::string name, const Walls& walls, std::vector<Body> bod
     place(i);
     half = std::max(half, bodies_[i].half);
   }
-  // Rounding one step further out than the boxes do, so that none sticks out.
+  // One rounding step larger than the boxes, so that the world contains all of them.
   Eigen::Vector3d low = Eigen::Vector3d(walls_.low.data()).array() - half * 1.000001;
   Eigen::Vector3d high = Eigen::Vector3d(walls_.high.data()).array() + half * 1.000001;
   world_ = Aabb::outward(low, high);

@@ -1,3 +1,7 @@
+// Builds the scenes of rigid bodies that the races of the whole pipeline use: a heap, balls, a
+// landscape and two tori. bench/measure and bench/rows call make_heap() and the others; meshes.cpp
+// makes the meshes.
+
 #include "bench/scenes/body_scenes.h"
 
 #include <winnow/pipeline/contacts.h>
@@ -13,14 +17,14 @@
 namespace winnow::bench {
 namespace {
 
-/// Hulls that bodies share.
+/// Number of different hulls that the bodies share.
 constexpr std::size_t kHulls = 64;
-/// Side of the cube that a body of the heap has for itself.
+/// Edge of the lattice cell of each body in the heap.
 constexpr double kRoom = 0.812;
 constexpr int kPushes = 40;
-/// What is left between bodies that were pushed apart: neighbours overlap a little.
+/// Scale of the positions after the bodies were pushed apart, so that neighbours overlap a little.
 constexpr double kSqueeze = 0.995;
-/// How deep bodies lie in the terrain.
+/// Depth of the bodies in the terrain.
 constexpr double kSunk = 0.01;
 
 Eigen::Vector3d direction(Random& random) {
@@ -31,7 +35,7 @@ Eigen::Vector3d direction(Random& random) {
   }
 }
 
-/// Points of a sphere are all vertices of their hull.
+/// Adds a hull of points on a sphere, all of which are vertices.
 ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double radius) {
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < vertices; ++i) points.push_back(radius * direction(random));
@@ -80,7 +84,7 @@ void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
   }
 }
 
-/// Moves bodies that overlap apart, all at once, and keeps them in the cube.
+/// Separates overlapping bodies, all in parallel, and keeps them inside the cube.
 void push_apart(BodySet& set, double side) {
   Scene scene(set.pool);
   std::vector<BodyDefinition> bodies(set.poses.size());
@@ -109,7 +113,7 @@ void push_apart(BodySet& set, double side) {
   }
 }
 
-/// Sinks a hull into the terrain until its lowest corner is as deep as it should be.
+/// Moves a hull vertically until its lowest vertex is kSunk below the terrain.
 void lay_down(const HullShape& hull, const Heights& heights, Pose& pose) {
   const double* q = pose.orientation;
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
@@ -130,7 +134,7 @@ std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
   add_heap_shapes(*set, bodies, random);
   const double side = kRoom * cube_root(static_cast<double>(bodies));
   set->poses.resize(bodies);
-  // One body a cell of a lattice, somewhere in it: random places alone would leave holes.
+  // Draws one position in each cell of a lattice. Fully random positions would leave holes.
   const auto across = static_cast<std::size_t>(std::ceil(side / kRoom - 1e-9));
   for (std::size_t i = 0; i < bodies; ++i) {
     const std::size_t cell[3] = {i % across, i / across % across, i / across / across};
@@ -139,7 +143,7 @@ std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
     }
     turn_at_random(random, set->poses[i]);
   }
-  // Kinds come in turns: without a shuffle they would lie in layers.
+  // Shuffles the positions, because kinds alternate by row and would form layers.
   for (std::size_t i = bodies; i > 1; --i) {
     std::swap(set->poses[i - 1], set->poses[random.below(static_cast<std::uint32_t>(i))]);
   }
@@ -152,7 +156,7 @@ std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
 
 std::unique_ptr<BodySet> make_balls(std::size_t bodies, std::uint64_t seed) {
   constexpr double kContactsPerBody = 7.5;
-  // Two meet where the center of one lies in a ball of unit radius about that of the other.
+  // Two balls overlap if one's centre is inside the unit ball around the other's centre.
   constexpr double kUnitBall = 4.18879020478639;
   auto set = std::make_unique<BodySet>();
   ShapeId ball;
@@ -215,7 +219,7 @@ Triangles make_race_torus() {
 }
 
 const std::array<TorusPose, 4>& torus_poses() {
-  // The copy stands upright and moves outward through the first one's hole and tube.
+  // The copy is upright and moves outward through the first torus's hole and tube.
   constexpr double kHalf = 0.70710678118654752;
   static const std::array<TorusPose, 4> poses{{
       {73, {{1.195, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},

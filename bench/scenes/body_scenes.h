@@ -11,37 +11,40 @@
 
 namespace winnow::bench {
 
-/// Boxes, spheres, capsules and hulls of 16 vertices, about unit size, a quarter each, that lie
-/// close: random places in a cube, pushed apart until they hardly overlap. About 8 pairs of boxes
-/// and 2.5 contacts a body.
+/// Returns a dense heap of boxes, spheres, capsules and hulls of 16 vertices, a quarter each, of
+/// about unit size: random positions in a cube, pushed apart until they hardly overlap. About 8
+/// pairs of boxes and 2.5 contacts per body.
 [[nodiscard]] std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed);
 
-/// Balls of unit diameter at random places in a cube, 7.5 contacts a body.
+/// Returns balls of unit diameter at random positions in a cube, 7.5 contacts per body.
 [[nodiscard]] std::unique_ptr<BodySet> make_balls(std::size_t bodies, std::uint64_t seed);
 
-/// Hulls of 16 to 32 vertices that lie on a terrain of 2 * cells^2 triangles of about half their
-/// size; every 40th leans on its neighbour.
+/// Returns hulls of 16 to 32 vertices on a terrain of 2 * cells^2 triangles of about half their
+/// size; every 40th hull leans on its neighbour.
 [[nodiscard]] std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
                                                       std::uint64_t seed);
 
-/// How far bodies of a scene stray from their places, along and about each axis (in radians).
+/// Largest displacement of a scene's bodies from their poses, along each axis and about it (in
+/// radians).
 struct Stray {
   double along = 0.0;
   double about = 0.0;
 };
-/// Every object moving a little.
+/// Every object moves a little.
 inline constexpr Stray kMoving{0.005, 0.005};
-/// At rest but for rounding, as a solver leaves bodies: less than what contacts are carried over.
+/// Bodies at rest apart from noise, as a solver leaves them; smaller than the distance up to which
+/// contacts are carried over.
 inline constexpr Stray kResting{1e-5, 1e-5};
 inline constexpr double kCarryOver = 2e-4;
 
-/// The poses of a frame: each body at a random place near its own.
+/// Returns the poses of a frame: each body's pose with a random displacement.
 void stray(const BodySet& set, const Stray& by, std::uint64_t frame, std::vector<Pose>& poses);
 
-/// A torus of 20,000 triangles, and where a copy stands so that so many pairs of triangles meet.
+/// Returns a torus of 20,000 triangles.
+/// A pose of a second torus, and the number of pairs of triangles that then intersect.
 [[nodiscard]] Triangles make_race_torus();
 struct TorusPose {
-  std::size_t about;  ///< pairs of triangles
+  std::size_t about;  ///< approximate number of pairs of triangles
   Pose pose;
 };
 [[nodiscard]] const std::array<TorusPose, 4>& torus_poses();

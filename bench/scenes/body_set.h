@@ -8,8 +8,8 @@
 
 namespace winnow::bench {
 
-/// What a scene engine is given: bodies that move, and a triangle mesh that stands at the origin
-/// (none if it is empty).
+/// Input of a scene engine: moving bodies, and a fixed triangle mesh at the origin (none if it is
+/// empty).
 struct BodySet {
   ShapePool pool;
   std::vector<ShapeId> shapes;

@@ -11,7 +11,8 @@ namespace {
 constexpr float kFieldOfView = 1.0471976F;
 constexpr float kAspect = 1.6F;
 
-/// True if no plane has the whole box behind it, and the box around what is seen meets it.
+/// Returns whether the box intersects the frustum's bounds and is not entirely behind one of its
+/// planes.
 bool sees(const Frustum& camera, const Aabb& box) noexcept {
   if (!camera.bounds.overlaps(box)) return false;
   for (const Plane& plane : camera.planes) {
@@ -22,7 +23,7 @@ bool sees(const Frustum& camera, const Aabb& box) noexcept {
   return true;
 }
 
-/// Of about 2,000 of the boxes.
+/// Returns the share of boxes that are visible, estimated from about 2,000 of them.
 double share_seen(const Frustum& camera, std::span<const Aabb> boxes) noexcept {
   const std::size_t step = std::max<std::size_t>(1, boxes.size() / 2000);
   std::size_t seen = 0;
@@ -48,7 +49,7 @@ Eigen::Vector3f random_direction(Random& random) noexcept {
     const double y = random.in(-1.0, 1.0);
     const double z = random.in(-1.0, 1.0);
     const double square = x * x + y * y + z * z;
-    // Points of the ball; near its centre the direction would be coarse.
+    // Rejection sampling in the unit ball; close to its centre the direction would be imprecise.
     if (square > 1.0 || square < 1e-4) continue;
     return (Eigen::Vector3d(x, y, z) / std::sqrt(square)).cast<float>();
   }
@@ -60,7 +61,7 @@ Frustum camera_that_sees(double share, std::span<const Aabb> boxes, const Aabb& 
   const Eigen::Vector3f half = 0.5F * (world.max - world.min);
   const float diagonal = 2.0F * half.norm();
   Frustum camera;
-  // A camera at the border that looks out cannot see enough: another one is tried.
+  // A camera at the border that looks outward cannot see enough boxes, so another one is drawn.
   for (int attempt = 0; attempt < 20; ++attempt) {
     const Eigen::Vector3f forward = random_direction(random);
     const Eigen::Vector3f up = random_direction(random);

@@ -9,15 +9,15 @@
 
 namespace winnow::bench {
 
-/// The box around all bounded boxes; a unit box if there are none.
+/// Returns the bounds of all bounded boxes; a unit box if there are none.
 [[nodiscard]] Aabb world_of(std::span<const Aabb> boxes) noexcept;
 
-/// Of unit length, uniform.
+/// Returns a uniform direction of unit length.
 [[nodiscard]] Eigen::Vector3f random_direction(Random& random) noexcept;
 
-/// A camera with a vertical field of view of 60 degrees, at random, that sees about this share of
-/// the boxes: it stands in the world for small shares, before it for large ones, and its far plane
-/// is put where the share is right.
+/// Returns a random camera with a vertical field of view of 60 degrees that sees about this share
+/// of the boxes. The camera is inside the world for small shares and outside for large ones; its
+/// far plane is chosen so that the share is right.
 [[nodiscard]] Frustum camera_that_sees(double share, std::span<const Aabb> boxes, const Aabb& world,
                                        Random& random);
 

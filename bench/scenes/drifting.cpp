@@ -10,7 +10,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Every body moves in every frame.
+/// A scene in which every body moves in every frame.
 class Drifting : public BodyScene {
  public:
   using BodyScene::BodyScene;
@@ -24,7 +24,7 @@ class Drifting : public BodyScene {
   }
 };
 
-/// In every frame another twentieth of the bodies moves.
+/// A scene in which a random twentieth of the bodies moves in each frame.
 class Sleepy final : public BodyScene {
  public:
   Sleepy(std::string name, const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
@@ -44,10 +44,10 @@ class Sleepy final : public BodyScene {
   }
 
  private:
-  std::vector<std::uint32_t> order_;  // a permutation; its front is who moves
+  std::vector<std::uint32_t> order_;  // a permutation; the bodies at its front move
 };
 
-/// Every body takes a new random step in every frame.
+/// A scene in which every body takes a new random step in every frame.
 class Brownian final : public BodyScene {
  public:
   using BodyScene::BodyScene;

@@ -8,7 +8,8 @@
 
 namespace winnow::bench {
 
-// Scenes in which bodies fly straight on and are reflected at the walls.
+// Scenes whose bodies move in straight lines (in make_brownian: by random steps) and are reflected
+// at the walls.
 
 std::unique_ptr<FrameSource> make_uniform(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_sleepy(std::size_t objects, std::uint64_t seed);

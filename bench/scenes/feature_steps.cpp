@@ -8,14 +8,14 @@
 namespace winnow::bench {
 namespace {
 
-/// Four points before and after.
+/// Four points at the start and at the end.
 using Step = std::array<Vec3d, 8>;
 
 Vec3d in_cube(Random& random) {
   return {random.unit(), random.unit(), random.unit()};
 }
 
-/// With few digits, so that sums and small multiples of them are exact.
+/// Returns a point with few binary digits, so that sums and small multiples are exact.
 Vec3d on_lattice(Random& random, std::uint32_t reach) {
   const auto one = [&] {
     return (static_cast<double>(random.below(2 * reach + 1)) - reach) * 0x1p-4;
@@ -32,7 +32,8 @@ Step wandering(Random& random, double share) {
   return step;
 }
 
-/// A vertex in a face, or edges that cross, from which points go apart at constant velocities.
+/// Returns a vertex inside a face, or two crossing edges, at kTouchTime; all points move at
+/// constant velocities.
 Step touching(FeaturePair kind, Random& random) {
   const Vec3d a = on_lattice(random, 16);
   const Vec3d b = on_lattice(random, 16);
@@ -50,15 +51,16 @@ Step touching(FeaturePair kind, Random& random) {
   return step;
 }
 
-/// Axes that stand in any direction.
+/// Returns an orthonormal basis of random orientation.
 std::array<Vec3d, 3> random_axes(Random& random) {
   const Eigen::Vector3d first = random_unit(random);
   const Eigen::Vector3d second = first.cross(random_unit(random)).normalized();
   return {first, second, first.cross(second)};
 }
 
-/// A vertex that falls past an edge of a triangle in the plane z = 0, or an edge past the end of
-/// another, on the side x < 0 on which the other feature has nothing; as axes at random see it.
+/// Returns a vertex that falls past an edge of a triangle in the plane z = 0, or an edge that falls
+/// past the end of another, on the side x < 0 of the other feature; everything in a random
+/// orientation.
 Step passing(FeaturePair kind, Random& random) {
   const double away = 1e-11 * power(1e7, random.unit());
   const double height = random.in(0.1, 1.0);

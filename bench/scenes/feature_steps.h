@@ -10,12 +10,12 @@
 
 namespace winnow::bench {
 
-/// How two features of meshes move in a step.
+/// Kinds of motion of two mesh features in a step.
 enum class FeatureSteps {
-  random,    ///< all points anywhere in a unit cube, before and after
-  small,     ///< the same, moving by a hundredth
-  touching,  ///< they touch exactly at kTouchTime, and at no earlier time that is known
-  passing,   ///< they pass at a distance of 1e-11 to 1e-4, and do not touch
+  random,    ///< all points anywhere in a unit cube, at the start and at the end
+  small,     ///< start anywhere in a unit cube, and move by a hundredth
+  touching,  ///< touch exactly at kTouchTime, perhaps also earlier
+  passing,   ///< pass at a distance of 1e-11 to 1e-4 without touching
 };
 inline constexpr std::array kFeatureSteps{FeatureSteps::random, FeatureSteps::small,
                                           FeatureSteps::touching, FeatureSteps::passing};
@@ -31,10 +31,10 @@ inline constexpr std::array kFeaturePairs{FeaturePair::vertex_face, FeaturePair:
   return kind == FeaturePair::vertex_face ? "vertex-face" : "edge-edge";
 }
 
-/// Steps as columns.
+/// Steps in columns.
 struct FeatureStepSet {
   std::size_t count = 0;
-  /// By point, axis and pair; of the end from the middle on.
+  /// Indexed by point, axis and pair; points 4 to 7 are the end positions.
   std::array<std::array<std::vector<double>, 3>, 8> column;
 
   [[nodiscard]] FeatureColumns columns() const;

@@ -8,8 +8,8 @@
 
 namespace winnow::bench {
 
-/// Something that shows the boxes of the same objects frame after frame: a built-in scene, or a
-/// recording. A scene that grows appends rows.
+/// Provides the boxes of the same objects frame by frame: a built-in scene or a recording. A scene
+/// that grows appends rows.
 class FrameSource {
  public:
   FrameSource(const FrameSource&) = delete;
@@ -17,13 +17,13 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Contains every box of every frame.
+  /// Returns bounds that contain every box of every frame.
   [[nodiscard]] virtual Aabb world() const = 0;
-  /// The boxes of the current frame, row = object; valid until `advance`.
+  /// Returns the boxes of the current frame, row = object; valid until `advance`.
   [[nodiscard]] virtual std::span<const Aabb> boxes() const = 0;
-  /// How many there will be.
+  /// Returns the final number of objects.
   [[nodiscard]] virtual std::size_t objects() const { return boxes().size(); }
-  /// Goes to the next frame; false, and no change, if there is none.
+  /// Moves to the next frame; returns false without a change if there is none.
   virtual bool advance() = 0;
 
  protected:

@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Bodies that fly straight on from the frame on in which they come.
+/// A scene whose bodies move in straight lines from the frame in which they are added.
 class Growing final : public BodyScene {
  public:
   Growing(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
@@ -32,7 +32,7 @@ class Growing final : public BodyScene {
   }
 
  private:
-  static constexpr std::size_t kFrames = 60;  // until all are there
+  static constexpr std::size_t kFrames = 60;  // until all bodies are added
 
   [[nodiscard]] std::size_t present_in(std::size_t frame) const noexcept {
     if (frame >= kFrames) return bodies_.size();

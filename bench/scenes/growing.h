@@ -8,8 +8,8 @@
 
 namespace winnow::bench {
 
-/// Begins with a thousandth of the objects, and grows by the same factor in each frame until all
-/// are there.
+/// Returns a scene that starts with a thousandth of the objects and grows by the same factor in
+/// each frame until all are present.
 std::unique_ptr<FrameSource> make_growth(std::size_t objects, std::uint64_t seed);
 
 }  // namespace winnow::bench

@@ -10,7 +10,7 @@
 namespace winnow::bench {
 namespace {
 
-/// In every frame every body gets a new place.
+/// Every body gets a new random position in every frame.
 class Teleporting final : public BodyScene {
  public:
   using BodyScene::BodyScene;
@@ -24,7 +24,8 @@ class Teleporting final : public BodyScene {
   }
 };
 
-/// Every body flies on, but for a tenth of them, others in each frame, which get new places.
+/// All bodies move in straight lines, except a tenth of them, a different one in each frame, which
+/// get new positions.
 class Respawning final : public BodyScene {
  public:
   Respawning(std::string name, const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
@@ -47,11 +48,11 @@ class Respawning final : public BodyScene {
   }
 
  private:
-  std::vector<std::uint32_t> order_;  // in which they get new places
+  std::vector<std::uint32_t> order_;  // order in which bodies get new positions
   std::size_t next_ = 0;
 };
 
-/// Bodies that flow along x, the faster the higher, and come in again on the other side.
+/// Bodies flow along x at a speed that grows with y, and re-enter on the opposite side.
 class Shearing final : public BodyScene {
  public:
   using BodyScene::BodyScene;
@@ -68,12 +69,12 @@ class Shearing final : public BodyScene {
   }
 
  private:
-  /// Edges per frame that bodies one edge apart on y move against each other: twice what the
-  /// fastest of `uniform` do.
+  /// Relative speed, in edges per frame, of bodies one edge apart in y: twice the fastest of
+  /// `uniform`.
   static constexpr double kRate = 0.2;
 };
 
-/// Every body takes a step of one length in a new direction in every frame.
+/// Every body takes a step of fixed length in a new random direction in every frame.
 class Jumping final : public BodyScene {
  public:
   using BodyScene::BodyScene;
@@ -88,7 +89,7 @@ class Jumping final : public BodyScene {
   }
 
  private:
-  /// In a direction that is uniform on the sphere: that of a point of the ball.
+  /// Draws a step in a uniform direction by rejection sampling in the unit ball.
   [[nodiscard]] Vector draw_step(double length) noexcept {
     for (;;) {
       Vector step{};
@@ -104,7 +105,7 @@ class Jumping final : public BodyScene {
   }
 };
 
-/// `Scene` of the bodies of `uniform`.
+/// Returns a `Scene` with the bodies of `uniform`.
 template <typename Scene>
 std::unique_ptr<FrameSource> of_uniform(const char* name, std::size_t objects, std::uint64_t seed) {
   const Walls walls = uniform_walls(objects);

@@ -8,7 +8,7 @@
 
 namespace winnow::bench {
 
-// Scenes in which a frame says little or nothing of the next one.
+// Scenes with little or no temporal coherence.
 
 std::unique_ptr<FrameSource> make_teleport(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_teleport_mixed(std::size_t objects, std::uint64_t seed);

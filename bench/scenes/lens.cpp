@@ -16,7 +16,7 @@ void farthest_of_lens(const Lens& lens, const double direction[3], double point[
   const double reach = on_rim ? (across > 0.0 ? rim_of(lens) / across : 0.0) : lens.radius / length;
   point[0] = direction[0] * reach;
   point[1] = direction[1] * reach;
-  // The upper side is of the lower ball.
+  // The upper surface belongs to the lower ball.
   point[2] = on_rim ? 0.0 : direction[2] * reach - std::copysign(lens.middle, direction[2]);
 }
 
@@ -26,7 +26,7 @@ SupportShape shape_of(const Lens& lens) noexcept {
     farthest_of_lens(*static_cast<const Lens*>(context), direction, point);
   };
   shape.context = &lens;
-  // What the function rounds is not to count as beyond.
+  // Slightly larger, to cover rounding errors of the support function.
   shape.radius = rim_of(lens) * (1.0 + 1e-15);
   return shape;
 }

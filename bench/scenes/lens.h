@@ -4,18 +4,18 @@
 
 namespace winnow::bench {
 
-/// What two balls share whose middles are at z = -middle and z = middle, 0 <= middle < radius. No
-/// library has it as a shape, but many take sets that are told by their farthest points.
+/// The intersection of two balls with centres at z = -middle and z = middle, 0 <= middle < radius.
+/// No library has this shape, but many accept user shapes defined by a support function.
 struct Lens {
   double radius = 1.0;
   double middle = 0.5;
 };
 
-/// The point that is farthest along a direction of any length but 0.
+/// Computes the support point in a direction of any nonzero length.
 void farthest_of_lens(const Lens& lens, const double direction[3], double point[3]) noexcept;
-/// `lens` outlives the shape.
+/// Returns a user shape that refers to `lens`, which must outlive it.
 [[nodiscard]] SupportShape shape_of(const Lens& lens) noexcept;
-/// The distance of its farthest points, those of its rim, from its middle.
+/// Returns the distance of the farthest points, which are on the rim, from the origin.
 [[nodiscard]] double rim_of(const Lens& lens) noexcept;
 
 }  // namespace winnow::bench

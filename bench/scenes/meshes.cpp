@@ -1,3 +1,6 @@
+// Generates triangle meshes for scenes: funnel, torus, hills, terrain and random triangles.
+// Vertices are rounded to float, because other libraries store floats.
+
 #include "bench/scenes/meshes.h"
 
 #include "bench/common/random.h"
@@ -11,7 +14,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// As libraries keep them, so that all are given the same triangles.
+/// Rounds to float, as libraries store vertices, so that all get the same triangles.
 double as_float(double value) {
   return static_cast<double>(static_cast<float>(value));
 }
@@ -20,8 +23,8 @@ std::uint32_t steps_over(double length, double edge) {
   return static_cast<std::uint32_t>(std::max(1.0, std::ceil(length / edge)));
 }
 
-/// Two triangles between each two neighbours of two rows of points, the second row `to_next` after
-/// the first; the last point of a row is the neighbour of its first.
+/// Adds two triangles between each two neighbours of two closed rows of points. `next` is the first
+/// point of the second row.
 void stitch(std::vector<std::uint32_t>& corners, std::uint32_t first, std::uint32_t next,
             std::uint32_t points) {
   for (std::uint32_t i = 0; i < points; ++i) {
@@ -34,7 +37,7 @@ double random_at(std::uint64_t x, std::uint64_t y, std::uint64_t seed) {
   return static_cast<double>(mix(mix(x * 0x10001ULL + seed) + y) >> 11U) * 0x1p-53;
 }
 
-/// Random values at whole points, blended in between.
+/// Returns value noise: random values at integer points, smoothly interpolated.
 double noise(double x, double y, std::uint64_t seed) {
   const double fx = std::floor(x);
   const double fy = std::floor(y);

@@ -7,7 +7,7 @@
 
 namespace winnow::bench {
 
-/// An indexed triangle mesh: three of `corners` a triangle.
+/// An indexed triangle mesh: three entries of `corners` for each triangle.
 struct Triangles {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::uint32_t> corners;
@@ -16,7 +16,8 @@ struct Triangles {
 };
 
 /// A funnel about the z axis, open at both ends: a cone that widens from `outlet` at z = -depth to
-/// `radius` at z = 0, and a wall from there to z = wall. Triangles have edges of about `edge`.
+/// `radius` at z = 0, and a cylindrical wall from there to z = wall. Triangles have edges of about
+/// `edge`.
 struct FunnelSize {
   double radius = 10.0;
   double outlet = 2.0;
@@ -26,29 +27,30 @@ struct FunnelSize {
 };
 [[nodiscard]] Triangles make_funnel(const FunnelSize& size);
 
-/// A torus about the z axis of 2 * rings * sides triangles; `tube` is the radius of what is bent
-/// into a ring of `radius`.
+/// Returns a torus about the z axis with 2 * rings * sides triangles, major radius `radius` and
+/// minor radius `tube`.
 [[nodiscard]] Triangles make_torus(std::uint32_t rings, std::uint32_t sides, double radius,
                                    double tube);
 
-/// Heights over a square lattice of (cells + 1)^2 points, `edge` apart.
+/// Heights over a square lattice of (cells + 1)^2 points with spacing `edge`.
 struct Heights {
   std::uint32_t cells = 0;
   double edge = 1.0;
-  std::vector<double> height{};  ///< of point (x, y): [y * (cells + 1) + x]
+  std::vector<double> height{};  ///< height of point (x, y) at [y * (cells + 1) + x]
 
-  /// The height of the triangles at a point over the lattice. Cells are cut from (0, 0) to (1, 1).
+  /// Returns the height of the triangulated surface at a point. Each cell is split along its
+  /// diagonal from (0, 0) to (1, 1).
   [[nodiscard]] double at(double x, double y) const noexcept;
 };
 
-/// Hills of four sizes, at most about `relief` high, by value noise (Perlin's lattice of random
-/// values, smoothly blended, in octaves).
+/// Returns hills of four sizes with heights up to about `relief`: value noise (random values on a
+/// lattice, smoothly interpolated, in octaves).
 [[nodiscard]] Heights make_hills(std::uint32_t cells, double edge, double relief,
                                  std::uint64_t seed);
-/// Triangles that share no vertices, of all directions and of alike sizes, anywhere in a cube of
-/// side 10: as many as there are, they cover as much of a look through it.
+/// Returns separate triangles of random orientations and similar sizes in a cube of side 10. Their
+/// size depends on their number, so that they always cover the same share of a view.
 [[nodiscard]] Triangles make_soup(std::size_t triangles, std::uint64_t seed);
-/// Two triangles a cell, seen from above counter-clockwise.
+/// Returns two triangles for each cell, counter-clockwise seen from above.
 [[nodiscard]] Triangles make_terrain(const Heights& heights);
 
 }  // namespace winnow::bench

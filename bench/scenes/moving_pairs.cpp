@@ -12,7 +12,7 @@ double most_turn(PairTurn turn) {
   return kTurns[static_cast<std::size_t>(turn)];
 }
 
-/// The motion that has come half of its way at a pose.
+/// Returns a motion that passes through the pose at half its time.
 RigidMotion through(const Pose& middle, const Eigen::Vector3d& travel,
                     const Eigen::Vector3d& turn) {
   RigidMotion back = RigidMotion::standing(middle);
@@ -39,7 +39,7 @@ MovingPairSet make_moving_pairs(const PairKind& kind, PairTurn turn,
     const auto at = [&](std::uint32_t i) { return Eigen::Vector3d::Map(middle.poses[i].position); };
     const double reach = middle.radius[pair.a] + middle.radius[pair.b];
     Eigen::Vector3d way = random.in(2.5, 5.0) * reach * random_unit(random);
-    // Of the two ways to go along it that which begins with the bodies farther apart.
+    // Chooses the sign for which the bodies start farther apart.
     if (way.dot(at(pair.b) - at(pair.a)) > 0.0) way = -way;
     for (const auto& [body, share] : {std::pair{pair.a, -0.5}, {pair.b, 0.5}}) {
       const Eigen::Vector3d axis = random_unit(random);

@@ -10,7 +10,7 @@
 
 namespace winnow::bench {
 
-/// How the bodies of moving pairs turn on their way.
+/// Rotation of the bodies of moving pairs.
 enum class PairTurn { none, little, whirl };
 inline constexpr std::array kPairTurns{PairTurn::none, PairTurn::little, PairTurn::whirl};
 inline constexpr std::array<std::string_view, 3> kPairTurnNames{"none", "up to 1 radian",
@@ -19,16 +19,16 @@ inline constexpr std::array<std::string_view, 3> kPairTurnNames{"none", "up to 1
   return kPairTurnNames[static_cast<std::size_t>(turn)];
 }
 
-/// The pairs of a set as they pass: each body is in the middle of its motion where the set has it,
-/// so that every second pair overlaps there. At the start all are apart.
+/// Pairs of bodies that pass each other. Halfway through its motion each body has its pose in
+/// `middle`, in which every second pair overlaps. All pairs are separate at the start.
 struct MovingPairSet {
   std::unique_ptr<PairSet> middle;
   PairTurn turn{};
   std::vector<RigidMotion> motions;  ///< by body
 };
 
-/// Bodies of a pair travel past each other by 2.5 to 5 times the sum of their radii, in a random
-/// direction, each half of it, and turn about random axes.
+/// Returns pairs whose bodies pass each other in a random direction by 2.5 to 5 times the sum of
+/// their radii, half of it each, and rotate about random axes.
 [[nodiscard]] MovingPairSet make_moving_pairs(const PairKind& kind, PairTurn turn,
                                               const PairSetOptions& options);
 

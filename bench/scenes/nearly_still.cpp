@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Seven bodies fly on, the same in every frame; of fewer, all.
+/// Seven bodies (all, if there are fewer) move in every frame; the others never move.
 class FewMovers final : public BodyScene {
  public:
   FewMovers(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
@@ -33,7 +33,7 @@ class FewMovers final : public BodyScene {
   std::vector<std::uint32_t> movers_;
 };
 
-/// Bodies that tremble about where they are at home, but for every hundredth, which rests.
+/// Bodies that jitter about fixed positions, except every hundredth, which does not move.
 class Trembling final : public BodyScene {
  public:
   Trembling(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
@@ -53,7 +53,7 @@ class Trembling final : public BodyScene {
   }
 
  private:
-  static constexpr double kTremor = 1e-5;  // edges
+  static constexpr double kTremor = 1e-5;  // in edges
 
   std::vector<Vector> homes_;
 };
@@ -65,9 +65,9 @@ std::unique_ptr<FrameSource> make_few_movers(std::size_t objects, std::uint64_t 
   return std::make_unique<FewMovers>(walls, uniform_bodies(objects, seed, walls), seed);
 }
 
-// Homes lie on a lattice of which no whole number of steps is an edge: on each axis two cubes
-// overlap or lie apart by half a step at least, which is fifty times as much as they tremble, so
-// that no pair ever begins or ends.
+// Positions are on a lattice whose step does not divide the edge. Along each axis two cubes
+// therefore overlap or are separate by at least half a step, which is fifty times the jitter, so
+// that no pair begins or ends.
 std::unique_ptr<FrameSource> make_jitter(std::size_t objects, std::uint64_t seed) {
   constexpr double kStep = 2.0 / 2001.0;
   const Walls walls = uniform_walls(objects);
@@ -75,7 +75,7 @@ std::unique_ptr<FrameSource> make_jitter(std::size_t objects, std::uint64_t seed
   for (Body& body : bodies) {
     for (double& c : body.centre) c = kStep * std::floor(c / kStep);
   }
-  Walls around = walls;  // with room to tremble
+  Walls around = walls;  // with room for the jitter
   for (double& low : around.low) low -= kStep;
   return std::make_unique<Trembling>(around, std::move(bodies), seed);
 }

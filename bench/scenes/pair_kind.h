@@ -10,26 +10,27 @@
 
 namespace winnow::bench {
 
-/// A kind of pair that is measured. `a` comes before `b` in the order of the kinds, but that
+/// A kind of pair that is measured. `a` precedes `b` in the order of the kinds, except that
 /// triangles and half-spaces are last.
 struct PairKind {
   std::string_view name;
   ShapeKind a{};
   ShapeKind b{};
-  /// Of the hulls, if there are any: points on an ellipsoid, all of which are vertices.
+  /// Number of vertices of the pair's hulls, if any: points on an ellipsoid, all of which are
+  /// vertices.
   std::uint32_t hull_vertices = 0;
 };
 
-/// Those that everything is measured on, cheapest first.
+/// Returns the kinds that every benchmark uses, cheapest first.
 [[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
-/// All kinds: the main ones, then every other pair of a sphere, capsule, box, cylinder, cone, hull,
-/// ellipsoid, tapered capsule (in names taper), lens (in names own: a set of a program's own),
+/// Returns all kinds: the main ones, then every other pair of sphere, capsule, box, cylinder, cone,
+/// hull, ellipsoid, tapered capsule ("taper" in names), lens ("own" in names: a user shape),
 /// triangle and half-space.
 [[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
-/// Null if there is none of the name.
+/// Returns null if there is no kind of this name.
 [[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;
 
-/// What is asked about shapes.
+/// Levels of a narrow-phase query.
 inline constexpr std::array kLevels{ContactLevel::boolean, ContactLevel::distance,
                                     ContactLevel::manifold};
 inline constexpr std::array<std::string_view, 3> kLevelNames{"boolean", "distance", "manifold"};

@@ -1,3 +1,6 @@
+// Draws the seeded random pairs that narrow-phase races and accuracy measurements use. Poses are
+// drawn until winnow's overlap test gives the wanted result; random_shapes.cpp draws the shapes.
+
 #include "bench/scenes/pair_set.h"
 
 #include "bench/common/exact_math.h"
@@ -14,20 +17,21 @@
 namespace winnow::bench {
 namespace {
 
-/// Different hulls of a set: small ones in cache, many where the bodies are scattered.
+/// Number of different hulls of a set: few that stay in the cache, or many if bodies are scattered.
 constexpr std::uint32_t kHulls = 32;
 constexpr std::uint32_t kScatteredHulls = 256;
-/// Spheres as far apart as this times the sum of their radii overlap in half of all cases.
+/// Spheres whose centres are up to this multiple of the sum of their radii apart overlap in half of
+/// all cases.
 constexpr double kReach = 1.25;
-/// After so many placements of one pair something is wrong: few are placed more than 200 times.
+/// Limit on the placements of one pair; few pairs need more than 200.
 constexpr int kAttempts = 10'000;
-/// In radii of the smaller body: half of the pairs of sets with a nearest length are no nearer.
+/// In radii of the smaller body: the least gap or depth in half of the pairs if `nearest` is set.
 constexpr double kNearAtAll = 0.05;
-/// Bodies a stand in a cube of this side.
+/// Edge of the cube that contains the positions of bodies a.
 constexpr double kWorld = 10.0;
-/// Where pairs touch is looked for to this part of the smaller body.
+/// Accuracy of the bisection for the touching position, relative to the smaller body.
 constexpr double kTouching = 1e-12;
-/// Of positions that are to be moved far.
+/// Positions are rounded to multiples of this if an offset is added.
 constexpr double kGrid = 0x1p-12;
 
 /// Draws the pairs of a set.
@@ -50,7 +54,7 @@ class PairDrawing {
   }
 
  private:
-  /// Places pairs anew until every second one overlaps.
+  /// Places pairs again until every second one overlaps.
   void draw_lots() {
     std::vector<std::uint32_t> open(set_.pairs.size());
     std::iota(open.begin(), open.end(), 0U);
@@ -122,7 +126,7 @@ class PairDrawing {
     return options_.offset ? kGrid * std::nearbyint(x / kGrid) : x;
   }
 
-  /// What winnow says of some of the pairs.
+  /// Returns whether each of these pairs overlaps, by winnow's test.
   std::vector<std::uint8_t> overlaps(const std::vector<std::uint32_t>& which) {
     std::vector<BodyPair> pairs;
     for (const std::uint32_t i : which) pairs.push_back(set_.pairs[i]);
@@ -135,7 +139,8 @@ class PairDrawing {
     return overlap;
   }
 
-  /// b stands on a line through the position of a; they touch between `inside` and `outside`.
+  /// A line through the position of a along which b is placed; the shapes touch between the
+  /// distances `inside` and `outside`.
   struct Line {
     Eigen::Vector3d along;
     double inside;
@@ -143,8 +148,8 @@ class PairDrawing {
     [[nodiscard]] double middle() const { return 0.5 * (inside + outside); }
   };
 
-  /// Finds by bisection, all pairs at once, where on the line bodies begin to overlap, and puts
-  /// them near that.
+  /// Finds the touching position on each line by bisection, all pairs at once, and places the
+  /// bodies near it.
   void bring_near() {
     std::vector<std::uint32_t> which(set_.pairs.size());
     std::iota(which.begin(), which.end(), 0U);

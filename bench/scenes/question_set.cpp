@@ -1,3 +1,6 @@
+// Draws seeded sets of partition queries about given boxes: ray casts, overlap tests, swept volumes
+// and nearest objects. Query races and their references run them.
+
 #include "bench/scenes/question_set.h"
 
 #include <winnow/core/eigen.h>
@@ -29,7 +32,7 @@ class Asker {
       sum += edges.sum();
       ++finite;
     }
-    // Objects that are all points still need questions of some size.
+    // If all objects are points, queries still need a size.
     edge_ = sum > 0.0
                 ? sum / (3.0 * static_cast<double>(finite))
                 : 0.01 * (as_eigen(world_.max) - as_eigen(world_.min)).cast<double>().maxCoeff();

@@ -16,32 +16,32 @@
 
 namespace winnow::bench {
 
-/// What is wanted of each question of a set.
+/// Expected result of each query of a set.
 enum class Want {
-  closest,  ///< of a ray or a swept volume: the first object on its way
-  any,      ///< of a ray: whether there is an object on its way
-  all,      ///< of a ray: all objects on its way, in their order
-  overlap,  ///< of a box, a ball or a frustum: all objects that meet it
-  nearest,  ///< of a point: the `count` nearest objects
+  closest,  ///< ray or swept volume: the first object hit
+  any,      ///< ray: whether it hits an object
+  all,      ///< ray: all objects hit, sorted by distance
+  overlap,  ///< box, ball or frustum: all objects that overlap it
+  nearest,  ///< point: the `count` nearest objects
 };
 
-/// Questions of one kind about the same objects.
+/// Queries of one kind about the same objects.
 struct QuestionSet {
   std::string name;
   Want want = Want::closest;
   std::vector<Ray> rays;
-  std::vector<Aabb> boxes;  ///< also the points of `nearest`, as boxes of no extent
+  std::vector<Aabb> boxes;  ///< for `nearest`: points, as boxes of zero extent
   std::vector<std::variant<Sphere, Frustum>> regions;
   std::vector<std::variant<BoxCast, SphereCast>> casts;
-  std::size_t count = 0;  ///< objects wanted by each question of `nearest`
+  std::size_t count = 0;  ///< number of objects that each query of `nearest` returns
 
-  /// Exactly one of the columns holds the questions.
+  /// Returns the number of queries. Only one of the columns is filled.
   [[nodiscard]] std::size_t size() const noexcept {
     return rays.size() + boxes.size() + regions.size() + casts.size();
   }
 };
 
-/// An object that was found; t is where a ray meets it or how far it is, 0 for an overlap.
+/// An object that was found. t is the ray parameter of the hit, or the distance; 0 for an overlap.
 struct Found {
   std::uint32_t row = 0;
   float t = 0.0F;
@@ -49,7 +49,7 @@ struct Found {
   friend bool operator==(const Found&, const Found&) noexcept = default;
 };
 
-/// What was found by a run of questions.
+/// Results of a run of queries.
 class Answers {
  public:
   [[nodiscard]] std::size_t questions() const noexcept { return start_.size() - 1; }
@@ -58,7 +58,7 @@ class Answers {
   }
 
   void add(Found found) { found_.push_back(found); }
-  /// Ends the question that was added to.
+  /// Ends the results of the current query.
   void next() { start_.push_back(found_.size()); }
 
  private:
@@ -66,14 +66,14 @@ class Answers {
   std::vector<std::size_t> start_{0};
 };
 
-/// Names of the sets of questions, in the order in which reports list them.
+/// Returns the names of the query sets, in the order of reports.
 [[nodiscard]] std::span<const std::string_view> question_set_names() noexcept;
 
-/// The sets of these names (all, if there are none) about these boxes; the same seed gives the same
-/// questions. Rays start uniformly in the world that the boxes span and have uniform directions of
-/// unit length; everything else is put uniformly in the world as well. Sizes and reaches are in
-/// mean edges of the boxes. `rays` is the number of rays of a set, >= 1; dearer questions are
-/// fewer.
+/// Returns the sets of these names (all, if there are none) about these boxes; the same seed gives
+/// the same queries. Rays start uniformly in the bounds of the boxes and have uniform directions of
+/// unit length; all other positions are uniform as well. Sizes and distances are relative to the
+/// mean edge of the boxes. `rays` is the number of rays in a set, >= 1; sets of slower queries are
+/// smaller.
 [[nodiscard]] std::vector<QuestionSet> make_question_sets(std::span<const Aabb> boxes,
                                                           std::size_t rays, std::uint64_t seed,
                                                           std::span<const std::string> names = {});

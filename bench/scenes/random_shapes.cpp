@@ -1,3 +1,5 @@
+// Draws random shapes and orientations for pair_set.cpp and moving_pairs.cpp.
+
 #include "bench/scenes/random_shapes.h"
 
 #include "bench/common/need.h"
@@ -101,7 +103,7 @@ std::vector<Eigen::Vector3d> ShapeSource::draw_corners() {
   const Eigen::Array3d axes(length(0.5, 1.0), length(0.5, 1.0), length(0.5, 1.0));
   std::vector<Eigen::Vector3d> points;
   if (style_.upright) {
-    // Sides of equal width.
+    // A regular prism, stretched by the axes.
     constexpr double kTurn = 6.283185307179586;
     const std::uint32_t sides = style_.hull_vertices / 2;
     for (std::uint32_t i = 0; i < sides; ++i) {

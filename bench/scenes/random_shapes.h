@@ -12,32 +12,32 @@
 
 namespace winnow::bench {
 
-/// A shape and the radius of the ball about its frame's origin that contains it; of a half-space,
-/// whose plane passes through that origin, of one as large as other shapes.
+/// A shape and the radius of the ball about its frame's origin that contains it. A half-space,
+/// whose plane contains that origin, gets a radius like other shapes.
 struct DrawnShape {
   ShapeId id;
   double radius = 0.0;
 };
 
-/// Which shapes are drawn: 0.5 to 2 across times `scale`.
+/// Distribution of shapes: 0.5 to 2 across, times `scale`.
 struct ShapeStyle {
   ShapeKind kind{};
   std::uint32_t hull_vertices = 0;
-  std::uint32_t hulls = 0;  ///< different ones
+  std::uint32_t hulls = 0;  ///< number of different hulls
   double scale = 1.0;
-  double thinness = 1.0;  ///< of triangles: at most 1, of their height
-  /// Hulls are prisms with a vertical axis, and an edge of triangles is vertical.
+  double thinness = 1.0;  ///< of triangles: factor of their height, at most 1
+  /// Hulls are prisms with a vertical axis, and each triangle has a vertical edge.
   bool upright = false;
-  /// Where lenses are kept, which are drawn as sets of a program's own.
+  /// Storage of lenses, which are drawn as user shapes.
   std::deque<Lens>* lenses = nullptr;
 };
 
-/// Draws shapes of one kind into a pool. Hulls are made when it is made.
+/// Draws shapes of one kind into a pool. The constructor draws the hulls.
 class ShapeSource {
  public:
   ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random);
 
-  /// Throws std::runtime_error if the pool refuses.
+  /// Throws std::runtime_error if the pool rejects the shape.
   [[nodiscard]] DrawnShape draw();
 
  private:
@@ -57,16 +57,16 @@ class ShapeSource {
   std::vector<DrawnShape> hulls_;
 };
 
-/// Uniform on the unit sphere.
+/// Returns a uniform point on the unit sphere.
 [[nodiscard]] Eigen::Vector3d random_unit(Random& random);
-/// Uniform in the ball of the radius.
+/// Returns a uniform point in a ball of this radius.
 [[nodiscard]] Eigen::Vector3d random_in_ball(Random& random, double radius);
-/// Uniform over all rotations.
+/// Sets a uniform random orientation.
 void turn_at_random(Random& random, Pose& pose);
-/// Uniform over all rotations about the vertical axis, which is z.
+/// Sets a uniform random rotation about the vertical axis, z.
 void turn_upright(Random& random, Pose& pose);
-/// `pose` becomes `from` turned about a random axis by the angle whose half has the tangent
-/// `angle` / 2.
+/// Sets `pose`'s orientation to `from`'s, rotated about a random axis by the angle whose half has
+/// the tangent `angle` / 2.
 void turn_from(Random& random, const Pose& from, double angle, Pose& pose);
 
 }  // namespace winnow::bench

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kJitter = 0.25;
 
-/// Unit cubes that shiver about the points of a lattice, on a ground box (row 0) that lies still.
+/// Unit cubes that jitter about the points of a lattice, on a ground box (row 0) that does not
+/// move.
 class Pile final : public BodyScene {
  public:
   Pile(const Walls& walls, std::vector<Body> bodies, std::vector<Vector> homes, const Aabb& ground,
@@ -38,10 +39,10 @@ class Pile final : public BodyScene {
   std::vector<Vector> homes_;
 };
 
-/// Bodies that fall along a path of their own, bounce at its end and come to rest there.
+/// Bodies that fall along straight paths, bounce at the end and come to rest there.
 class Falling final : public BodyScene {
  public:
-  /// A path leads from `end` + `length` * `direction` to `end`.
+  /// A path from `end` + `length` * `direction` to `end`.
   struct Path {
     Vector end{};
     Vector direction{};
@@ -72,7 +73,7 @@ class Falling final : public BodyScene {
   }
 
  private:
-  static constexpr double kGravity = 0.01;  // a frame squared
+  static constexpr double kGravity = 0.01;  // per frame squared
   static constexpr double kRestitution = 0.5;
 
   void follow(std::size_t i) noexcept {
@@ -105,7 +106,8 @@ std::unique_ptr<FrameSource> make_pile(std::size_t objects, std::uint64_t seed) 
     }
     bodies[i].velocity = draw_velocity(random, 1.0);
   }
-  // The lowest cubes' undersides lie within the jitter of z = 0: each touches ground this high.
+  // The undersides of the lowest cubes are within the jitter of z = 0; the ground's top at kJitter
+  // touches each of them.
   const auto edge = static_cast<float>(side + 1.0);
   const Aabb ground{{-1.0F, -1.0F, -1.0F}, {edge, edge, static_cast<float>(kJitter)}};
   const Walls walls{{-kJitter, -kJitter, 0.0}, {side, side, kLayers}};
@@ -118,7 +120,7 @@ std::unique_ptr<FrameSource> make_free_fall(std::size_t objects, std::uint64_t s
   std::vector<Falling::Path> paths(objects);
   for (Falling::Path& path : paths) {
     const Vector start = draw_point(random, walls);
-    // A heap a quarter as high as the world: at rest everything is four times as dense.
+    // At rest the heap is a quarter as high as the world, and four times as dense.
     path.end = {start[0], start[1], 0.25 * start[2]};
     path.direction = {0.0, 0.0, 1.0};
     path.length = 0.75 * start[2];

@@ -8,7 +8,7 @@
 
 namespace winnow::bench {
 
-// Scenes in which bodies lie on each other or come to rest.
+// Scenes whose bodies rest on each other or come to rest.
 
 std::unique_ptr<FrameSource> make_pile(std::size_t objects, std::uint64_t seed);
 std::unique_ptr<FrameSource> make_free_fall(std::size_t objects, std::uint64_t seed);

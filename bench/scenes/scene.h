@@ -17,23 +17,23 @@ struct SceneInfo {
   std::string_view what;  ///< one line
 };
 
-/// The built-in scenes; the six that every figure is given for come first.
+/// Returns the built-in scenes. The first six are used by every benchmark.
 [[nodiscard]] std::span<const SceneInfo> scene_infos() noexcept;
 
-/// How many of them, from the front, every figure is given for.
+/// Number of scenes, from the front, that every benchmark uses.
 inline constexpr std::size_t kMainScenes = 6;
 
 [[nodiscard]] std::vector<std::string> scene_names();
-/// Of those that every figure is given for.
+/// Returns the names of the first kMainScenes scenes.
 [[nodiscard]] std::vector<std::string> main_scenes();
 [[nodiscard]] bool is_built_in(const std::string& name);
 
-/// A built-in scene of so many objects in the end, in its first frame; it goes on for ever. The
-/// same name, number and seed give the same bits on every machine. Null if there is no such name.
-/// `objects` >= 1.
+/// Returns a built-in scene with finally `objects` objects, in its first frame; it never ends.
+/// Equal names, numbers and seeds give equal bits on every machine. Returns null if there is no
+/// such name. `objects` >= 1.
 [[nodiscard]] std::unique_ptr<FrameSource> make_scene(std::string_view name, std::size_t objects,
                                                       std::uint64_t seed);
-/// The same, or ArgumentError with the names there are.
+/// As above, but throws ArgumentError with a list of the names instead of returning null.
 [[nodiscard]] std::unique_ptr<FrameSource> scene_or_error(const std::string& name,
                                                           std::size_t objects, std::uint64_t seed);
 

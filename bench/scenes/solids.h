@@ -14,30 +14,30 @@
 
 namespace winnow::bench {
 
-/// Boxes with an orientation that move a little in each frame: what bounding volumes are put
-/// around.
+/// Oriented boxes that move a little in each frame; benchmarks of bounding volumes enclose them.
 class Solids {
  public:
-  /// Boxes as they lie; unbounded ones are left out.
+  /// Returns these boxes without rotation; unbounded ones are left out.
   static Solids of_boxes(std::span<const Aabb> boxes);
-  /// Unit cubes in any orientation, about as dense as `uniform`.
+  /// Returns unit cubes of random orientation, about as dense as `uniform`.
   static Solids rotated(std::size_t objects, std::uint64_t seed);
-  /// 1 : 1 : 20 in any orientation.
+  /// Returns boxes of proportions 1 : 1 : 20 in random orientations.
   static Solids rods(std::size_t objects, std::uint64_t seed);
 
   [[nodiscard]] std::size_t size() const noexcept { return boxes_.size(); }
   [[nodiscard]] const std::vector<OrientedBox>& boxes() const noexcept { return boxes_; }
   [[nodiscard]] std::vector<Aabb> bounds() const;
-  /// Where each object was when it last left a margin of so much of its bounds' longest edge, at a
-  /// time of its own: as partitions with margins find a scene that has been moving for long.
+  /// Returns each object's box at the time, drawn at random for each, at which it last left a
+  /// margin of this share of its bounds' longest edge. This is the state of fat AABBs in a scene
+  /// that has been moving for long.
   [[nodiscard]] std::vector<OrientedBox> when_margins_were_left(float share) const;
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 
-  /// Each object becomes its box among these, of which the first ones of `of_boxes` were; it stays
-  /// as it is where that is unbounded. Only for solids of boxes.
+  /// Sets each object to its box in this frame of the source that `of_boxes` was given; an
+  /// unbounded box leaves it unchanged. Only for solids made by `of_boxes`.
   void follow(std::span<const Aabb> boxes);
-  /// Each object goes on by `step` times its mean edge, in a direction of its own.
+  /// Moves each object by `step` times its mean edge in its own direction.
   void advance(double step);
 
  private:
@@ -50,7 +50,7 @@ class Solids {
   std::vector<Pose> poses_;
   std::vector<ShapeId> ids_;
   std::vector<Eigen::Vector3f> way_;
-  std::vector<std::size_t> row_;  // of boxes, among those they were made of
+  std::vector<std::size_t> row_;  // row of each object's box in `of_boxes`
   ShapePool shapes_;
 };
 

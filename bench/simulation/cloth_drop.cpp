@@ -1,3 +1,6 @@
+// Cloth that falls on a ball, simulated with DeformableMesh: self_proximity keeps features apart,
+// self_impacts and impacts_with cut the steps. bench/rows/barrier_rows.cpp runs it.
+
 #include "bench/simulation/cloth_drop.h"
 
 #include "bench/common/need.h"
@@ -11,23 +14,23 @@
 namespace winnow::bench {
 namespace {
 
-/// The side of the cloth, and the ball that stands at the origin.
+/// Edge length of the cloth, and radius of the ball, whose centre is the origin.
 constexpr double kSide = 2.0;
 constexpr double kBall = 0.4;
-/// Features are kept so far apart, of the rest length of an edge.
+/// Minimum distance of features, relative to the rest length of an edge.
 constexpr double kThickness = 0.05;
 constexpr double kHeight = 1.0;
 constexpr int kRelaxations = 20;
 constexpr double kDamping = 0.99;
-/// Of the ways of vertices on the ball: friction.
+/// Friction: factor of the displacement of vertices on the ball.
 constexpr double kSliding = 0.2;
-/// Steps go on to this share of the time until a touch.
+/// Share of the time until an impact up to which a step goes.
 constexpr double kBeforeTouch = 0.9;
-/// Single ways are cut so often before all are.
+/// Number of times that displacements are cut vertex by vertex before all are cut together.
 constexpr int kMostCuts = 8;
 
-/// The distance of a triangle from the origin, by the nearest of many of its points: an upper bound
-/// of it.
+/// Returns an upper bound of the distance of a triangle from the origin: the least distance of many
+/// of its points.
 double distance_from_origin(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   constexpr int kParts = 16;
   double least = a.norm();
@@ -55,12 +58,13 @@ void ClothDrop::link(std::size_t a, std::size_t b) {
   links_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), length});
 }
 
-/// Links along edges, across squares, and over two squares against bending.
+/// Creates the vertices, and links along edges, along diagonals, and over two squares against
+/// bending.
 void ClothDrop::make_cloth() {
   const std::size_t side = options_.side;
   const double edge = kSide / static_cast<double>(side - 1);
   for (std::size_t i = 0; i < side * side; ++i) {
-    // Folds do not fall the same way on all sides.
+    // A small offset breaks the symmetry of the folds.
     const double x = (static_cast<double>(i % side) + 0.01) * edge - 0.5 * kSide;
     const double y = (static_cast<double>(i / side) - 0.02) * edge - 0.5 * kSide;
     place_.emplace_back(x, y, kBall + kHeight);
@@ -85,7 +89,7 @@ void ClothDrop::make_cloth() {
   share_.resize(place_.size());
 }
 
-/// Pairs of features that are nearer than the thickness, before the step.
+/// Finds the pairs of features that are closer than the thickness before the step.
 void ClothDrop::find_near() {
   const double thickness = kThickness * kSide / static_cast<double>(options_.side - 1);
   need(mesh_.move(place_, place_, thickness), "the cloth");
@@ -140,7 +144,8 @@ void ClothDrop::keep_apart(const Stay& stay) {
   }
 }
 
-/// Corners as far outside that faces between them are outside, too.
+/// Returns the least distance of a vertex from the origin such that the faces between vertices are
+/// outside the ball as well.
 double ClothDrop::least_radius() const noexcept {
   const double edge = kSide / static_cast<double>(options_.side - 1);
   return std::hypot(kBall, edge) + kThickness * edge;
@@ -225,7 +230,7 @@ void ClothDrop::step() {
     touches = find_touches(earliest);
   }
   if (touches) {
-    // All go on at the same time until just before the first touch.
+    // Moves all vertices to the same time just before the first impact.
     ++cut_short_;
     for (std::size_t i = 0; i < place_.size(); ++i) {
       next_[i] = place_[i] + (next_[i] - place_[i]) * (kBeforeTouch * earliest);

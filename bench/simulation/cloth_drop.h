@@ -11,38 +11,40 @@
 namespace winnow::bench {
 
 struct ClothOptions {
-  /// Vertices along an edge of the square.
+  /// Number of vertices along an edge of the square.
   std::size_t side = 40;
   double step = 1.0 / 60.0;
   double gravity = 10.0;
-  /// False: it falls as if there were neither a ball nor itself, to see what gets through then.
+  /// If false, the cloth falls without collision detection, to show what passes through then.
   bool swept = true;
   Execution execution = Execution::serial();
 };
 
-/// A square of cloth that falls on a ball and hangs down on all sides. Position-based dynamics
-/// (Mueller et al., "Position based dynamics", 2007), whose steps are cut at the first touch that
-/// winnow finds, of the cloth with itself and with the ball: never late, so that nothing gets
-/// through. A client of winnow.
+/// A square of cloth that falls on a ball and drapes over it. The method is position-based dynamics
+/// (Mueller et al., "Position based dynamics", 2007). Each step is cut at the first impact that
+/// winnow finds, of the cloth with itself or with the ball. Reported times of impact are never
+/// late, so that nothing passes through. The class uses only winnow's public interface.
 class ClothDrop {
  public:
-  /// Throws std::runtime_error if winnow refuses the mesh.
+  /// Throws std::runtime_error if winnow rejects the mesh.
   explicit ClothDrop(const ClothOptions& options);
 
   void step();
 
   [[nodiscard]] std::size_t triangles() const noexcept { return corners_.size() / 3; }
   [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
-  /// Touches at which steps were cut, of features with each other and of faces with the ball.
+  /// Returns the number of impacts that cut steps, of features with each other and of faces with
+  /// the ball.
   [[nodiscard]] std::size_t impacts() const noexcept { return impacts_; }
-  /// Steps that were cut for the whole cloth, because cutting single ways came to no end.
+  /// Returns the number of steps that were cut for the whole cloth, because cuts of single vertices
+  /// did not end.
   [[nodiscard]] std::size_t cut_short() const noexcept { return cut_short_; }
-  /// Edges that cross a face, and faces that cut the ball, where the cloth is: found by looking at
-  /// all of them.
+  /// Returns the number of edges that cross a face, and of faces that intersect the ball, at
+  /// present. Tests all of them by brute force.
   [[nodiscard]] std::size_t passed() const;
-  /// The lowest vertex.
+  /// Returns the height of the lowest vertex.
   [[nodiscard]] double lowest() const noexcept;
-  /// How much longer the longest edge is than at rest.
+  /// Returns the largest relative extension of a link.
   [[nodiscard]] double stretch() const noexcept;
   [[nodiscard]] std::uint64_t fingerprint() const noexcept;
 
@@ -52,8 +54,8 @@ class ClothDrop {
     std::uint32_t b;
     double length;
   };
-  /// Features that are near each other: sum of weight[i] times vertex[i] is to be so long along the
-  /// normal.
+  /// Two features that are close to each other. The sum of weight[i] times vertex[i], projected on
+  /// the normal, must be at least the thickness.
   struct Stay {
     std::array<std::uint32_t, 4> vertex;
     std::array<double, 4> weight;
@@ -69,7 +71,8 @@ class ClothDrop {
   [[nodiscard]] double least_radius() const noexcept;
   [[nodiscard]] bool is_on_ball(const Vec3d& vertex) const noexcept;
   void keep_outside(Vec3d& vertex) const;
-  /// The share of its way that each vertex may go. False if there is no touch.
+  /// Computes the share of its displacement that each vertex may go. Returns false if there is no
+  /// impact.
   [[nodiscard]] bool find_touches(double& earliest);
   void cut(std::uint32_t vertex, double share);
 

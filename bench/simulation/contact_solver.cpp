@@ -1,3 +1,6 @@
+// The solver of contact_solver.h. standing.cpp calls step() once a frame: contact points are loaded
+// once, then each substep warm-starts, solves, moves and relaxes.
+
 #include "bench/simulation/contact_solver.h"
 
 #include <algorithm>
@@ -9,15 +12,17 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Pairs that a task solves.
+/// Number of pairs that a task solves.
 constexpr std::size_t kSolvedPairs = 64;
 
-/// A direction across a unit vector, which changes little where that does.
+/// Returns a unit vector perpendicular to a unit vector; it depends continuously on it almost
+/// everywhere.
 Vec3 across(const Vec3& normal) {
   return normal.cross(std::abs(normal.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
 }
 
-/// Calls body(pair) for all pairs of every colour in turn, side by side but for the rest.
+/// Calls body(pair) for all pairs, one colour after the other. The pairs of a colour run in
+/// parallel, except in kRestColour.
 template <typename Body>
 void for_colours(const ContactGroups& colours, const Execution& execution, Body&& body) {
   for (std::size_t colour = 0; colour < colours.size(); ++colour) {
@@ -101,7 +106,7 @@ ContactSolver::Point ContactSolver::point_of(const Contacts& contacts, std::uint
   return made;
 }
 
-// An implicit spring: "Soft constraints", Catto, 2011.
+// An implicit spring (Catto, "Soft constraints", 2011).
 ContactSolver::Softness ContactSolver::softness(double h) const {
   const double omega = 2.0 * std::numbers::pi * std::min(options_.stiffness, 0.25 / h);
   const double a = 2.0 * options_.damping + h * omega;
@@ -134,7 +139,7 @@ void ContactSolver::apply(const PairPoints& pair, const Point& point, const Vec3
                           std::vector<RigidBody>& bodies) const {
   for (int side = 0; side < 2; ++side) {
     RigidBody& body = bodies[pair.body[side]];
-    // What stands still is shared by pairs of one colour, and not written to.
+    // Pairs of one colour share static bodies, which must therefore not be written.
     if (body.inverse_mass == 0.0) continue;
     const Vec3 push = side == 0 ? Vec3(-impulse) : impulse;
     body.velocity += body.inverse_mass * push;
@@ -158,7 +163,8 @@ void ContactSolver::warm_start(const PairPoints& pair, std::vector<RigidBody>& b
   }
 }
 
-// Friction first: that bodies do not meet matters more. Without softness: relaxed.
+// Solves friction first, since non-penetration matters more and is solved last. A null `soft`
+// solves the normal constraint without softness (relaxation).
 void ContactSolver::solve(const PairPoints& pair, double h, const Softness* soft,
                           std::vector<RigidBody>& bodies) {
   for (std::uint32_t p = pair.first; p < pair.end; ++p) {

@@ -11,14 +11,14 @@
 
 namespace winnow::bench {
 
-/// A body of a solver. One of no inverse mass stands still.
+/// A body of the solver. A body with zero inverse mass is static.
 struct RigidBody {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
   double inverse_mass = 0.0;
-  /// About the body's own axes.
+  /// Diagonal of the inverse inertia tensor in the body's axes.
   Eigen::Vector3d inverse_inertia = Eigen::Vector3d::Zero();
 };
 
@@ -26,37 +26,37 @@ struct SolverOptions {
   double gravity = 10.0;
   double friction = 0.7;
   int substeps = 8;
-  /// Of the springs that push bodies apart, in Hz, no stiffer than a quarter of the substeps' rate;
-  /// and how much they are damped.
+  /// Frequency in Hz of the springs that push bodies apart, limited to a quarter of the substep
+  /// rate, and their damping ratio.
   double stiffness = 60.0;
   double damping = 10.0;
-  /// The fastest that they push.
+  /// Largest speed at which the springs push bodies apart.
   double push = 3.0;
 };
 
 /// Sequential impulses (Catto, "Iterative dynamics with temporal coherence", 2005) with contacts as
-/// soft constraints that are solved once a substep and relaxed after it ("Solver2D", 2024). Starts
-/// from the impulses of the last frame, which it finds by Contacts::previous_point, and solves
-/// pairs of one colour side by side. A client of winnow: client data are places in `bodies`.
+/// soft constraints that are solved once each substep and relaxed after it ("Solver2D", 2024).
+/// Warm-starts with the impulses of the last frame, found by Contacts::previous_point, and solves
+/// pairs of one colour in parallel. Uses only winnow's public interface; client data are indices of
+/// `bodies`.
 class ContactSolver {
  public:
   explicit ContactSolver(const SolverOptions& options) : options_(options) {}
 
-  /// Moves bodies by one frame of `seconds`, in the middle of which contacts stay those that were
-  /// found at its begin.
+  /// Moves bodies by one frame of `seconds`. All substeps use the contacts found at its start.
   void step(const Contacts& contacts, const ContactGroups& colours, const Execution& execution,
             double seconds, std::vector<RigidBody>& bodies);
 
  private:
-  /// Impulses of a point, in the world.
+  /// Accumulated impulses of a point, in world axes.
   struct Impulse {
     double normal = 0.0;
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
   };
   struct Point {
-    /// Where it is on either body, when contacts were found.
+    /// Position of the point relative to both bodies, when contacts were found.
     Eigen::Vector3d arm[2];
-    /// The normal, and two directions across.
+    /// The normal, and two tangents.
     Eigen::Vector3d axis[3];
     double mass[3];
     double impulse[3];
@@ -67,15 +67,15 @@ class ContactSolver {
     std::uint32_t first;
     std::uint32_t end;
   };
-  /// A body during a frame.
+  /// State of a body during a frame.
   struct Motion {
     Eigen::Matrix3d inverse_inertia;
-    /// Since contacts were found.
+    /// Translation and rotation since contacts were found.
     Eigen::Vector3d moved;
     Eigen::Matrix3d turned;
     Eigen::Quaterniond start;
   };
-  /// How a spring acts within a substep.
+  /// Coefficients of a spring in a substep.
   struct Softness {
     double rate;
     double mass;

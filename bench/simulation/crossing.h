@@ -4,8 +4,8 @@
 
 namespace winnow::bench {
 
-/// True if the way from one point to another crosses a triangle: its ends lie on different sides,
-/// and see the corners run around them.
+/// Returns whether the segment between two points crosses a triangle: its ends are on different
+/// sides of the plane, and its line passes all edges on the same side.
 [[nodiscard]] inline bool crosses(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                   const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                   const Eigen::Vector3d& c) {

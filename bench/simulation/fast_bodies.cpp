@@ -1,3 +1,6 @@
+// Fast bodies in a funnel or beside a rotating blade, advanced from impact to impact by SceneSweep,
+// and a brute-force check whether a centre passed through. bench/rows/barrier_rows.cpp runs it.
+
 #include "bench/simulation/fast_bodies.h"
 
 #include "bench/common/need.h"
@@ -15,20 +18,20 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Of sizes of about 1: bodies keep so far apart at an impact.
+/// Distance of bodies at an impact; their size is about 1.
 constexpr double kTolerance = 1e-4;
 constexpr double kRestitution = 0.9;
-/// Of the velocities that are left after a step: what a blade gives is taken away.
+/// Factor of the velocities in each step; it removes the energy that the blade adds.
 constexpr double kBladeDrag = 0.5;
 constexpr double kBladeTurns = 0.5;
 constexpr FunnelSize kFunnel{.radius = 8.0, .outlet = 2.0, .depth = 8.0, .wall = 8.0, .edge = 2.0};
 constexpr double kFunnelSpeed = 600.0;
-/// Half extents of the blade, the thin one in the direction in which its tips go.
+/// Half extents of the blade; its tips move along the thin axis.
 constexpr double kBlade[3] = {5.0, 0.01, 1.0};
 constexpr double kRoom = 6.0;
-/// A body has as many impacts in a step before it is cut short.
+/// A step is cut short after this many impacts per body.
 constexpr std::size_t kMostImpacts = 50;
-/// The blade's frame is looked at so often while it turns by a radian.
+/// The check samples the blade's frame this many times per radian of its rotation.
 constexpr double kLooksPerRadian = 40.0;
 
 Vec3 position_of(const Pose& pose) {
@@ -87,7 +90,7 @@ void FastBodies::make_blade_scene() {
   bodies_.push_back(blade);
 }
 
-/// In layers of a lattice, so that none overlaps another.
+/// Places bodies in layers of a lattice, so that they do not overlap.
 void FastBodies::fill(double reach, double low, double high, double speed) {
   constexpr double kApart = 1.3;
   const auto steps = [](double length) { return static_cast<int>(length / kApart); };
@@ -204,7 +207,7 @@ bool FastBodies::passes_blade(const RigidMotion& body, const RigidMotion& blade,
   return false;
 }
 
-/// An impulse along the normal.
+/// Applies an impulse along the normal.
 void FastBodies::collide(const SceneImpact& impact) {
   ++impacts_;
   Body fixed;
@@ -232,7 +235,7 @@ void FastBodies::collide(const SceneImpact& impact) {
   b.spin += b.inverse_inertia * arm_b.cross(impulse);
 }
 
-/// Who has left the funnel by an opening comes back in at the top of it, where there is room.
+/// Returns bodies that left the funnel through an opening to its top, if there is a free place.
 void FastBodies::put_back() {
   if (options_.scene != FastScene::funnel) return;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

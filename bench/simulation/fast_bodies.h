@@ -15,10 +15,10 @@
 
 namespace winnow::bench {
 
-/// What fast bodies run into.
+/// Obstacles of the fast bodies.
 enum class FastScene : std::uint8_t {
-  funnel,  ///< a funnel of triangles, in which they go by up to fifteen times their size in a step
-  blade,   ///< a thin blade in a closed box, which turns by half a turn in a step
+  funnel,  ///< a funnel of triangles; bodies move up to fifteen times their size in a step
+  blade,   ///< a thin blade in a closed box that rotates by half a turn in a step
 };
 
 struct FastBodiesOptions {
@@ -27,18 +27,18 @@ struct FastBodiesOptions {
   std::uint64_t seed = 1;
   double step = 1.0 / 60.0;
   double gravity = 10.0;
-  /// False: bodies go their whole ways whatever they meet, to see what gets through then.
+  /// If false, bodies move without collision detection, to show what passes through then.
   bool swept = true;
   Execution execution = Execution::serial();
 };
 
-/// Spheres and boxes that meet each other and what stands or turns, from impact to impact: all go
-/// on to the first one that a sweep finds, the two bodies get an impulse, and what is left of the
-/// step is swept again. A client of winnow: it never looks whether bodies overlap. The bits of
-/// every body are the same on any number of threads and any instruction set.
+/// Spheres and boxes that move from impact to impact and collide with each other and with static or
+/// rotating obstacles. All move to the first impact that a sweep finds, the two bodies get an
+/// impulse, and the rest of the step is swept again. The class uses only sweeps, never an overlap
+/// test. The bits of every body are the same on any number of threads and any instruction set.
 class FastBodies {
  public:
-  /// Throws std::runtime_error if winnow refuses the scene.
+  /// Throws std::runtime_error if winnow rejects the scene.
   explicit FastBodies(const FastBodiesOptions& options);
 
   void step();
@@ -46,14 +46,14 @@ class FastBodies {
   [[nodiscard]] std::size_t bodies() const noexcept { return bodies_.size(); }
   [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
   [[nodiscard]] std::size_t impacts() const noexcept { return impacts_; }
-  /// Ways of centres through a triangle of the funnel or through the blade, found by looking at
-  /// these alone.
+  /// Returns how often a centre passed through a triangle of the funnel or through the blade, found
+  /// by testing these directly.
   [[nodiscard]] std::size_t passed() const noexcept { return passed_; }
-  /// Steps that were cut short, because impacts followed on each other without end.
+  /// Returns the number of steps that were cut short because of too many impacts.
   [[nodiscard]] std::size_t cut_short() const noexcept { return cut_short_; }
-  /// The longest way of a body in a step without impacts, in its radii.
+  /// Returns the longest displacement of a body in a step without impacts, in its radii.
   [[nodiscard]] double fastest() const noexcept { return fastest_; }
-  /// Of positions, velocities and orientations, bit by bit.
+  /// Returns a hash of the bits of positions, velocities and orientations.
   [[nodiscard]] std::uint64_t fingerprint() const noexcept;
 
  private:
@@ -63,7 +63,7 @@ class FastBodies {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d spin = Eigen::Vector3d::Zero();
     double radius = 0.0;
-    /// Of a ball of the radius; 0: nothing moves it.
+    /// Mass and inertia of a ball of this radius; 0 if the body is static or kinematic.
     double inverse_mass = 0.0;
     double inverse_inertia = 0.0;
   };
@@ -73,7 +73,7 @@ class FastBodies {
   void fill(double reach, double low, double high, double speed);
   [[nodiscard]] Key add(ShapeId shape, const Pose& pose, Motion motion);
   void push(double seconds);
-  /// All of them go on for a share of some seconds.
+  /// Moves all bodies by a share of their motions.
   void advance(double share);
   void collide(const SceneImpact& impact);
   void put_back();
@@ -88,7 +88,7 @@ class FastBodies {
   SceneSweep sweep_;
   Triangles funnel_;
   Random random_;
-  /// The blade is the last one.
+  /// The blade is the last body.
   std::vector<Body> bodies_;
   std::vector<Key> keys_;
   std::vector<RigidMotion> motions_;

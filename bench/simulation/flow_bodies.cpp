@@ -6,7 +6,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Bodies a task moves.
+/// Number of bodies that a task moves.
 constexpr std::size_t kChunk = 2048;
 
 using Turn = std::array<double, 4>;
@@ -21,7 +21,7 @@ Vec turned_back(const Turn& q, const Vec& v) {
   return turned({q[0], -q[1], -q[2], -q[3]}, v);
 }
 
-/// The orientation after spinning for a while; first order in time, of unit length.
+/// Returns the orientation after rotating for `time`, to first order, normalized.
 Turn spun(const Turn& q, const Vec& spin, double time) {
   const double h = 0.5 * time;
   const Vec u{q[1], q[2], q[3]};
@@ -42,7 +42,7 @@ Vec spin_of(const Turn& q, const Vec& momentum, const Vec& inverse_inertia) {
   return turned(q, own);
 }
 
-/// Adds the energy of body i before it moves.
+/// Moves body i and adds its energy before the move.
 void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, FlowEnergy& energy) {
   const double inverse_mass = bodies.inverse_mass[i];
   if (inverse_mass == 0.0) return;
@@ -66,7 +66,8 @@ void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, F
   energy.kinetic += 0.5 * dot(middle, spin_of(q, middle, inverse_inertia));
   const Vec turning = turn + twist;
   Vec spin = spin_of(q, turning, inverse_inertia);
-  // By the spin halfway: bodies of unequal moments would gain energy by turning otherwise.
+  // Uses the spin at half the step; otherwise bodies with unequal moments of inertia would gain
+  // energy.
   if (!is_round(inverse_inertia)) {
     spin = spin_of(spun(q, spin, 0.5 * step), turning, inverse_inertia);
   }

@@ -29,8 +29,8 @@ using Vec = std::array<double, 3>;
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Rigid bodies as a simulation keeps them: columns, double but for orientations. A body of no
-/// inverse mass stands still.
+/// Rigid bodies of a simulation as columns of doubles, with orientations in float. A body with zero
+/// inverse mass is static.
 struct FlowBodies {
   using Column = std::pmr::vector<double>;
 
@@ -43,12 +43,12 @@ struct FlowBodies {
   Column position[3];
   Column velocity[3];
   std::pmr::vector<float> orientation[4];
-  Column momentum[3];  ///< angular, about the centre of mass
-  Column spin[3];      ///< angular velocity, which follows from momentum and orientation
+  Column momentum[3];  ///< angular momentum about the centre of mass
+  Column spin[3];      ///< angular velocity, computed from momentum and orientation
   Column force[3];
   Column torque[3];
   Column inverse_mass;
-  Column inverse_inertia[3];  ///< about the body's own axes
+  Column inverse_inertia[3];  ///< in the body's axes
 };
 
 [[nodiscard]] inline Vec at(const FlowBodies::Column (&columns)[3], std::size_t i) noexcept {
@@ -66,11 +66,11 @@ struct FlowEnergy {
   [[nodiscard]] double total() const noexcept { return kinetic + potential + elastic; }
 };
 
-/// One semi-implicit Euler step: velocities by forces and gravity (along -z), then poses by the new
-/// velocities. Gives kinetic and potential energy where the step began, with the mean of the
-/// velocities before and after, which is what the positions of that moment belong to (the method is
-/// the leapfrog scheme: Hairer, Lubich and Wanner, "Geometric Numerical Integration", I.1.4).
-/// The same bits on any number of threads.
+/// Makes one semi-implicit Euler step: updates velocities by forces and gravity (along -z), then
+/// poses by the new velocities. Returns kinetic and potential energy at the step's start, with the
+/// mean of the velocities before and after, since those belong to the positions of that time
+/// (leapfrog scheme: Hairer, Lubich and Wanner, "Geometric Numerical Integration", I.1.4). The bits
+/// are the same on any number of threads.
 FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Execution& execution,
                      std::pmr::vector<FlowEnergy>& scratch);
 

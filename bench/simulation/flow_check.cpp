@@ -1,3 +1,6 @@
+// Checks the contacts of a granular flow by brute force: collides all pairs with the narrow phase
+// and compares the sorted lists. FlowRun::step calls check_contacts().
+
 #include "bench/simulation/flow_check.h"
 
 #include <winnow/pipeline/narrow_phase.h>
@@ -10,10 +13,10 @@
 namespace winnow::bench {
 namespace {
 
-/// Pairs of bodies that are looked at, at most.
+/// Largest number of pairs of bodies that are tested.
 constexpr double kMostPairs = 1e8;
 
-/// Two rows, the smaller first; those from objects() on are the mesh's triangles.
+/// Two rows, the smaller first. Rows from objects() on are the mesh's triangles.
 struct RowPair {
   std::size_t a;
   std::size_t b;
@@ -80,7 +83,7 @@ class Check {
     return std::hypot(half[0], half[1], half[2]);
   }
 
-  /// Pairs of bodies whose bounding spheres meet.
+  /// Adds the pairs of bodies whose bounding spheres overlap.
   void add_bodies(std::vector<BodyPair>& pairs) const {
     std::vector<double> radius;
     for (std::size_t i = 0; i < objects_; ++i) {
@@ -100,7 +103,8 @@ class Check {
     }
   }
 
-  /// Pairs of bodies and triangles whose boxes, with bounding spheres for bodies, meet.
+  /// Adds the pairs of a body and a triangle for which the box around the body's bounding sphere
+  /// overlaps the triangle's box.
   void add_triangles(const std::vector<TriangleShape>& triangles,
                      std::vector<BodyPair>& pairs) const {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -153,7 +157,7 @@ class Check {
     }
     std::vector<Pose> poses(flow_.contact_poses().begin(), flow_.contact_poses().end());
     poses.resize(objects_);
-    poses.resize(shapes.size());  // the mesh stands at the origin
+    poses.resize(shapes.size());  // the mesh has the identity pose
     NarrowPhase narrow;
     NarrowResult result;
     RowPairs touching;

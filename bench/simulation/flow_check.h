@@ -6,7 +6,7 @@
 
 namespace winnow::bench {
 
-/// How a flow's contacts differ from those found by asking every pair.
+/// Differences between a flow's contacts and contacts found by testing every pair.
 struct FlowFaults {
   std::size_t compared = 0;  ///< contacts: pairs of bodies, and of a body and a triangle
   std::size_t lost = 0;
@@ -23,9 +23,9 @@ struct FlowFaults {
   }
 };
 
-/// Asks the narrow phase about every pair of bodies, and of a body and a triangle of the mesh,
-/// whose bounding spheres or boxes meet: no partition, tree or scene takes part. Of many bodies
-/// only every so many-th is looked at, against all others. The flow must keep contact poses.
+/// Collides every pair of bodies, and of a body and a mesh triangle, whose bounding spheres or
+/// boxes overlap. Uses only the narrow phase: no partition, tree or scene. If there are many
+/// bodies, only every n-th is tested against all others. The flow must keep contact poses.
 [[nodiscard]] FlowFaults check_contacts(const GranularFlow& flow, const Contacts& contacts);
 [[nodiscard]] inline FlowFaults check_contacts(const GranularFlow& flow) {
   return check_contacts(flow, flow.contacts());

@@ -10,7 +10,7 @@
 
 namespace winnow::bench {
 
-/// Of the steps, one in so many tells how long each phase took.
+/// The phases are timed in one of this many steps.
 inline constexpr std::size_t kProfiledSteps = 16;
 
 struct FlowPhase {
@@ -23,7 +23,7 @@ inline constexpr std::array<FlowPhase, 5> kFlowPhases{{{"handing over poses", &F
                                                        {"narrow phase", &FlowTimes::narrow},
                                                        {"solver", &FlowTimes::solver}}};
 
-/// One step of a flow.
+/// Figures of one step of a flow.
 struct FlowSample {
   double time = 0.0;
   FlowEnergy energy{};
@@ -33,14 +33,15 @@ struct FlowSample {
   std::size_t points = 0;
   FlowTimes times{};
 
-  /// Only gravity's work is in it, which changes nothing, and what contacts take away.
+  /// Returns the energy without the energy added by putting bodies back. Gravity conserves it, and
+  /// contacts can only reduce it.
   [[nodiscard]] double balance() const noexcept { return energy.total() - fed; }
 };
 
-/// The steps of a flow, one after another.
+/// Figures of all steps of a flow.
 class FlowHistory {
  public:
-  /// Notes the step that the flow has just made.
+  /// Records the flow's last step.
   void add(const GranularFlow& flow) {
     samples_.push_back({flow.time(), flow.energy(), flow.fed(), flow.deepest(),
                         flow.contacts().size(), flow.contacts().points(), flow.times()});
@@ -48,8 +49,8 @@ class FlowHistory {
 
   [[nodiscard]] const std::vector<FlowSample>& samples() const noexcept { return samples_; }
 
-  /// The most that the balance ever rose above what it had been before, as a share of the greatest
-  /// kinetic energy: energy that contacts have created, or an error of the integration.
+  /// Returns the largest rise of the balance above an earlier value, relative to the largest
+  /// kinetic energy. A rise is energy created by contacts, or an integration error.
   [[nodiscard]] double greatest_rise() const {
     double least = samples_.empty() ? 0.0 : samples_.front().balance();
     double rise = 0.0;
@@ -68,7 +69,7 @@ class FlowHistory {
     return most;
   }
 
-  /// One member of the times of the steps that were profiled, from step `first` on.
+  /// Returns one member of the times of the profiled steps, from step `first` on.
   [[nodiscard]] std::vector<double> phase_ms(double FlowTimes::*phase,
                                              std::size_t first = 0) const {
     std::vector<double> ms;
@@ -82,11 +83,11 @@ class FlowHistory {
   std::vector<FlowSample> samples_;
 };
 
-/// Counts allocations of steps in which there is no more of anything than there has been before: a
-/// steady frame allocates nothing.
+/// Counts allocations in steps in which no count of pairs or contacts exceeds its previous maximum;
+/// such a step must not allocate.
 class SteadyAllocations {
  public:
-  /// After each step: how many allocations there have been so far.
+  /// Records a step; `allocations` is the total number so far.
   void note(const GranularFlow& flow, std::size_t allocations) {
     const Contacts& contacts = flow.contacts();
     const SceneStatistics& statistics = flow.scene().statistics();

@@ -30,7 +30,7 @@ FlowPhases::FlowPhases(const GranularFlow& flow, const Execution& execution)
   shapes_.push_back(mesh);
 }
 
-/// Objects of a new partition have the ids 0, 1, 2, ...: rows.
+/// The objects of a new partition have the ids 0, 1, 2, ..., which are therefore rows.
 void FlowPhases::find_pairs() {
   need(bodies_.update(keys_, boxes_), "boxes");
   need(bodies_.self_pairs(own_), "pairs");

@@ -10,14 +10,14 @@
 
 namespace winnow::bench {
 
-/// The phases of a flow's frame, each by itself: a partition that is given the same boxes, a mid
-/// phase and a narrow phase that are given the same pairs, with nothing between them.
+/// Runs each phase of a flow's frame separately, without the scene: a partition with the same
+/// boxes, and a mid phase and a narrow phase with the same pairs.
 class FlowPhases {
  public:
   /// The flow must keep contact poses.
   FlowPhases(const GranularFlow& flow, const Execution& execution);
 
-  /// Milliseconds for the poses of the flow's last step.
+  /// Runs all phases for the poses of the flow's last step; returns milliseconds.
   FlowTimes run();
 
  private:

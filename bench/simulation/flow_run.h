@@ -8,11 +8,11 @@
 
 namespace winnow::bench {
 
-/// A flow, step by step, with everything that is noted of it.
+/// Runs a flow step by step and records its figures.
 class FlowRun {
  public:
-  /// So many steps are meant to be made, after half of which the flow has warmed up. In one of
-  /// `check` steps its contacts are compared with those of all pairs; 0: never.
+  /// `steps` is the intended number of steps, half of which are the warm-up. In one of `check`
+  /// steps the contacts are compared with a test of all pairs; 0: never.
   FlowRun(const FlowOptions& options, std::size_t steps, std::size_t check)
       : flow_(with_memory(options)), warm_up_(steps / 2), check_(check) {
     if (check_ != 0) flow_.keep_contact_poses();
@@ -36,14 +36,14 @@ class FlowRun {
   [[nodiscard]] const GranularFlow& flow() const { return flow_; }
   [[nodiscard]] const FlowHistory& history() const { return history_; }
   [[nodiscard]] std::size_t bytes() const { return memory_.outstanding(); }
-  // After the flow has warmed up.
+  // Counted after the warm-up.
   [[nodiscard]] std::size_t warm_up() const { return warm_up_; }
   [[nodiscard]] std::size_t allocations() const {
     return memory_.allocations() - allocations_before_;
   }
-  /// In steps with no more contacts than before.
+  /// Returns the allocations in steps without more contacts than before.
   [[nodiscard]] std::size_t steady_allocations() const { return steady_.count() - steady_before_; }
-  // Of all checks.
+  // Sums over all checks.
   [[nodiscard]] const FlowFaults& faults() const { return faults_; }
   [[nodiscard]] std::size_t checks() const { return checks_; }
 

@@ -1,3 +1,7 @@
+// Granular flow of granular_flow.h. A step calls Scene::collide, then apply_contacts
+// (soft_contacts.cpp), integrate (flow_bodies.cpp) and Scene::move, and puts bodies that left the
+// funnel back on top. FlowRun and the "simulate" command run it.
+
 #include "bench/simulation/granular_flow.h"
 
 #include "bench/common/exact_math.h"
@@ -11,17 +15,17 @@
 namespace winnow::bench {
 namespace {
 
-/// Shapes of each kind; bodies share them.
+/// Number of shapes of each kind, which bodies share.
 constexpr std::size_t kSizes = 16;
 constexpr double kLargestRadius = 0.6;
 constexpr double kLargestHalf = 0.42;
 constexpr double kDensity = 1.0;
-/// Bodies that are put down leave this much room between each other.
+/// Relative distance of bodies when they are placed.
 constexpr double kRoom = 1.03;
-/// Bodies fall on for so long after they left the funnel.
+/// Depth below the mesh at which bodies are put back.
 constexpr double kFall = 4.0;
 
-/// The mass of a shape and its moments of inertia about its own axes.
+/// The mass of a shape and its moments of inertia in its own axes.
 struct Inertia {
   double mass;
   Vec moment;
@@ -95,7 +99,7 @@ void GranularFlow::place_mesh() {
     for (Eigen::Vector3d& v : mesh_.vertices) {
       v = (scale * (v - top)).cast<float>().cast<double>();
     }
-    // Bodies start above what nothing is known of.
+    // The shape of a given mesh is unknown, so all bodies start above it.
     funnel_.outlet = funnel_.radius;
     funnel_.depth = 0.0;
   }
@@ -145,7 +149,7 @@ void GranularFlow::make_spots() {
   }
 }
 
-/// Layer by layer from the outlet up, where the cone has room.
+/// Places bodies layer by layer from the outlet up, inside the cone.
 void GranularFlow::fill() {
   double z = -funnel_.depth + spacing_;
   for (std::size_t i = 0; i < objects_; z += spacing_) {
@@ -191,7 +195,7 @@ void GranularFlow::find_contacts(bool profiled) {
     const Stopwatch searching;
     need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
     times_.broad += searching.ms();
-    // The scene has the pairs by now, and finds them at hardly any cost again.
+    // The scene keeps its pairs, so that finding them a second time costs almost nothing.
     const Stopwatch colliding;
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
     times_.mid = mid_phase_.take_ms();
@@ -231,7 +235,7 @@ void GranularFlow::step(bool profiled) {
 
 double GranularFlow::energy_of(std::size_t i) const noexcept {
   const double mass = 1.0 / bodies_.inverse_mass[i];
-  // As `integrate` will see it when half of the next step's pull is added.
+  // The energy that `integrate` will count, with half of the next step's gravity.
   Vec velocity = at(bodies_.velocity, i);
   velocity[2] -= 0.5 * options_.gravity * options_.step;
   return 0.5 * mass * dot(velocity, velocity) +
@@ -244,7 +248,7 @@ void GranularFlow::put_back(std::size_t i) {
   const std::size_t s = next_spot_++ % spots_.size();
   Spot& spot = spots_[s];
   double z = refill_;
-  // On top of the one that was put there before, if that has not fallen far yet.
+  // Places the body above the previous one at this spot, if that has not fallen far enough.
   if (spot.last < objects_ && spot.last != i && spot_of_[spot.last] == s) {
     z = std::max(z, bodies_.position[2][spot.last] + spacing_);
   }

@@ -23,23 +23,23 @@ struct FlowOptions {
   std::size_t objects = 10'000;
   FlowShape shape = FlowShape::mixed;
   std::uint64_t seed = 1;
-  /// What the bodies fall into; a funnel that suits their number if it is empty. It is moved and
-  /// scaled to the funnel's place and width.
+  /// The obstacle, scaled to the funnel's width and moved to its place; if empty, a funnel that
+  /// suits the number of bodies.
   Triangles mesh{};
   double step = 1e-3;
   double gravity = 10.0;
-  /// Largest speed along an axis with which bodies start, in random directions.
+  /// Largest speed along each axis at the start; directions are random.
   double stir = 2.0;
   SoftContacts law{};
   Execution execution = Execution::parallel();
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
 };
 
-/// Milliseconds of one step.
+/// Times of the phases of one step in milliseconds.
 struct FlowTimes {
-  double move = 0.0;    ///< handing over poses
+  double move = 0.0;    ///< Scene::move
   double broad = 0.0;   ///< boxes, partitions, pairs of bodies
-  double mid = 0.0;     ///< pairs of triangles
+  double mid = 0.0;     ///< pairs with triangles
   double narrow = 0.0;  ///< contacts; all phases together if the step was not profiled
   double solver = 0.0;  ///< forces and motion
   bool profiled = false;
@@ -48,15 +48,16 @@ struct FlowTimes {
 };
 
 /// Granular flow, written as a simulation that embeds winnow: spheres and boxes of about unit size
-/// fall into a funnel, and those that left it are put back above, at rest. Soft contacts,
-/// semi-implicit steps. The bits of every body are the same on any number of threads and any
+/// fall into a funnel, and bodies that left it are put back above it at rest. Contacts are soft and
+/// steps semi-implicit. The bits of every body are the same on any number of threads and any
 /// instruction set.
 class GranularFlow {
  public:
-  /// Throws std::runtime_error for a mesh that winnow refuses.
+  /// Throws std::runtime_error if winnow rejects the mesh.
   explicit GranularFlow(const FlowOptions& options);
 
-  /// Pairs are asked for by themselves in a profiled step, to tell the phases apart.
+  /// Makes one step. A profiled step finds the pairs in a separate call, so that phases can be
+  /// timed.
   void step(bool profiled = false);
 
   [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
@@ -64,17 +65,18 @@ class GranularFlow {
   [[nodiscard]] std::size_t returned() const noexcept { return returned_; }
   [[nodiscard]] double time() const noexcept { return options_.step * static_cast<double>(steps_); }
 
-  // Of the last step, where it began.
+  // State at the start of the last step.
   [[nodiscard]] const FlowEnergy& energy() const noexcept { return energy_; }
-  /// What putting bodies back has added to the energy so far: without it the total never grows.
+  /// Returns the energy added so far by putting bodies back. Without it the total never grows.
   [[nodiscard]] double fed() const noexcept { return fed_then_; }
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
   [[nodiscard]] const FlowTimes& times() const noexcept { return times_; }
-  /// Valid until the next step. Client data are rows; row objects() is the mesh.
+  /// Returns the contacts, valid until the next step. Client data are rows; row objects() is the
+  /// mesh.
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
-  /// Poses with which they were found.
+  /// Returns the poses for which the contacts were found.
   [[nodiscard]] const std::pmr::vector<Pose>& contact_poses() const noexcept { return then_; }
-  /// Keeps those poses from the next step on; costs time.
+  /// Stores those poses from the next step on, which costs time.
   void keep_contact_poses() noexcept { keeps_poses_ = true; }
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
@@ -87,17 +89,17 @@ class GranularFlow {
   [[nodiscard]] Aabb box(std::size_t i) const noexcept {
     return shapes_.bounds(shape_of_[i], pose(i));
   }
-  /// Contains every body at any time.
+  /// Returns bounds that contain every body at any time.
   [[nodiscard]] Aabb world() const noexcept { return world_; }
 
-  /// Of positions, velocities and orientations, bit by bit.
+  /// Returns a hash of the bits of positions, velocities and orientations.
   [[nodiscard]] std::uint64_t fingerprint() const noexcept;
 
  private:
   struct Spot {
     double x;
     double y;
-    std::size_t last;  ///< the body put there last
+    std::size_t last;  ///< the last body that was put there
   };
 
   void place_mesh();

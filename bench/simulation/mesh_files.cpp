@@ -27,7 +27,7 @@ void append(const aiMesh& part, Triangles& mesh) {
   }
 }
 
-/// The scene that assimp's exporter wants: one mesh under one node.
+/// Returns the scene that assimp's exporter requires: one mesh under one node.
 std::unique_ptr<aiScene> scene_of(const Triangles& mesh) {
   auto scene = std::make_unique<aiScene>();
   scene->mRootNode = new aiNode;

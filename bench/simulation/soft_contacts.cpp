@@ -6,10 +6,10 @@
 namespace winnow::bench {
 namespace {
 
-/// Pairs a task answers.
+/// Number of pairs that a task computes.
 constexpr std::size_t kChunk = 1024;
-/// Friction of slow sliding is viscous, with this share of the spring's damping: more would
-/// overshoot where a light body touches many others.
+/// Friction at low sliding speed is viscous, with this share of the spring's damping. A larger
+/// share would overshoot if a light body touches many others.
 constexpr double kCreep = 0.25;
 
 /// Two bodies in contact, and the spring of their reduced mass.
@@ -28,7 +28,7 @@ struct Touch {
   double damping = 0.0;
 };
 
-/// Adds the force of one of several points, which share the spring.
+/// Adds the force of one contact point; all points of a pair share the spring.
 void add_point(const FlowBodies& bodies, const Touch& touch, const SoftContacts& law,
                const ContactPoint& point, const Vec& normal, double share, PairForce& sum) {
   const auto depth = static_cast<double>(point.depth);
@@ -68,8 +68,9 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
       if (point.depth <= 0.0F) continue;
-      // By depth: a point that comes or goes does so at depth zero, and changes nothing then. Over
-      // all triangles of a mesh: a fine one is not stiffer than a coarse one.
+      // Weighted by depth, so that a point that appears or vanishes at depth zero changes nothing.
+      // Weights are normalized over all triangles of a mesh, so that a fine mesh is not stiffer
+      // than a coarse one.
       const double share = static_cast<double>(point.depth) / depths;
       add_point(bodies, touch, law, point, normal, share, sum);
     }

@@ -10,18 +10,17 @@
 
 namespace winnow::bench {
 
-/// A spring with a damper and Coulomb's friction at every contact. Contacts never pull.
+/// Parameters of a spring, a damper and Coulomb friction at every contact. Contacts never pull.
 struct SoftContacts {
-  /// Of the spring between two bodies of the reduced mass, radians in unit time. Stable in steps of
-  /// up to about 0.3 / frequency, for bodies that touch a dozen others.
+  /// Angular frequency of the spring between two bodies of the reduced mass. Stable for steps of up
+  /// to about 0.3 / frequency, for bodies that touch a dozen others.
   double frequency = 250.0;
-  /// 0: elastic; 1: critically damped. In [0, 1].
+  /// Damping ratio in [0, 1]; 0: elastic, 1: critically damped.
   double damping = 0.3;
   double friction = 0.4;
 };
 
-/// What one pair of bodies does to both: a force on b (and its opposite on a), torques about the
-/// centres of both.
+/// Force of a pair on b (a gets its opposite), and torques about both centres.
 struct PairForce {
   Vec force{};
   Vec torque_a{};
@@ -32,11 +31,11 @@ struct PairForce {
 
 struct ContactSums {
   double elastic = 0.0;  ///< energy in the springs
-  double deepest = 0.0;  ///< the greatest depth of a point
+  double deepest = 0.0;  ///< largest depth of a point
 };
 
-/// Sets the forces and torques of all bodies to those of the contacts, whose client data are rows
-/// of `bodies`. The same bits on any number of threads.
+/// Sets the forces and torques of all bodies from the contacts, whose client data are rows of
+/// `bodies`. The bits are the same on any number of threads.
 ContactSums apply_contacts(const Contacts& contacts, const SoftContacts& law, FlowBodies& bodies,
                            const Execution& execution, std::pmr::vector<PairForce>& scratch);
 

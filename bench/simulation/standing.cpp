@@ -1,3 +1,6 @@
+// Builds structures that stand only if contacts are good (stack, card house, wheel, arch) and
+// simulates them with ContactSolver. bench/rows/standing_rows.cpp runs it.
+
 #include "bench/simulation/standing.h"
 
 #include "bench/common/need.h"
@@ -33,7 +36,7 @@ Pose pose_of(const RigidBody& body) {
   return pose;
 }
 
-/// The corners of a prism whose section lies in the plane of x and z.
+/// Returns the vertices of a prism whose cross-section is in the xz plane.
 std::vector<Vec3> prism(const std::vector<Eigen::Vector2d>& section, double width) {
   std::vector<Vec3> corners;
   for (const Eigen::Vector2d& p : section) {
@@ -43,7 +46,7 @@ std::vector<Vec3> prism(const std::vector<Eigen::Vector2d>& section, double widt
   return corners;
 }
 
-/// The centre of gravity of a convex polygon.
+/// Returns the centroid of a convex polygon.
 Eigen::Vector2d centre_of(const std::vector<Eigen::Vector2d>& polygon) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double area = 0.0;
@@ -156,7 +159,7 @@ void Standing::build_stack(bool hulls) {
   for (int i = 0; i < kStacked; ++i) add_solid(box, Vec3::Ones(), {0.0, 0.0, 0.5 + i}, 0.0);
 }
 
-// Three storeys: pairs of cards that lean against each other, and cards from top to top.
+// Three storeys: pairs of cards that lean on each other, and cards between the tops.
 void Standing::build_card_house() {
   add_floor();
   const Vec3 card(0.05, 0.6, 1.0);
@@ -186,7 +189,7 @@ void Standing::build_card_house() {
   }
 }
 
-// On its rim, away from corners and edges of the triangles.
+// A wheel that stands on its rim, away from the vertices and edges of the floor's triangles.
 void Standing::build_wheel() {
   Heights flat;
   flat.cells = 16;
@@ -211,7 +214,7 @@ void Standing::build_wheel() {
   add(wheel, body);
 }
 
-// Half a circle of wedges.
+// A semicircle of wedges.
 void Standing::build_arch() {
   add_floor();
   constexpr int kWedges = 11;

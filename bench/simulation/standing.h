@@ -12,7 +12,7 @@
 
 namespace winnow::bench {
 
-/// Something that stands if its contacts are good.
+/// A structure that stands only if its contacts are good.
 enum class StandingScene : std::uint8_t { stack, hull_stack, card_house, wheel, arch };
 inline constexpr StandingScene kStandingScenes[] = {StandingScene::stack, StandingScene::hull_stack,
                                                     StandingScene::card_house, StandingScene::wheel,
@@ -22,13 +22,13 @@ inline constexpr StandingScene kStandingScenes[] = {StandingScene::stack, Standi
 struct StandingOptions {
   bool contact_reduction = false;
   double margin = 0.02;
-  /// Of a frame, in which contacts are found once.
+  /// Duration of a frame; contacts are found once per frame.
   double seconds = 1.0 / 60.0;
   SolverOptions solver{};
   Execution execution = Execution::serial();
 };
 
-/// A structure of bodies whose edges are about 1, which nothing touches but a floor and gravity.
+/// A structure of bodies with edges of about 1, subject only to a floor and gravity.
 class Standing {
  public:
   Standing(StandingScene scene, const StandingOptions& options);
@@ -40,21 +40,21 @@ class Standing {
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
   [[nodiscard]] std::size_t islands() const noexcept { return islands_.size(); }
   [[nodiscard]] std::size_t colours() const noexcept { return colours_.size(); }
-  /// How far the body is that went farthest from where it stood at the begin, or at `mark`; and by
-  /// how much one has turned most, as an angle.
+  /// Return the largest distance of a body from its position at the start or at `mark`, and the
+  /// largest angle that one has rotated.
   [[nodiscard]] double drift() const;
   [[nodiscard]] double tilt() const;
   void mark();
-  /// Deepest penetration of the last frame.
+  /// Returns the deepest penetration of the last frame.
   [[nodiscard]] double deepest() const;
-  /// Share of points in the last frame that were there in the one before.
+  /// Returns the share of the last frame's contact points that existed in the frame before.
   [[nodiscard]] double kept_points() const;
-  /// Of all bodies' bits.
+  /// Returns a hash of all bodies' bits.
   [[nodiscard]] std::uint64_t fingerprint() const;
 
  private:
   void add(ShapeId shape, const RigidBody& body);
-  /// A box or hull of density 1, its inertia that of a box.
+  /// Adds a box or hull of density 1 with the inertia of a box.
   void add_solid(ShapeId shape, const Eigen::Vector3d& edges, const Eigen::Vector3d& position,
                  double turn_about_y);
   void add_floor();

@@ -5,12 +5,12 @@
 
 namespace winnow::bench {
 
-/// Passes everything on to another mid phase and knows how long that took.
+/// Forwards all calls to another mid phase and measures the time of the contact calls.
 class TimedMidPhase final : public MidPhase {
  public:
   explicit TimedMidPhase(const MidPhase& inner) noexcept : inner_(inner) {}
 
-  /// Milliseconds since this was last asked.
+  /// Returns the milliseconds since the last call of this function.
   double take_ms() noexcept {
     const double ms = ms_;
     ms_ = 0.0;

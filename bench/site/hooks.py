@@ -1,16 +1,16 @@
-"""What pages are filled in with while mkdocs builds them.
+"""Replaces placeholders in pages while mkdocs builds them.
 
-- A line `<!-- tests/examples/boxes.cpp [frames] -->` becomes that passage of that program: what lies
-  there between the lines `// [frames]` and `// [end]` (`# ...` in Python and CMake). Tests build and run
-  the programs.
-- `[text](api:Partition::self_pairs)` links to the reference of that name.
+- A line `<!-- tests/examples/boxes.cpp [frames] -->` becomes a passage of that program: the lines
+  between `// [frames]` and `// [end]` (`# ...` in Python and CMake). Tests build and run the programs.
+- `[text](api:Partition::self_pairs)` becomes a link to the reference of that name.
 - `<!-- results -->` becomes bench/RESULTS.md without its title.
-- `{figure:Hard cases:robust:wrong}` becomes a figure of that: the first table below headings, or with a
-  first cell, that hold these words (several by slashes), by row and column.
-- `<!-- ledger -->` becomes what bench/trust/ledger.json holds.
-- `<!-- live -->` becomes the scene that runs in the page, or a picture if there is no WebAssembly of it.
+- `{figure:Hard cases:robust:wrong}` becomes a figure of the results by table, row and column. The table is
+  the first whose headings or first cell contain these words (several, separated by slashes).
+- `<!-- architecture -->` becomes .github/ARCHITECTURE.md without its title; its pictures are in pages/.
+- `<!-- ledger -->` becomes the contents of bench/trust/ledger.json.
+- `<!-- live -->` becomes the scene that runs in the page, or a picture if it was not built.
 
-A passage, name or figure that is not there ends the build.
+A missing passage, name or figure ends the build.
 """
 
 import json
@@ -26,7 +26,7 @@ LANGUAGES = {".c": "c", ".cpp": "cpp", ".h": "cpp", ".py": "python", ".txt": "cm
 
 
 def passage(path, name):
-    """The lines of a passage, without the margin of its first one."""
+    """Returns the lines of a passage, without the indentation of its first line."""
     lines = (ROOT / path).read_text().splitlines()
     marks = [i for i, line in enumerate(lines) if re.fullmatch(rf" *(//|#) \[{name}\]", line)]
     if len(marks) != 1:
@@ -47,7 +47,7 @@ def shown_passage(match):
 
 
 def reference_names():
-    """Where the reference explains each name, by its name with and without `winnow::`."""
+    """Returns the page and anchor of each name in the reference, by its name without `winnow::`."""
     names = {}
     tags = xml.etree.ElementTree.parse(WORK / "api.tag").getroot()
     for compound in tags.findall("compound"):
@@ -77,8 +77,13 @@ def results_text():
     return (ROOT / "bench/RESULTS.md").read_text().split("\n", 1)[1]
 
 
+def architecture_text():
+    text = (ROOT / ".github/ARCHITECTURE.md").read_text().split("\n", 1)[1]
+    return text.replace("](../bench/site/pages/", "](")
+
+
 def tables():
-    """Of the results: (words above it and its first cell, columns, rows by first cell)."""
+    """Yields each table of the results: (headings above it and first cell, columns, rows by first cell)."""
     above = ["", ""]
     rows = None
     for line in [*results_text().splitlines(), ""]:
@@ -128,6 +133,7 @@ def live_scene(_):
 
 def on_page_markdown(markdown, page, **_):
     markdown = re.sub(r"^<!-- (\S+) \[(.*)\] -->$", shown_passage, markdown, flags=re.M)
+    markdown = re.sub(r"^<!-- architecture -->$", lambda _: architecture_text(), markdown, flags=re.M)
     markdown = re.sub(r"^<!-- live -->$", live_scene, markdown, flags=re.M)
     markdown = re.sub(r"\{figure:([^}]*)\}", figure, markdown)
     markdown = re.sub(r"^<!-- ledger -->$", ledger, markdown, flags=re.M)

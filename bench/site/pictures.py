@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Usage: pictures.py FOLDER RESULTS
+"""Usage: pictures.py FOLDER [RESULTS]
 
-Draws the site's pictures into FOLDER as SVG: of concepts, computed from small scenes, and of results,
-from the tables of RESULTS (bench/results).
+Draws the site's pictures into FOLDER as SVG: concepts, computed from small scenes, and results, from the
+tables of RESULTS (bench/results). Without RESULTS it draws only contacts.svg, which README.md shows and
+which is therefore committed, in bench/site/pages.
 """
 
 import csv
@@ -12,7 +13,7 @@ import pathlib
 import random
 import sys
 
-# Okabe and Ito, "Color Universal Design", 2008: told apart by everybody.
+# Distinguishable with any colour vision (Okabe and Ito, "Color Universal Design", 2008).
 BLUE, SKY, ORANGE, GREEN, GREY, INK, PALE = (
     "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#8a94a0", "#1c2430", "#eef2f6")
 
@@ -53,7 +54,7 @@ class Picture:
 
 
 def scattered(count, width, height, seed=5):
-    """Boxes (x, y, w, h) of sizes that differ, some of which overlap."""
+    """Returns boxes (x, y, w, h) of different sizes, some of which overlap."""
     draw = random.Random(seed)
     boxes = []
     for _ in range(count):
@@ -73,7 +74,7 @@ def around(boxes):
 
 
 def tree_nodes(boxes, leaf=5):
-    """Boxes of the nodes of a tree by median cuts, from the root, with their depths."""
+    """Yields depth and bounds of the nodes of a tree built by median splits, from the root."""
     nodes = [(0, boxes)]
     while nodes:
         depth, inside = nodes.pop()
@@ -139,7 +140,7 @@ def structures(folder):
 
 
 def steps(picture, y, names, below):
-    """A row of boxes with arrows between them, and words below each."""
+    """Draws a row of boxes with arrows between them, and text below each."""
     count = len(names)
     width = (picture.size[0] - 20 - 34 * (count - 1)) / count
     for i, name in enumerate(names):
@@ -199,19 +200,106 @@ def far(folder):
     picture.write(folder / "far.svg")
 
 
+def nearest_on_segment(x, y, a, b):
+    """Returns the point of the segment from a to b that is closest to (x, y)."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    t = ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy)
+    t = min(max(t, 0), 1)
+    return (a[0] + t * dx, a[1] + t * dy)
+
+
+GROUND = [(10, 20), (90, 150), (190, 210), (300, 222), (390, 180), (440, 180), (660, 180), (750, 80)]
+BOXES = [(470, 120, 150, 60), (500, 60, 110, 60)]  # x, y, width, height; the second lies on the first
+
+
+def obstacle_points(x, y):
+    """Yields the points of the ground and of the boxes that are closest to (x, y)."""
+    for a, b in zip(GROUND, GROUND[1:]):
+        yield nearest_on_segment(x, y, a, b)
+    for bx, by, w, h in BOXES:
+        yield (min(max(x, bx), bx + w), min(max(y, by), by + h))
+
+
+def settled_discs(radii, seed=7):
+    """Returns discs (x, y, radius) that fell onto the ground and the boxes, by position-based dynamics."""
+    draw = random.Random(seed)
+    discs = [[draw.uniform(120, 600), draw.uniform(-260, 20), r] for r in radii]
+    for step in range(1500):
+        for disc in discs:
+            disc[1] += 1.2 if step < 1200 else 0.02
+        for _ in range(6):
+            for i, one in enumerate(discs):
+                for other in discs[:i]:
+                    dx, dy = one[0] - other[0], one[1] - other[1]
+                    length = math.hypot(dx, dy)
+                    depth = one[2] + other[2] - length
+                    if depth > 0:
+                        for disc, sign in ((one, 0.5), (other, -0.5)):
+                            disc[0] += sign * depth * dx / length
+                            disc[1] += sign * depth * dy / length
+                for px, py in obstacle_points(one[0], one[1]):
+                    dx, dy = one[0] - px, one[1] - py
+                    length = math.hypot(dx, dy)
+                    if 0 < length < one[2]:
+                        one[0] += (one[2] - length) * dx / length
+                        one[1] += (one[2] - length) * dy / length
+    return discs
+
+
+def disc_contacts(discs, margin=0.8):
+    """Yields contacts (x, y, normal x, normal y) of discs with each other, the ground and the boxes."""
+    for i, (x, y, r) in enumerate(discs):
+        others = [(ox, oy, o) for ox, oy, o in discs[:i]] + [(*p, 0) for p in obstacle_points(x, y)]
+        seen = []
+        for ox, oy, o in others:
+            length = math.hypot(x - ox, y - oy)
+            if length > r + o + margin:
+                continue
+            nx, ny = (x - ox) / length, (y - oy) / length
+            at = (ox + o * nx, oy + o * ny)
+            if all(math.hypot(at[0] - sx, at[1] - sy) > 3 for sx, sy in seen):
+                seen.append(at)
+                yield (*at, nx, ny)
+
+
+def box_contacts():
+    """Yields the two ends of each edge that a box rests on."""
+    for x, y, width, height in BOXES:
+        yield from ((corner, y + height, 0, -1) for corner in (x, x + width))
+
+
+def contacts(folder):
+    picture = Picture(760, 262, "Bodies on a terrain, with their contact points and normals")
+    ground = " ".join(f"{x},{y}" for x, y in [(10, 238), *GROUND, (750, 238)])
+    picture.parts.append(f'<polygon points="{ground}" fill="#e9edf1" stroke="{GREY}" stroke-width="1.5"/>')
+    for x, y, w, h in BOXES:
+        picture.box(x, y, w, h, "#e6f0fa", BLUE, 1.5)
+    discs = settled_discs((30, 24, 34, 20, 27, 22, 18, 25, 16, 21, 19, 28))
+    for x, y, r in discs:
+        picture.circle(x, y, r, "#e6f0fa", BLUE)
+    for x, y, nx, ny in (*disc_contacts(discs), *box_contacts()):
+        picture.arrow(x, y, x + 20 * nx, y + 20 * ny, ORANGE)
+        picture.circle(x, y, 4, ORANGE, "#fff")
+    picture.circle(18, 252, 4, ORANGE, "none")
+    picture.text(28, 256, "contact point", 13)
+    picture.arrow(126, 252, 146, 252, ORANGE)
+    picture.text(152, 256, "contact normal", 13)
+    picture.write(folder / "contacts.svg")
+
+
 def read(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
 
 
 def three_digits(value):
-    """2217.3 as 2,220."""
+    """Formats a value with three significant digits: 2217.3 as 2,220."""
     digits = max(0, 2 - math.floor(math.log10(value)))
     return f"{round(value, 2 - math.floor(math.log10(value))):,.{digits}f}"
 
 
 def bars(path, title, groups, unit):
-    """Groups of bars [(name, [(label, value, is winnow)])] on a logarithmic axis."""
+    """Draws groups of bars [(name, [(label, value, is winnow)])] on a logarithmic axis."""
     height = 46 + sum(34 + 22 * len(rows) for _, rows in groups)
     picture = Picture(760, height, title)
     values = [value for _, rows in groups for _, value, _ in rows]
@@ -271,7 +359,11 @@ def shapes(folder, results):
 
 
 def main():
-    folder, results = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    folder = pathlib.Path(sys.argv[1])
+    if len(sys.argv) == 2:
+        contacts(folder)
+        return
+    results = pathlib.Path(sys.argv[2])
     for draw in (partition, structures, phases, tiers, bounds, far):
         draw(folder)
     for draw in (frames, shapes):

@@ -5,14 +5,14 @@
 
 namespace winnow::bench {
 
-/// What was found by everything that tries to break winnow, and when:
+/// Results of all tests that try to break winnow, with their dates:
 ///
 ///   { "format": "winnow trust 1", "rows": [{"name", "what", "command", "date", "commit",
 ///     "covers": [folders], "trees": {folder: its git tree}, "figures": [{"name", "value"}],
 ///     "note"}] }
 ///
-/// `bench/trust/record` writes rows, tests/house/ledger checks that none is older than its code may
-/// be. Tests are named as `Suite.test`. `note` may be missing.
+/// `bench/trust/record` writes rows; tests/house/ledger checks that no row is too old for its code.
+/// Tests are named as `Suite.test`. `note` is optional.
 extern const char* const kLedgerJson;
 
 [[nodiscard]] const Json& ledger();

@@ -1,7 +1,7 @@
-// Spheres and boxes that drift about a cube and turn, as many of each. As a program for this
-// machine does what lines of its standard input say: `frame` prints the milliseconds to move all
-// bodies, those to find all contacts, and how many pairs touch. In WebAssembly JavaScript calls
-// what is exported, and reads poses where they lie.
+// Spheres and boxes, half of each, that drift and rotate in a cube. As a native program it reads
+// lines from standard input: for each line `frame` it prints the milliseconds to move all bodies,
+// the milliseconds to find all contacts, and the number of touching pairs. In WebAssembly,
+// JavaScript calls the exported functions and reads the poses from memory.
 
 #include <winnow/winnow.h>
 
@@ -25,7 +25,7 @@ namespace {
 struct Drift {
   double side = 0.0;
   std::vector<winnow::Pose> poses;
-  std::vector<winnow::Vec3d> velocities;  // a frame
+  std::vector<winnow::Vec3d> velocities;  // per frame
   std::vector<winnow::Key> keys;
   winnow::ShapePool shapes;
   winnow::Scene scene{shapes, {.execution = winnow::Execution::serial()}};
@@ -37,7 +37,7 @@ Drift& drift() {
   return one;
 }
 
-/// The same on every machine.
+/// Gives the same numbers on every machine.
 class Random {
  public:
   double between(double low, double high) {
@@ -56,7 +56,7 @@ void normalize(double (&q)[4]) {
   for (double& x : q) x /= length;
 }
 
-// A little about the diagonal of the body's own axes.
+// Rotates by a small angle about the (1, 1, 1) axis of the body.
 void turn(double (&q)[4]) {
   constexpr double kTurn = 0.01;
   const double w = q[0];
@@ -74,8 +74,8 @@ void turn(double (&q)[4]) {
 
 extern "C" {
 
-/// So many bodies at random, spheres of radius 0.5 and boxes of edge 1 in turn; false if they are
-/// refused.
+/// Adds this many bodies at random positions, alternating spheres of radius 0.5 and boxes of edge
+/// 1. Returns false if winnow rejects them.
 EXPORTED("drift_start") bool drift_start(std::uint32_t count) {
   Drift& d = drift();
   Random random;
@@ -97,7 +97,7 @@ EXPORTED("drift_start") bool drift_start(std::uint32_t count) {
   return d.scene.add(bodies, d.keys) == winnow::Status::ok;
 }
 
-/// Where bodies are in the next frame; they are told of it by drift_move.
+/// Computes the poses of the next frame; drift_move passes them to the scene.
 EXPORTED("drift_advance") void drift_advance() {
   Drift& d = drift();
   for (std::size_t i = 0; i < d.poses.size(); ++i) {
@@ -110,7 +110,7 @@ EXPORTED("drift_advance") void drift_advance() {
   }
 }
 
-/// Seven doubles a body: position, and quaternion w, x, y, z.
+/// Returns seven doubles for each body: position, and quaternion w, x, y, z.
 EXPORTED("drift_poses") const winnow::Pose* drift_poses() {
   return drift().poses.data();
 }
@@ -120,7 +120,7 @@ EXPORTED("drift_move") bool drift_move() {
   return d.scene.move(d.keys, std::span<const winnow::Pose>(d.poses)) == winnow::Status::ok;
 }
 
-/// Finds contacts, with manifolds; how many pairs touch.
+/// Finds contacts with manifolds and returns the number of touching pairs.
 EXPORTED("drift_detect") std::uint32_t drift_detect() {
   Drift& d = drift();
   if (d.scene.collide(winnow::ContactLevel::manifold, d.contacts) != winnow::Status::ok) return 0;

@@ -1,6 +1,7 @@
-// The engines that race.mjs races. Each is told the poses of all bodies in turn of a Float64Array, seven
-// numbers a body: position, and quaternion w, x, y, z. `move` brings them in as its users have to,
-// `detect` finds all contacts, with manifolds, and solves none: bodies of the others are kinematic.
+// The engines that race.mjs races. Each gets the poses of all bodies in a Float64Array, seven numbers for
+// each body: position, and quaternion w, x, y, z. `move` passes them to the engine by its usual interface,
+// `detect` finds all contacts with manifolds. No contact is solved: bodies of the other engines are
+// kinematic.
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
 import {readFile} from 'node:fs/promises';
@@ -26,7 +27,7 @@ export async function winnowInWasm(file, count) {
   };
 }
 
-/// The same program compiled for this machine: says itself what a frame takes.
+/// Runs the program as a native process, which measures its own times.
 export async function winnowHere(program, count) {
   const child = spawn(program, [String(count)]);
   const lines = createInterface({input: child.stdout})[Symbol.asyncIterator]();

@@ -1,5 +1,5 @@
-// Lets Node load the package of Rapier, which is made for bundlers: its modules do not say that they are
-// some, and leave out how the files' names end that they import.
+// Lets Node load Rapier's npm package, which is made for bundlers: it does not declare its files as modules,
+// and its imports omit the file extension.
 export async function resolve(specifier, context, next) {
   for (const end of ['', '.js', '/index.js']) {
     try {

@@ -12,7 +12,7 @@ const here = await winnowHere(program, count);
 const engines = [winnow, await jolt(initJolt, count), rapier(rapier3d, count)];
 const taken = new Map([...engines, here].map((engine) => [engine, {move: [], detect: [], touching: 0}]));
 
-// In another order each frame.
+// The order of the engines rotates from frame to frame.
 for (let frame = 0; frame < WARM_UP + frames; ++frame) {
   winnow.advance();
   for (let k = 0; k < engines.length; ++k) {

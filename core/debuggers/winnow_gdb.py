@@ -1,7 +1,7 @@
 """Pretty printers of winnow's public types for gdb: `source winnow_gdb.py`.
 
-They read memory alone and call nothing, so that they serve core dumps, too. What a Partition and a
-Scene hold is shown where winnow itself was built with debug information.
+They only read memory and call nothing, so they also work on core dumps. The content of a Partition
+and a Scene is shown if winnow itself was built with debug information.
 """
 
 import gdb
@@ -9,7 +9,7 @@ import gdb.printing
 
 
 def number(value):
-    """As short as it can be told."""
+    """The shortest decimal form."""
     return "%g" % float(value)
 
 
@@ -120,7 +120,7 @@ class Column(List):
 
 
 def at(pointer, index, stride):
-    """Element `index` of what is `stride` bytes apart."""
+    """Element `index` of elements that are `stride` bytes apart."""
     address = int(pointer) + index * stride
     return gdb.Value(address).cast(pointer.type).dereference()
 
@@ -188,7 +188,7 @@ class OverlapBuffer(List):
 
 
 def objects_of(state):
-    """How many objects a partition's state holds."""
+    """The number of objects in a partition's state."""
     return int(state["rows"]["keys_"]["live_"])
 
 
@@ -198,7 +198,7 @@ def structure_of(state):
 
 
 def held_by(value):
-    """What a class holds behind its pointer; None where gdb knows nothing of it."""
+    """The state behind a class's pointer; None if gdb has no debug information about it."""
     state = value["state_"].dereference()
     return state if state.type.strip_typedefs().sizeof else None
 

@@ -7,14 +7,14 @@
 
 namespace winnow {
 
-/// Tells the log, if there is one, that a call was refused.
+/// Reports a refused call to the log hook, if there is one.
 void tell_refusal(Status status, const char* call) noexcept;
 
-/// That a choice changed the structure of a partition.
+/// Reports to the log hook that `automatic()` changed the structure of a partition.
 void tell_choice(std::string_view before, std::string_view now, std::string_view reason,
                  std::size_t objects) noexcept;
 
-/// `status`; the log is told of all but ok.
+/// Returns `status`, and reports it to the log hook unless it is ok.
 inline Status logged(Status status, const char* call) noexcept {
   if (status != Status::ok) tell_refusal(status, call);
   return status;

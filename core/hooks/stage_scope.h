@@ -8,7 +8,7 @@ namespace winnow {
 
 extern std::atomic<StageHook> stage_hook;
 
-/// Tells of a stage as long as it lives.
+/// Reports a stage to the stage hook: it begins with the constructor and ends with the destructor.
 class StageScope {
  public:
   explicit StageScope(WorkStage stage) noexcept

@@ -1,3 +1,6 @@
+// Growth, padding and reordering of the columns of bounding volumes. The rows of a Partition
+// (partitions/rows/) and its spatial index call it.
+
 #include "core/memory/bounds_pool.h"
 
 #include "core/sort/stretches.h"
@@ -10,13 +13,13 @@ namespace {
 constexpr std::size_t kRowsPerTask = 16384;
 constexpr ObjectFilter kNoFilter{.layers = 0, .mask = 0, .environment = 0};
 
-// Words and floats have one size: the spare column's bytes serve both.
+// Words and floats have the same size, so the spare column serves both.
 std::uint32_t* words_of(Column<float>& spare) noexcept {
   static_assert(sizeof(float) == sizeof(std::uint32_t));
   return reinterpret_cast<std::uint32_t*>(spare.data());
 }
 
-// Eight at a time, which mostly are all there.
+// Copies eight elements at a time, because groups with missing rows are rare.
 template <typename T>
 void gather(const T* from, const std::uint32_t* order, std::size_t begin, std::size_t end, T* to,
             T missing) {
@@ -44,7 +47,7 @@ void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missin
                      });
 }
 
-// The same in place.
+// Reorders words in place.
 void reorder_words(std::uint32_t* words, std::span<const std::uint32_t> order, Column<float>& spare,
                    std::uint32_t missing, const Execution& execution) {
   const std::uint32_t* const sorted = words_of(spare);
@@ -76,7 +79,7 @@ bool BoundsPool::reserve_exact(std::size_t rows) noexcept {
     grown = filters_[c].reserve(padded);
   }
   grown = grown && ids_.reserve(padded);
-  // Columns that moved have left their padding behind.
+  // Reallocated columns have lost their padding.
   pad();
   return grown;
 }
@@ -159,7 +162,7 @@ void BoundsPool::reorder_ids(std::span<const std::uint32_t> order, Column<float>
   }
   const bool ascend = apart == 0 && rows_ != 0;
   if (!ascend) return reorder_words(ids_.data(), order, spare, kNoObject, execution);
-  // Those of rows in the order of ids need no look.
+  // Ids ascend by one from row to row, and need not be read.
   const ObjectId first = ids_[0];
   for_even_stretches(execution, order.size(), kRowsPerTask,
                      [&](std::size_t begin, std::size_t end) {

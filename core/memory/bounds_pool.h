@@ -17,20 +17,21 @@
 
 namespace winnow {
 
-/// Rows in a block: one 512-bit register of floats, and the unit in which rows are tested.
+/// Rows in a block: one 512-bit register of floats. Kernels test rows block by block.
 inline constexpr std::size_t kBlockRows = 16;
 [[nodiscard]] constexpr std::size_t blocks_of(std::size_t rows) noexcept {
   return (rows + kBlockRows - 1) / kBlockRows;
 }
 
-/// Bounding volumes in a structure of arrays: one float column per slab end (see `column_count`)
-/// and a column of object ids, all 64-byte aligned. Rows are dense but for holes that a removal
-/// leaves; a hole and the padding behind the last row hold an empty volume, which overlaps nothing,
-/// and `kNoObject`. Stored ends are finite (an infinite one becomes +-FLT_MAX, which no comparison
-/// can tell from infinity), so that the padding's infinities touch nothing.
+/// Bounding volumes as a structure of arrays: one float column per slab end (see `column_count`)
+/// and a column of object ids, all 64-byte aligned. Rows are contiguous except for holes that
+/// removals leave. Holes, and the padding behind the last row, contain an empty volume, which
+/// overlaps nothing, and `kNoObject`. Stored ends are finite, so that they never overlap the
+/// infinities of the padding. An infinite end is stored as +-FLT_MAX, which compares with all
+/// stored ends as infinity does.
 ///
-/// Filters are three further columns, which hold nothing until they come into use. A hole and the
-/// padding then are in no layer and want none.
+/// Filters are three more columns, which are empty until filters are used. Holes and padding then
+/// have no layer and an empty mask.
 class BoundsPool {
  public:
   BoundsPool(std::pmr::memory_resource* memory, Volume volume) noexcept
@@ -50,60 +51,60 @@ class BoundsPool {
   [[nodiscard]] const ObjectId* ids() const noexcept { return ids_.data(); }
 
   [[nodiscard]] bool has_filters() const noexcept { return has_filters_; }
-  /// By row.
+  /// Filters indexed by row; null columns if filters are not used.
   [[nodiscard]] FilterColumns filters() const noexcept {
     if (!has_filters_) return {};
     return {filters_[kLayers].data(), filters_[kMask].data(), filters_[kEnvironment].data()};
   }
-  /// Room for filters of as many rows as there is room for. False, and unchanged, if memory is
-  /// refused.
+  /// Reserves room for filters of all rows that fit in the pool. Returns false, and changes
+  /// nothing, if memory is refused.
   [[nodiscard]] bool reserve_filters() noexcept;
-  /// Filters come into use, with the default in every row. Room was made. O(rows).
+  /// Starts to use filters, with the default filter in every row; room must be reserved. O(rows).
   void begin_filters() noexcept;
-  /// Filters must be in use.
+  /// Requires that filters are used.
   void set_filter(std::size_t row, const ObjectFilter& filter) noexcept {
     filters_[kLayers][row] = filter.layers;
     filters_[kMask][row] = filter.mask;
     filters_[kEnvironment][row] = filter.environment;
   }
 
-  /// Room for `rows` rows and their padding. Exact on the first call, growing by half afterwards.
+  /// Reserves room for `rows` rows and their padding: exactly on the first call, growing by half
+  /// afterwards. Returns false if memory is refused.
   [[nodiscard]] bool reserve(std::size_t rows) noexcept;
-  /// Room for `rows` rows and their padding, no more.
+  /// Reserves room for `rows` rows and their padding, and no more.
   [[nodiscard]] bool reserve_exact(std::size_t rows) noexcept;
-  /// Writes to the pages behind the rows.
+  /// Prefaults the pages behind the rows.
   void touch() noexcept;
 
-  /// Adds rows with their contents uninitialised; room must have been reserved.
+  /// Adds rows with uninitialised content; room must be reserved.
   void append(std::size_t count) noexcept { rows_ += count; }
 
-  /// Takes the last row away.
   void drop_last() noexcept { --rows_; }
 
-  /// Row `to` becomes what row `from` is.
   void copy_row(std::size_t from, std::size_t to) noexcept;
 
-  /// Empties one row.
+  /// Makes a row a hole.
   void blank(std::size_t row) noexcept;
 
-  /// Empties the rest of the last block and one block behind it, so that loads may run over.
+  /// Writes the padding: the rest of the last block and one more block, so that loads may run past
+  /// the last row.
   void pad() noexcept;
 
-  /// New row i becomes a copy of old row order[i], or empty where order[i] is kNoObject. All
-  /// columns go through `spare`, which must have room for order.size() + 2 * kBlockRows elements.
+  /// Makes new row i a copy of old row order[i], or a hole if order[i] is kNoObject. All columns
+  /// pass through `spare`, which must have room for order.size() + 2 * kBlockRows elements.
   void reorder(std::span<const std::uint32_t> order, Column<float>& spare,
                const Execution& execution) noexcept;
 
-  /// The same for the rows from `begin` on alone, on the calling thread.
+  /// As `reorder`, for the rows from `begin` on only, on the calling thread.
   void reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
                     Column<float>& spare) noexcept;
 
-  /// No rows are left; memory is kept.
+  /// Removes all rows; memory is kept.
   void clear() noexcept { rows_ = 0; }
-  /// Filters are in use no more; memory is kept.
+  /// Stops using filters; memory is kept.
   void end_filters() noexcept { has_filters_ = false; }
   void release() noexcept;
-  /// Of volumes and ids.
+  /// Returns the bytes of volumes and ids.
   [[nodiscard]] Bytes bytes() const noexcept;
   [[nodiscard]] Bytes filter_bytes() const noexcept;
 
@@ -129,14 +130,13 @@ class BoundsPool {
   Volume volume_;
 };
 
-/// The columns of boxes, for kernels.
 [[nodiscard]] inline std::array<const float*, 6> box_columns(const BoundsPool& pool) noexcept {
   return {pool.column(0), pool.column(1), pool.column(2),
           pool.column(3), pool.column(4), pool.column(5)};
 }
 
-/// What an empty row holds in column `c` of a volume: +infinity in a lower end, -infinity in an
-/// upper one; an empty sphere is infinitely far away and has radius 0.
+/// Returns the value of column `c` in an empty row: +infinity in a lower end, -infinity in an upper
+/// end; an empty sphere has an infinite centre and radius 0.
 [[nodiscard]] constexpr float empty_value(Volume volume, std::size_t c) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
   if (volume == Volume::sphere && c >= kCenterColumn) return c < kRadiusColumn ? inf : 0.0F;

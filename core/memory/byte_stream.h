@@ -1,5 +1,7 @@
 #pragma once
 
+// Serialisation of numbers: ByteWriter appends them, ByteReader reads them from untrusted bytes,
+// Digest detects damage. Snapshots (snapshot_frame.h) and recordings use it.
 #include <winnow/core/column.h>
 #include <winnow/core/status.h>
 
@@ -17,9 +19,9 @@ namespace winnow {
 static_assert(std::endian::native == std::endian::little && std::numeric_limits<float>::is_iec559,
               "files are read and written as numbers lie in memory");
 
-/// A number that depends on every byte and their order: for damage that happens by itself, not for
-/// what somebody makes up. The mixing is that of SplitMix64 (Steele et al., "Fast splittable
-/// pseudorandom number generators", OOPSLA 2014).
+/// A checksum of all bytes and their order. It detects accidental damage, not forgery. The mixing
+/// function is SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", OOPSLA
+/// 2014).
 class Digest {
  public:
   void add(std::uint64_t value) noexcept {
@@ -31,7 +33,7 @@ class Digest {
   }
   void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
   void add(float value) noexcept { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
-  /// Eight at a time, and how many there are.
+  /// Adds eight bytes at a time, and then the number of bytes.
   void add(std::span<const std::byte> bytes) noexcept {
     std::size_t at = 0;
     for (; at + 8 <= bytes.size(); at += 8) {
@@ -44,7 +46,7 @@ class Digest {
     add(rest);
     add(std::uint64_t{bytes.size()});
   }
-  /// The bytes of an array of plain numbers.
+  /// Adds the bytes of an array of plain numbers.
   template <typename T>
   void add_array(std::span<const T> values) noexcept {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -60,8 +62,8 @@ class Digest {
 template <typename T>
 concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// Appends numbers to bytes, little-endian and without gaps. Once memory was refused it writes no
-/// more; see `ok`.
+/// Appends numbers to bytes, little-endian and without gaps. After memory was refused it writes
+/// nothing more; see `ok`.
 class ByteWriter {
  public:
   explicit ByteWriter(Column<std::byte>& out) noexcept : out_(out) {}
@@ -70,7 +72,7 @@ class ByteWriter {
   void put(T value) noexcept {
     put_bytes(&value, sizeof value);
   }
-  /// A count, then the values, which are plain numbers or structs of them without gaps.
+  /// Writes a count, then the values: plain numbers, or structs of plain numbers without gaps.
   template <typename T>
   void put_array(std::span<const T> values) noexcept {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -87,7 +89,7 @@ class ByteWriter {
     if (ok_) std::memcpy(out_.data() + at, bytes, count);
   }
 
-  /// Calls save(column) for what appends a snapshot of its own to one: a count of bytes, and these.
+  /// Writes a byte count, then the bytes that save(column) appends to a column.
   template <typename Save>
   void put_nested(Save&& save) noexcept {
     const std::size_t at = out_.size();
@@ -98,7 +100,7 @@ class ByteWriter {
     std::memcpy(out_.data() + at, &count, sizeof count);
   }
 
-  /// False if memory was refused.
+  /// Returns false if memory was refused.
   [[nodiscard]] bool ok() const noexcept { return ok_; }
 
  private:
@@ -106,8 +108,8 @@ class ByteWriter {
   bool ok_ = true;
 };
 
-/// Reads what a ByteWriter wrote, or anybody else. Behind the end it reads zeros, and once anything
-/// was wrong it stays so: what is read may be used, and `ok` asked, after several reads.
+/// Reads bytes of a ByteWriter or of an untrusted source. Behind the end it reads zeros. After the
+/// first error all reads fail, so callers may test `ok` once after several reads.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) noexcept : rest_(bytes) {}
@@ -118,13 +120,13 @@ class ByteReader {
     (void)get_bytes(&value, sizeof value);
     return value;
   }
-  /// Any other byte than 0 and 1 is wrong.
+  /// Fails for bytes other than 0 and 1.
   [[nodiscard]] bool get_bool() noexcept {
     const auto byte = get<std::uint8_t>();
     if (byte > 1) fail();
     return byte == 1;
   }
-  /// An enumerator from the first, which is 0, to `last`.
+  /// Reads an enumerator between the first, which is 0, and `last`.
   template <typename Enum>
   [[nodiscard]] Enum get_enum(Enum last) noexcept {
     const auto number = get<std::underlying_type_t<Enum>>();
@@ -132,8 +134,8 @@ class ByteReader {
     fail();
     return Enum{};
   }
-  /// Replaces the content of a column. A count that the rest has no bytes for is wrong, and asks
-  /// for no memory.
+  /// Replaces the content of a column. If the input has fewer bytes than the count needs, fails
+  /// without allocating.
   template <typename T>
   [[nodiscard]] bool get_array(Column<T>& values) noexcept {
     values.clear();
@@ -142,7 +144,7 @@ class ByteReader {
     if (!values.resize(static_cast<std::size_t>(count))) return refuse_memory();
     return get_bytes(values.data(), values.size() * sizeof(T));
   }
-  /// What `put_nested` or `put_text` wrote; lies in what is read.
+  /// Returns the bytes that `put_nested` or `put_text` wrote, as a part of the input.
   [[nodiscard]] std::span<const std::byte> get_nested() noexcept {
     const auto count = get<std::uint64_t>();
     if (!ok_ || count > rest_.size()) {
@@ -164,18 +166,18 @@ class ByteReader {
     return true;
   }
 
-  /// Makes everything wrong from here on; false.
+  /// Makes all reads from here on fail; returns false.
   bool fail() noexcept {
     ok_ = false;
     return false;
   }
-  /// The same because memory was refused; false.
+  /// As `fail`, because memory was refused.
   bool refuse_memory() noexcept {
     out_of_memory_ = true;
     return fail();
   }
   [[nodiscard]] bool ok() const noexcept { return ok_; }
-  /// True if what is wrong is that memory was refused.
+  /// Returns true if the error is that memory was refused.
   [[nodiscard]] bool out_of_memory() const noexcept { return out_of_memory_; }
   [[nodiscard]] std::span<const std::byte> rest() const noexcept { return rest_; }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is done with all columns of an object.
+// Operations on several columns of an object at once.
 
 #include <winnow/core/column.h>
 

@@ -4,7 +4,7 @@
 
 namespace winnow {
 
-/// Filters as columns; all null if every object has the default one. A plain struct of pointers,
+/// Columns of filters; all null if every object has the default filter. A plain struct of pointers,
 /// because kernel files may not use the standard library.
 struct FilterColumns {
   const std::uint32_t* layers = nullptr;

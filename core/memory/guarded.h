@@ -6,8 +6,8 @@
 
 namespace winnow {
 
-/// What `work` answers, or `refused` where it was left by an exception, by which memory resources
-/// refuse. Built without exceptions nothing is caught.
+/// Returns the result of `work`, or `refused` if it throws, which is how memory resources refuse.
+/// Without exception support nothing is caught.
 template <typename Work, typename Answer = decltype(std::declval<Work&>()())>
 [[nodiscard]] Answer guarded(Work&& work, Answer refused) noexcept {
 #ifdef __cpp_exceptions
@@ -22,8 +22,8 @@ template <typename Work, typename Answer = decltype(std::declval<Work&>()())>
 #endif
 }
 
-/// Leaves guarded work, because memory was refused. Built without exceptions that ends the program,
-/// as it does in every container of the standard library.
+/// Throws out of guarded work because memory was refused. Without exception support this ends the
+/// program, as in every container of the standard library.
 [[noreturn]] inline void leave_without_memory() {
 #ifdef __cpp_exceptions
   throw std::bad_alloc();

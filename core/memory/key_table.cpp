@@ -1,3 +1,5 @@
+// Slots and stamps of keys: acquire, release, validation of batches, restore from a snapshot.
+
 #include "core/memory/key_table.h"
 
 #include "core/memory/columns.h"
@@ -65,7 +67,7 @@ void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std:
   live_ += slots - first;
 }
 
-// Nothing in the loops of these waits for a branch.
+// The loops of the next three functions have no unpredictable branches.
 
 KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept {
   if (keys.empty()) return {};
@@ -86,12 +88,12 @@ bool KeyTable::are_valid(std::span<const Key> keys) const noexcept {
   return wrong == 0;
 }
 
-/// Of keys whose ids ascend, the last one below the number of slots.
+/// Requires ascending ids, the last one below the number of slots.
 bool KeyTable::are_valid_ascending(std::span<const Key> keys) const noexcept {
   std::uint32_t wrong = 0;
   const ObjectId first = keys.front().id;
   if (keys.back().id - first + std::size_t{1} == keys.size()) {
-    // Each is that after the one before: no look-ups but a comparison of two columns.
+    // Consecutive ids need no lookups, only a comparison of two columns.
     const std::uint32_t* const stamps = stamps_.data() + first;
     for (std::size_t i = 0; i < keys.size(); ++i) {
       wrong |= (keys[i].stamp ^ stamps[i]) | (~stamps[i] & 1U);
@@ -101,7 +103,7 @@ bool KeyTable::are_valid_ascending(std::span<const Key> keys) const noexcept {
     const auto wrongs_of = [&](const Key& key, std::uint32_t stamp) {
       wrong |= (stamp ^ key.stamp) | (~key.stamp & 1U);
     };
-    // So do most of a few.
+    // Most groups of four ids are consecutive.
     constexpr std::size_t kFew = 4;
     std::size_t i = 0;
     for (; i + kFew <= keys.size(); i += kFew) {
@@ -166,7 +168,7 @@ std::uint32_t KeyTable::stamp_beyond(const Saved& saved) noexcept {
   for (const std::uint32_t stamp : saved.stamps) pass(stamp);
   pass(saved.stamp);
   if (uses <= most_uses()) return stamp_ + uses;
-  // Without another tag, slots begin with the first generation again.
+  // If no other tag is free, slots begin with the first generation again.
   (void)tags_.renew();
   return tags_.latest() << kGenerationBits;
 }
@@ -180,7 +182,7 @@ void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
   stamps_.set_size(slots);
   rows_.set_size(slots);
   data_.set_size(slots);
-  std::uint32_t known = 0;  // a tag that was claimed already
+  std::uint32_t known = 0;  // the tag that was claimed last
   std::uint32_t row = 0;
   for (std::size_t slot = 0; slot < slots; ++slot) {
     const std::uint32_t stamp = saved.stamps[slot];

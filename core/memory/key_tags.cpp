@@ -9,16 +9,17 @@ namespace {
 constexpr std::uint32_t kWordBits = 64;
 constexpr std::uint32_t kWords = (KeyTags::kMost + 1) / kWordBits;
 
-// A bit for each number, set while it is taken.
+// One bit per tag, set while the tag is taken.
 std::atomic<std::uint64_t> g_taken[kWords];
-// What its table had before, 0: nothing. Only who has a number reads and writes its place.
+// The tag that the table of a tag took before, 0 if none. Only the owner of a tag reads and writes
+// its element.
 std::uint32_t g_earlier[KeyTags::kMost + 1];
-// Where the search goes on, so that what has become free comes again last.
+// Start of the next search, so that freed tags are reused last.
 std::atomic<std::uint32_t> g_next{1};
 
-// Takes the first free number of a word from a bit on; 0 if there is none.
+// Takes the first free tag of a word from a bit on; returns 0 if there is none.
 std::uint32_t take_from(std::uint32_t word, std::uint32_t bit) noexcept {
-  // No table has the number 0.
+  // Tag 0 is never given out.
   const std::uint64_t unfit = ((std::uint64_t{1} << bit) - 1) | (word == 0 ? 1U : 0U);
   std::uint64_t taken = g_taken[word].load(std::memory_order_relaxed);
   for (;;) {
@@ -32,10 +33,10 @@ std::uint32_t take_from(std::uint32_t word, std::uint32_t bit) noexcept {
   }
 }
 
-// 0 if none is free.
+// Returns 0 if no tag is free.
 std::uint32_t take() noexcept {
   const std::uint32_t from = g_next.load(std::memory_order_relaxed);
-  // The first word is looked at again in the end, from its beginning.
+  // The last step searches the first word again, from its beginning.
   for (std::uint32_t i = 0; i <= kWords; ++i) {
     const std::uint32_t word = (from / kWordBits + i) % kWords;
     const std::uint32_t tag = take_from(word, i == 0 ? from % kWordBits : 0);

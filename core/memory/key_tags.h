@@ -5,10 +5,9 @@
 
 namespace winnow {
 
-/// Numbers that tell the keys of one table from those of all others: none that lives in this
-/// process has the same, and what becomes free is given out again as late as may be. Where more
-/// than kMost are taken at a time, some tables share one. From any thread; O(1) unless nearly all
-/// are taken.
+/// Tags that distinguish the keys of one table from the keys of all others in the process. A freed
+/// tag is reused as late as possible. If more than kMost tags are taken at a time, some tables
+/// share one. Thread-safe; O(1) unless nearly all tags are taken.
 class KeyTags {
  public:
   static constexpr unsigned kBits = 17;
@@ -19,12 +18,12 @@ class KeyTags {
   KeyTags(const KeyTags&) = delete;
   KeyTags& operator=(const KeyTags&) = delete;
 
-  /// The latest, 1 to kMost.
+  /// Returns the latest tag, 1 to kMost.
   [[nodiscard]] std::uint32_t latest() const noexcept { return latest_; }
-  /// Takes one more and keeps the others. False, and no change, if none is free.
+  /// Takes one more tag and keeps the others. Returns false, and changes nothing, if none is free.
   [[nodiscard]] bool renew() noexcept;
-  /// Takes this one, which becomes the latest, and keeps the others. False, and no change, if
-  /// another table has it. O(those that it has).
+  /// Makes this tag the latest one and keeps the others. Returns false, and changes nothing, if
+  /// another table has it. O(tags of this table).
   [[nodiscard]] bool claim(std::uint32_t tag) noexcept;
   void swap(KeyTags& other) noexcept {
     std::swap(latest_, other.latest_);

@@ -8,15 +8,15 @@
 
 namespace winnow {
 
-/// An object whose memory comes from a resource; null if that refuses. Its constructor must not
-/// throw.
+/// Creates an object in memory of a resource; returns null if the resource refuses. The constructor
+/// must not throw.
 template <typename T, typename... Arguments>
 [[nodiscard]] T* new_in(std::pmr::memory_resource* memory, Arguments&&... arguments) noexcept {
   void* const place = try_allocate(*memory, sizeof(T), alignof(T));
   return place == nullptr ? nullptr : ::new (place) T(std::forward<Arguments>(arguments)...);
 }
 
-/// Ends an object made by `new_in` from the same resource; null does nothing.
+/// Destroys an object that `new_in` created with the same resource; ignores null.
 template <typename T>
 void delete_in(std::pmr::memory_resource* memory, T* object) noexcept {
   if (object == nullptr) return;

@@ -5,8 +5,8 @@
 
 namespace winnow {
 
-/// Keys as they stand in a snapshot: stamp of new slots, stamps and client data by id, free ids in
-/// the order in which they are taken.
+/// Writes keys to a snapshot: stamp of new slots, stamps and client data by id, and free ids in the
+/// order in which they will be taken.
 inline void put_keys(ByteWriter& out, const KeyTable& keys) noexcept {
   out.put(keys.stamp());
   out.put_array(keys.stamps());
@@ -17,7 +17,7 @@ inline void put_keys(ByteWriter& out, const KeyTable& keys) noexcept {
   for (ObjectId id = keys.first_free(); id != kNoObject; id = keys.next_free(id)) out.put(id);
 }
 
-/// Calls visit(id) for those of live objects, ascending.
+/// Calls visit(id) for the ids of live objects, ascending.
 template <typename Visit>
 void for_live(std::span<const std::uint32_t> stamps, const Visit& visit) {
   for (std::size_t slot = 0; slot < stamps.size(); ++slot) {
@@ -25,7 +25,7 @@ void for_live(std::span<const std::uint32_t> stamps, const Visit& visit) {
   }
 }
 
-/// What was read of them; whether it can be is for KeyTable::are_slots to say.
+/// Keys read from a snapshot; KeyTable::are_slots tests if they are consistent.
 struct ReadKeys {
   explicit ReadKeys(std::pmr::memory_resource* memory) noexcept
       : stamps(memory), data(memory), free(memory) {}

@@ -7,19 +7,20 @@
 
 namespace winnow {
 
-/// Places of a table as a snapshot has them: how many there are, and the free ones in the order in
-/// which they became free; the last one is taken first.
+/// Writes the places (slots) of a table to a snapshot: their number, and the free ones in the order
+/// in which they became free; the last one is taken first.
 inline void put_places(ByteWriter& out, std::size_t places, const Column<std::uint32_t>& free) {
   out.put(std::uint64_t{places});
   out.put_array(std::span<const std::uint32_t>(free.data(), free.size()));
 }
 
-/// Such places while what lies in them is read.
+/// Places read from a snapshot, while the entries in them are read.
 class ReadPlaces {
  public:
   explicit ReadPlaces(std::pmr::memory_resource* memory) noexcept : free_(memory), taken_(memory) {}
 
-  /// Of entries that take a byte each at least. False if it went wrong.
+  /// Reads places; the entries that follow must take at least one byte each. Returns false on
+  /// failure.
   [[nodiscard]] bool read(ByteReader& in) noexcept {
     const auto count = in.get<std::uint64_t>();
     if (!in.get_array(free_)) return false;
@@ -34,12 +35,12 @@ class ReadPlaces {
     }
     return true;
   }
-  /// Makes all places of a table free, so that entries that are put there get their places, the
-  /// lowest first, and the free ones are left. False, and refused, without memory.
+  /// Makes all places of a table free, in such an order that entries added next get their saved
+  /// places, the lowest first, and the free places remain. Returns false if memory is refused.
   template <typename Entry>
   [[nodiscard]] bool open(ByteReader& in, Column<Entry>& entries, Column<std::uint32_t>& free,
                           const Entry& nothing) noexcept {
-    // Last, so that there is no entry that was not written yet.
+    // Entries are resized last, so that a refusal leaves none uninitialised.
     if (!free.resize(places_) || !entries.resize(places_)) return in.refuse_memory();
     std::fill(entries.begin(), entries.end(), nothing);
     std::uint32_t* at = std::copy(free_.begin(), free_.end(), free.begin());
@@ -57,7 +58,8 @@ class ReadPlaces {
   std::size_t places_ = 0;
 };
 
-/// Why what was read cannot be: memory, or that nobody saved it so.
+/// Returns ok and out_of_memory as they are, and invalid_argument for any other error: the bytes
+/// are not a valid snapshot.
 [[nodiscard]] inline Status refused_as(Status status) noexcept {
   return status == Status::ok || status == Status::out_of_memory ? status
                                                                  : Status::invalid_argument;

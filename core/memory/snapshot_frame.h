@@ -8,13 +8,13 @@
 
 namespace winnow {
 
-// What every snapshot begins with: eight characters that tell what it is of, version, 4 bytes of 0,
-// how many bytes follow, and their digest.
+// Every snapshot begins with a header: eight characters for its type, the version, 4 zero bytes,
+// the number of bytes that follow, and their digest.
 
 inline constexpr std::size_t kSnapshotHeader = 32;
 
-/// Writes a snapshot: the header, and what write(writer) puts behind it. Memory refused leaves
-/// `out` as it was.
+/// Writes a snapshot: the header, then the content that write(writer) appends. If memory is
+/// refused, `out` is unchanged.
 template <typename Write>
 [[nodiscard]] Status write_snapshot(Column<std::byte>& out, std::string_view magic,
                                     std::uint32_t version, Write&& write) noexcept {
@@ -39,8 +39,8 @@ template <typename Write>
   return Status::ok;
 }
 
-/// What follows the header of a snapshot of this kind and version, or a reader at which all is
-/// wrong.
+/// Returns a reader behind the header of a snapshot of this type and version; if the header is
+/// wrong, the reader has failed.
 [[nodiscard]] inline ByteReader open_snapshot(std::span<const std::byte> saved,
                                               std::string_view magic,
                                               std::uint32_t version) noexcept {
@@ -57,7 +57,7 @@ template <typename Write>
   return in;
 }
 
-/// Why a snapshot cannot be read.
+/// Returns the reason why a snapshot cannot be read, or ok.
 [[nodiscard]] inline Status status_of(const ByteReader& in) noexcept {
   if (in.ok()) return Status::ok;
   return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;

@@ -10,14 +10,15 @@
 
 namespace winnow {
 
-/// Words of a bitmap for values below `limit`, of which 32 bits can be read from any value on.
+/// Returns the number of words of a bitmap for values below `limit` in which 32 bits can be read
+/// from any value on.
 [[nodiscard]] constexpr std::size_t bitmap_words(std::size_t limit) noexcept {
   return limit / 64 + 2;
 }
 
-/// Sorts values below `limit` and drops repeats; returns how many are left. `words` must hold
-/// `bitmap_words(limit)` of nothing but zeros, and does so afterwards. O(values + limit / 64), or
-/// O(values log values) where they are few.
+/// Sorts values below `limit` and removes duplicates; returns how many are left. `words` must hold
+/// `bitmap_words(limit)` zeros, and holds zeros again on return. O(values + limit / 64), or
+/// O(values log values) if the values are few.
 inline std::size_t sort_unique(std::span<std::uint32_t> values, std::size_t limit,
                                Column<std::uint64_t>& words) noexcept {
   const std::size_t needed = bitmap_words(limit);

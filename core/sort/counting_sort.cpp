@@ -13,7 +13,7 @@ CountingSort::CountingSort(std::span<const std::uint32_t> bucket, std::span<std:
       buckets_(start.size() - 1),
       threads_(owners_of_rows(bucket.size(), execution)) {}
 
-// Calls body(stretch, first row, end) for the stretch of rows of each thread.
+// Calls body(index, first row, end) for the range of rows of each thread.
 template <typename Body>
 void CountingSort::for_each_stretch(Body&& body) const {
   execution_.for_each(threads_, [&](std::size_t i) {
@@ -30,7 +30,8 @@ void CountingSort::count() noexcept {
 
 void CountingSort::count_few() noexcept {
   for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
-    // Rows of one bucket follow each other: none waits for the count of the one before.
+    // Consecutive rows are often in one bucket. With four arrays of counts, an increment does not
+    // depend on the one before.
     std::array<Counts, 4> counts;
     for (Counts& some : counts) std::fill_n(some.begin(), buckets_, 0U);
     for (std::size_t row = first; row < end; ++row) {
@@ -61,7 +62,7 @@ void CountingSort::place(std::uint32_t* order) noexcept {
   place_many(order);
 }
 
-// The rows that a stretch has of a bucket follow those of the stretch before.
+// Within a bucket, the rows of a range follow the rows of the range before.
 void CountingSort::place_few(std::uint32_t* order) noexcept {
   for (std::size_t b = 0; b < buckets_; ++b) {
     std::uint32_t next = start_[b];
@@ -70,7 +71,7 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
   for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
     Counts& next = counts_[stretch];
     if (buckets_ == 1) {
-      // Where it goes need not be looked up, and no row waits for the one before.
+      // The destination needs no lookup, and does not depend on the row before.
       std::uint32_t* to = order + next[0];
       for (std::size_t row = first; row < end; ++row) {
         if (bucket_[row] != kNone) *to++ = static_cast<std::uint32_t>(row);
@@ -83,7 +84,7 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
   });
 }
 
-// Buckets of about as many rows as those of every other owner.
+// Returns buckets for an owner such that all owners have about equally many rows.
 CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept {
   const auto first_of = [&](std::size_t i) -> std::size_t {
     if (i == threads_) return buckets_;
@@ -103,7 +104,7 @@ void CountingSort::place_many(std::uint32_t* order) noexcept {
     const std::uint32_t begin = start_[first];
     for_own_rows(bucket_, first, end, threads_,
                  [&](std::uint32_t row, std::uint32_t bucket) { order[start_[bucket]++] = row; });
-    // Where the last row of a bucket went the next one begins.
+    // After placing, start_[b] is the end of bucket b, which is the beginning of bucket b + 1.
     std::copy_backward(start_.data() + first, start_.data() + end - 1, start_.data() + end);
     start_[first] = begin;
   });

@@ -10,26 +10,28 @@
 
 namespace winnow {
 
-/// Stable sort of rows by the bucket that each is in. Where a row comes to lie does not depend on
-/// the number of threads. Few buckets are long: threads count and place a stretch of the rows each.
-/// Of many buckets each thread has some to itself.
+/// Stable sort of rows by bucket. The result does not depend on the number of threads. If there are
+/// few buckets, each thread counts and places a range of rows. If there are many, each thread owns
+/// some buckets.
 class CountingSort {
  public:
   static constexpr std::uint32_t kNone = ~0U;
 
-  /// `bucket` holds the bucket of each row, or kNone for rows to be left out. `start` has one
+  /// `bucket` holds the bucket of each row, or kNone for rows that are left out. `start` has one
   /// element more than there are buckets.
   CountingSort(std::span<const std::uint32_t> bucket, std::span<std::uint32_t> start,
                const Execution& execution) noexcept;
 
   /// Counts the rows in each bucket. O(rows * threads + buckets).
   void count() noexcept;
-  /// How many `count` found.
+  /// Returns the number of rows that `count` found in a bucket.
   [[nodiscard]] std::uint32_t size_of(std::size_t bucket) const noexcept { return start_[bucket]; }
 
-  /// Makes of the counts where buckets begin, in `start`; returns how many rows are in buckets.
+  /// Replaces the counts in `start` by the beginnings of the buckets; returns the number of rows in
+  /// all buckets.
   std::uint32_t find_starts() noexcept;
-  /// Writes the rows in their order; room is what `find_starts` says. Once, after it.
+  /// Writes the rows in sorted order. `order` must have room for the number that `find_starts`
+  /// returned. Call once, after `find_starts`.
   void place(std::uint32_t* order) noexcept;
 
  private:
@@ -53,7 +55,7 @@ class CountingSort {
   const Execution& execution_;
   const std::size_t buckets_;
   const std::size_t threads_;
-  std::array<Counts, kMostOwners> counts_;  // of stretches
+  std::array<Counts, kMostOwners> counts_;  // one per range of rows
 };
 
 }  // namespace winnow

@@ -8,11 +8,12 @@
 
 namespace winnow {
 
-/// How far from an end `value_near_end` looks.
+/// Upper bound of the ranks that `value_near_end` accepts.
 inline constexpr std::size_t kMostFromEnd = 64;
 
-/// The value that comes at place `at`, below kMostFromEnd, of all in the order of `before`; there
-/// are more of them. So near an end most values need one comparison, which is foreseen.
+/// Returns the value of rank `at`, below kMostFromEnd, in the order of `before`; there must be more
+/// than `at` values. Near an end, most values take one comparison, which branch prediction guesses
+/// right.
 template <typename Before>
 [[nodiscard]] float value_near_end(std::span<const float> values, std::size_t at,
                                    Before before) noexcept {
@@ -21,13 +22,13 @@ template <typename Before>
   return end[at];
 }
 
-/// From where to where most of some values lie: the middle 96 % of them, and half as much again on
+/// Range of most of some values: from the 2 % to the 98 % quantile, extended by half its length on
 /// either side.
 struct RangeOfMost {
   double low;
   double high;
 
-  /// Of one value or more, fewer than fifty times kMostFromEnd.
+  /// Requires at least one value, and fewer than 50 * kMostFromEnd.
   explicit RangeOfMost(std::span<const float> values) noexcept {
     const std::size_t at = values.size() / 50;
     const double q02 = static_cast<double>(value_near_end(values, at, std::less<>()));

@@ -10,12 +10,12 @@
 
 namespace winnow {
 
-/// Beyond it looking at all rows costs more than another thread saves.
+/// Maximum number of owners: with more, scanning all rows costs more than another thread saves.
 inline constexpr std::size_t kMostOwners = 8;
 
-/// How many threads share the rows of a list whose targets lie anywhere. Each of them looks at all
-/// rows and takes those of its own targets: cores that write among each other's targets wait longer
-/// for cache lines than the looking costs.
+/// Returns the number of threads that share the rows of a list with scattered targets. Each thread
+/// owns some targets, scans all rows, and processes the rows of its targets. Without owners, cores
+/// would write to the same cache lines, whose transfers cost more than the scan.
 [[nodiscard]] inline std::size_t owners_of_rows(std::size_t rows,
                                                 const Execution& execution) noexcept {
   constexpr std::size_t kRowsPerOwner = 8192;
@@ -23,8 +23,8 @@ inline constexpr std::size_t kMostOwners = 8;
                                  std::min(kMostOwners, execution.concurrency()));
 }
 
-/// Calls body(row, target) for the rows whose target is in [first, end), in their order; `owners`
-/// is among how many all targets are divided.
+/// Calls body(row, target) for the rows whose target is in [first, end), in ascending order.
+/// `owners` is the number of threads that all targets are divided among.
 template <typename Body>
 void for_own_rows(std::span<const std::uint32_t> target, std::size_t first, std::size_t end,
                   std::size_t owners, Body&& body) {
@@ -34,7 +34,7 @@ void for_own_rows(std::span<const std::uint32_t> target, std::size_t first, std:
     }
     return;
   }
-  // Whose a row is cannot be foreseen: rows are gathered without a branch.
+  // The owner of a row is unpredictable, so rows are collected without a branch.
   std::array<std::uint32_t, 1024> own;
   for (std::size_t begin = 0; begin < target.size(); begin += own.size()) {
     const std::size_t stop = std::min(target.size(), begin + own.size());
@@ -47,8 +47,8 @@ void for_own_rows(std::span<const std::uint32_t> target, std::size_t first, std:
   }
 }
 
-/// Calls body(row, target) for all rows whose target is below `targets`, in parallel: rows of one
-/// target in their order, by one thread.
+/// Calls body(row, target) in parallel for all rows whose target is below `targets`. One thread
+/// gets all rows of a target, in ascending order.
 template <typename Body>
 void for_rows_by_target(std::span<const std::uint32_t> target, std::size_t targets,
                         const Execution& execution, Body&& body) {

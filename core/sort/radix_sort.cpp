@@ -7,8 +7,8 @@
 namespace winnow {
 namespace {
 
-// Of long digits there are fewer passes, of short ones more ends of buckets in the cache: threads
-// that share a pass wait for each other after it.
+// Long digits need fewer passes; with short digits the ends of all buckets stay in the cache.
+// Threads that share a pass synchronise after it, and so prefer fewer passes.
 constexpr unsigned kMostDigitBits = 11;
 constexpr unsigned kShortDigitBits = 9;
 constexpr std::size_t kMostDigits = std::size_t{1} << kMostDigitBits;
@@ -26,8 +26,8 @@ struct Digit {
   }
 };
 
-// One pass: every chunk counts its digits, starts are summed digit by digit and chunk by chunk, so
-// that chunks scatter to where a serial pass would have put their items.
+// One pass in parallel. Every chunk counts its digits; starts are summed digit by digit and chunk
+// by chunk, so that the chunks scatter items to the same places as a serial pass.
 void pass(const std::uint64_t* from, std::uint64_t* to, std::size_t count, const Digit& digit,
           std::size_t chunks, const Execution& execution) {
   std::array<Histogram, kMaxChunks> start;
@@ -54,7 +54,7 @@ void pass(const std::uint64_t* from, std::uint64_t* to, std::size_t count, const
   });
 }
 
-/// Digits of one length that a key is cut into.
+/// Digits of equal length, at most `most` bits, that a key is divided into.
 struct Digits {
   unsigned passes;
   unsigned length;
@@ -63,7 +63,7 @@ struct Digits {
       : passes((bits + most - 1) / most), length(passes == 0 ? 0 : (bits + passes - 1) / passes) {}
 };
 
-// The passes one after the other on one thread: the digits of all are counted at once.
+// All passes on one thread; the digits of all passes are counted in one scan.
 std::uint64_t* sort_serially(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
                              unsigned bits, unsigned first_bit) {
   constexpr std::size_t kMostPasses = (64 + kShortDigitBits - 1) / kShortDigitBits;

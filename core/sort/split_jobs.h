@@ -7,10 +7,11 @@
 
 namespace winnow {
 
-/// Sorts by cutting a set in two again and again. `split` leaves one side to the job that it is
-/// given and returns the other; `finish` does the rest of a job on one thread; an empty job says
-/// so. Jobs of more than `worth_sharing` are split breadth first until there is enough for all
-/// threads: which jobs these are depends on the set alone, whatever the number of threads.
+/// Sorts a set by dividing it in two again and again, in parallel. `split` keeps one side in the
+/// job that is passed to it and returns the other; `finish` sorts the rest of a job on one thread;
+/// an empty job has size 0. Jobs larger than `worth_sharing` are split breadth first until there
+/// are enough for all threads. The resulting jobs depend only on the set, not on the number of
+/// threads.
 template <typename Job, typename Split, typename Finish>
 void run_split_jobs(const Job& first, std::size_t worth_sharing, const Execution& execution,
                     Split&& split, Finish&& finish) {

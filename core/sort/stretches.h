@@ -7,11 +7,13 @@
 
 namespace winnow {
 
-/// Stretches are as many for each of so many threads, or of a half or a quarter of them.
+/// The number of ranges is a multiple of this if there is more than one: 2, 4 or 8 threads get
+/// equally many.
 inline constexpr std::size_t kStretchShares = 8;
 
-/// The length of stretches of [0, count) that are no longer than `longest`, and where they are more
-/// than one of which two, four or eight threads get as many each. A multiple of 64, or `longest`.
+/// Returns the length of the ranges that [0, count) is divided into: at most `longest`, and such
+/// that 2, 4 or 8 threads get equally many ranges if there is more than one (rounding may leave
+/// fewer ranges if `count` is small). It is a multiple of 64, or `longest`.
 [[nodiscard]] constexpr std::size_t even_stretch(std::size_t count, std::size_t longest) noexcept {
   constexpr std::size_t kUnit = 64;
   if (count <= longest) return longest;
@@ -21,15 +23,15 @@ inline constexpr std::size_t kStretchShares = 8;
   return std::min(longest, (each + kUnit - 1) / kUnit * kUnit);
 }
 
-/// The same where stretches may be longer than `longest`, so that they are no more than `most`,
-/// which is above kStretchShares.
+/// As above, but ranges may exceed `longest` so that there are at most `most` of them; `most` must
+/// be above kStretchShares.
 [[nodiscard]] constexpr std::size_t even_stretch(std::size_t count, std::size_t longest,
                                                  std::size_t most) noexcept {
   return even_stretch(count, std::max(longest, count / (most - kStretchShares) + 1));
 }
 
-/// Cuts [0, count) into stretches of `length`, the last one shorter, and calls body(first, end) for
-/// each, in parallel. Which stretches there are does not depend on the number of threads.
+/// Divides [0, count) into ranges of `length`, the last one shorter, and calls body(first, end) for
+/// each, in parallel. The ranges do not depend on the number of threads.
 template <typename Body>
 void for_stretches(const Execution& execution, std::size_t count, std::size_t length, Body&& body) {
   execution.for_each((count + length - 1) / length, [&](std::size_t stretch) {
@@ -37,7 +39,7 @@ void for_stretches(const Execution& execution, std::size_t count, std::size_t le
   });
 }
 
-/// The same in even stretches.
+/// Calls `for_stretches` with ranges of the length that `even_stretch` returns.
 template <typename Body>
 void for_even_stretches(const Execution& execution, std::size_t count, std::size_t longest,
                         Body&& body) {

@@ -9,7 +9,7 @@ template <typename T>
 using AtomicRef = std::atomic_ref<T>;
 #else
 
-/// What is used of std::atomic_ref, for libraries that have none, which is libc++.
+/// The part of std::atomic_ref that winnow uses, for standard libraries without it (libc++).
 template <typename T>
 class AtomicRef {
  public:

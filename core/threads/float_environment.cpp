@@ -3,10 +3,10 @@
 namespace winnow {
 namespace {
 
-/// What the outermost DefaultEnvironment of this thread gives back; 0 if that changed nothing.
+/// Modes that the outermost DefaultEnvironment of this thread restores; 0 if it changed none.
 thread_local FloatControl host_modes = 0;
 
-// Exceptions that were raised meanwhile stay raised.
+// Only mode bits change: exception flags that were raised in between stay set.
 void add_modes(FloatControl modes) noexcept {
   set_float_control(float_control() | modes);
 }

@@ -10,14 +10,14 @@
 
 namespace winnow {
 
-// The register that says how a thread rounds and whether it flushes denormal numbers. x86 keeps
-// both, with the masks and flags of exceptions, in MXCSR; AArch64 keeps them in FPCR. Elsewhere it
-// stands for the direction of rounding, and WebAssembly has nothing to set.
+// FloatControl is the register with the rounding direction and the flushing of denormals: MXCSR on
+// x86, which also has the masks and flags of exceptions, and FPCR on AArch64. On other systems it
+// is the rounding direction; WebAssembly has no modes.
 
 #if defined(__SSE__) && !defined(__wasm__)
 
 using FloatControl = unsigned;
-/// Denormals are zero, the two bits of the direction, flush to zero.
+/// DAZ, the two bits of the rounding direction, and FTZ.
 inline constexpr FloatControl kFloatModes = 0xE040U;
 inline FloatControl float_control() noexcept {
   return _mm_getcsr();
@@ -29,8 +29,8 @@ inline void set_float_control(FloatControl control) noexcept {
 #elif defined(__aarch64__)
 
 using FloatControl = std::uint64_t;
-/// Flush to zero, the two bits of the direction, and the two bits by which newer processors flush
-/// inputs alone and handle denormal numbers in another way.
+/// FZ, the two bits of the rounding direction, and FIZ and AH of newer processors, which flush only
+/// inputs and change the handling of denormals.
 inline constexpr FloatControl kFloatModes = 0x1C00003U;
 inline FloatControl float_control() noexcept {
   FloatControl control = 0;
@@ -53,7 +53,7 @@ inline void set_float_control(FloatControl) noexcept {}
 #else
 
 using FloatControl = unsigned;
-/// To nearest is 0 wherever C++ has names for the directions.
+/// FE_TONEAREST is 0 on all systems, which the assertion below checks.
 inline constexpr FloatControl kFloatModes = ~0U;
 static_assert(FE_TONEAREST == 0);
 inline FloatControl float_control() noexcept {
@@ -65,10 +65,10 @@ inline void set_float_control(FloatControl control) noexcept {
 
 #endif
 
-/// The floating-point environment that winnow computes in, for one scope: rounds to nearest and
-/// keeps denormal numbers. Every public function that computes opens one, so a host's modes cannot
-/// lose a denormal slack, gap or bound, and answers are the same in all of them. Masks of
-/// exceptions stay the caller's. The code of a scope inside another only reads the register.
+/// The floating-point environment of winnow's computations, for one scope: rounds to nearest and
+/// keeps denormals. Every public function that computes opens one, so that a host's modes cannot
+/// lose a denormal slack, gap or bound, and results are equal in all modes. Masks of exceptions
+/// stay the caller's. A scope inside another only reads the register.
 class DefaultEnvironment {
  public:
   DefaultEnvironment() noexcept : callers_(float_control() & kFloatModes) {
@@ -83,15 +83,15 @@ class DefaultEnvironment {
   DefaultEnvironment& operator=(const DefaultEnvironment&) = delete;
 
  private:
-  // Calls, so that no arithmetic moves across them.
+  // Not inline, so that no arithmetic moves across the change of modes.
   static void enter(FloatControl modes) noexcept;
   static void leave(FloatControl modes) noexcept;
 
   const FloatControl callers_;
 };
 
-/// Inside a DefaultEnvironment, the modes of the thread's own code for one scope, in which the host
-/// may run what is not winnow's.
+/// Restores the thread's own modes inside a DefaultEnvironment, for a scope in which code of the
+/// host may run.
 class HostEnvironment {
  public:
   HostEnvironment() noexcept;

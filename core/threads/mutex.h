@@ -4,9 +4,9 @@
 
 namespace winnow {
 
-#ifdef _LIBCPP_HAS_NO_THREADS  // <mutex> says so
+#ifdef _LIBCPP_HAS_NO_THREADS  // defined by <mutex>
 
-/// Where a program has one thread there is nobody to wait for.
+/// Does nothing: the program has only one thread.
 struct Mutex {};
 
 class Lock {
@@ -31,9 +31,9 @@ class Lock : public std::unique_lock<Mutex> {
  public:
   Lock() noexcept = default;
   explicit Lock(Mutex& mutex) : std::unique_lock<Mutex>(mutex) {}
-  /// Holds it from `lock` on.
+  /// Does not lock until `lock` is called.
   [[nodiscard]] static Lock deferred(Mutex& mutex) noexcept { return {mutex, std::defer_lock}; }
-  /// Holds it if nobody else does.
+  /// Locks if the mutex is free; `owns_lock` returns the result.
   [[nodiscard]] static Lock if_free(Mutex& mutex) { return {mutex, std::try_to_lock}; }
 
  private:

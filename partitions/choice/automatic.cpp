@@ -1,4 +1,6 @@
-// The automatic choice of a structure.
+// The automatic choice of a structure (AutoPartition). PartitionState calls choose() and
+// refreshed() in every refresh; the costs come from predicted_costs.h, the sample of the scene from
+// sample_scene.h.
 
 #include "partitions/choice/chooser.h"
 #include "partitions/choice/predicted_costs.h"
@@ -15,41 +17,43 @@
 namespace winnow {
 namespace {
 
-// A structure that is only this much cheaper, or less, is no better: the prediction is not that
-// good.
+// Factor by which a predicted cost must be lower to count as cheaper: predictions are no more
+// accurate than this.
 constexpr double kWorthwhile = 0.85;
-// Frames like the first that the first choice is made for.
+// The first choice minimizes the cost of the build plus this many frames.
 constexpr double kFramesAhead = 16.0;
-// A sample is taken anew once each object has moved this often.
+// The sample is renewed after this many moves per object.
 constexpr std::size_t kMovesToLook = 32;
-// A frame is quiet where fewer than one object in so many moved: then it is thought about in one
-// frame of so many.
+// If fewer than one object in kQuiet moved, costs are predicted only every kQuietFrames frames.
 constexpr std::size_t kQuiet = 256;
 constexpr std::size_t kQuietFrames = 16;
-// Of so few objects a frame takes little longer than thinking about it: that is done in one of so
-// many.
+// With at most kFew objects a frame takes little longer than predicting costs, so they are
+// predicted only every kFewFrames frames.
 constexpr std::size_t kFew = 192;
 constexpr std::size_t kFewFrames = 8;
-// Refreshes that pass before memory that was refused is asked for again.
+// Refreshes without a choice after a memory allocation failed.
 constexpr std::size_t kPatience = 64;
-// Objects up to which brute force cannot lose by more than thinking about it costs.
+// Up to this many objects brute force cannot lose by more than a prediction costs.
 constexpr std::size_t kTooFew = 32;
-// How often a structure is counted to have been left: past that its price is out of reach.
+// Limit of the count of times a structure was left. At this count its price is out of reach.
 constexpr std::uint8_t kMostOften = 32;
-// A first change of mind to a structure that is clearly cheaper need only have saved an eighth of
-// its price: a scene that goes on like its last frames for eight times as long is the rule. Each
-// further one needs twice as much.
+// The first change to a structure that is clearly cheaper is made once it would have saved 1 /
+// 2^kTrust of its price, because most scenes go on like their last frames for at least eight times
+// as long. Each further change needs twice the share.
 constexpr std::uint64_t kTrust = 3;
 constexpr double kClearly = 0.75;
-// The share of refreshes in which trees, and cells, are built that the constants of the costs hold
-// for, and about how many refreshes it is known from. That of the others is forgotten more slowly.
+// The shares of refreshes that build, for trees and for cells, included in the constants of
+// StructureCosts. Then the weights of exponential moving averages: kRecent for the kind of
+// structure in use (about the last 16 refreshes), kForgotten for the decay of the other kind,
+// kNewest for new objects.
 constexpr std::array<double, 2> kUsualBuilds{0.1, 0.25};
 constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
 constexpr double kNewest = 1.0 / 4.0;
-// What the first memory of another structure costs, in nanoseconds.
+// Nanoseconds to allocate the first memory of another structure.
 constexpr double kExchange = 3'000.0;
-// Wear up to this share of a frame's cost is usual. A test of 16 volumes takes so many nanoseconds.
+// kUsualWear is the share of a frame's cost by which wear is usual; kTest is the nanoseconds of a
+// test of 16 volumes.
 constexpr double kUsualWear = 0.15;
 constexpr double kTest = 8.0;
 
@@ -65,25 +69,25 @@ bool far_apart(std::size_t a, std::size_t b) noexcept {
   return a > 2 * b + 64 || b > 2 * a + 64;
 }
 
-/// Picks a structure for the scene it is given and goes on picking. At a refresh it may have the
-/// partition exchange its structure, which costs one build and which no caller can see but by the
-/// time taken; results in canonical order are the same.
+/// Chooses a structure for the rows and revises the choice at each refresh. A change costs one
+/// build. Results in canonical order do not depend on it.
 ///
-/// What each structure would have cost is predicted in every frame from what the frame did (objects
-/// moved, pairs, rays, regions and nearest objects asked for) and from a sample of the scene (see
-/// SceneFeatures and PredictedCosts), which is taken anew only after much has moved. The first
-/// choice is the cheapest prediction. Later ones are a ski rental: another structure is taken once
-/// what it would have saved exceeds what its build costs (an eighth, a quarter and a half of that
-/// for the first three changes, where it is clearly cheaper), and each structure that was left
-/// before must save twice as much to come back, so that a scene that alternates does not. Cells, or
-/// trees, that were seen to be built often, because objects are fast or many come, count as that
-/// much dearer; where an update scatters all objects every structure has to be built, and changing
-/// is free. All decisions follow counts and samples, never time: they are the same on every
-/// machine, instruction set and number of threads.
+/// Each frame predicts the cost of every structure from the frame's work (objects moved, pairs,
+/// rays, regions, nearest queries) and from a sample of the scene (SceneFeatures, PredictedCosts).
+/// The sample is renewed only after much has moved. The first choice is the cheapest prediction.
+/// Later choices are a ski rental: another structure is chosen once the savings it would have made
+/// exceed the cost of its build. For the first three changes an eighth, a quarter and a half of
+/// that cost suffice if the structure is clearly cheaper. A structure that was left before must
+/// save twice as much for each time it was left, so that a scene that alternates between two states
+/// does not alternate between two structures. If cells or trees were seen to be built often,
+/// because objects are fast or many are inserted, the cost of these builds is added. If an update
+/// scatters all objects, every structure has to be built and a change is free. All decisions follow
+/// counts and samples, never time: they are the same on every machine, instruction set and number
+/// of threads.
 ///
-/// It changes only where something changed since the last refresh. A world that is built once and
-/// only asked from then on keeps its first choice; volumes other than boxes stay with the structure
-/// that it begins with.
+/// The choice changes only in refreshes that follow a change of the rows. A scene that is built
+/// once and then only queried keeps its first choice. Partitions of volumes other than boxes keep
+/// first().
 class AutomaticChoice final : public Chooser {
  public:
   [[nodiscard]] StructureKind first() const noexcept override { return linear_bvh(); }
@@ -127,8 +131,8 @@ class AutomaticChoice final : public Chooser {
   void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
 
  private:
-  /// True where hardly anything moved, or hardly anything is there, and it was thought about not
-  /// long ago: thinking would cost more than the frame.
+  /// True if few objects moved, or there are few, and costs were predicted recently: a prediction
+  /// would cost more than the frame.
   [[nodiscard]] bool is_quiet(const Rows& rows) const noexcept {
     if (!chosen_ || rows.size() != objects_before_) return false;
     return (frames_ < kQuietFrames && kQuiet * changed_ < rows.size()) ||
@@ -141,35 +145,36 @@ class AutomaticChoice final : public Chooser {
   void note_new_objects(const Wear& wear) noexcept;
   void note_wear(const Wear& wear, bool scattered) noexcept;
   void note_change() noexcept;
-  /// With builds and wear beyond the usual.
+  /// Nanoseconds per frame, including builds and wear beyond the usual.
   [[nodiscard]] double cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept;
 
-  StructureKind before_;  // of this refresh: what was there, and what is chosen
+  StructureKind before_;  // the structure before this refresh, and the chosen one
   StructureKind wanted_;
   SceneFeatures features_;
-  // By candidate: what it would have saved, not yet spent, and how often it was left.
+  // By candidate: savings not yet spent, and how often the structure was left.
   PredictedCosts::List saved_{};
   std::array<std::uint8_t, kMostCandidates> left_{};
-  // About how many refreshes there are in which an update scattered all.
+  // Moving average: share of refreshes in which an update scattered all objects.
   double scattered_share_ = 0.0;
-  // Of the others, with trees and with cells: about how many built them, and what queries took
-  // longer than on fresh ones, in nanoseconds per object.
+  // Moving averages over the other refreshes, for trees and for cells: the share that built, and
+  // nanoseconds per object by which queries took longer than on a fresh structure.
   std::array<double, 2> build_share_{0.0, 0.1};
   std::array<double, 2> worn_{};
-  double build_share_of_new_ = 0.0;  // about how many build because so many are new
-  std::uint64_t builds_seen_ = 0;    // by the structure that is there
+  double build_share_of_new_ = 0.0;  // moving average: share that builds because of new objects
+  std::uint64_t builds_seen_ = 0;    // builds of the current structure
   std::uint64_t excess_seen_ = 0;
-  std::size_t held_ = 0;  // refreshes by it, up to a limit
+  std::size_t held_ = 0;  // refreshes with the current structure, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
   std::uint64_t changes_ = 0;
-  std::size_t objects_seen_ = 0;    // when the sample was taken
+  std::size_t objects_seen_ = 0;    // at the last sample
   std::size_t unseen_ = 0;          // changes since the last sample
-  std::size_t pairs_seen_ = 0;      // pairs when the sample was taken
-  std::size_t objects_before_ = 0;  // at the last look
-  std::size_t frames_ = 0;          // refreshes since then, this one included
-  std::size_t waiting_ = 0;         // refreshes to wait after memory was refused
+  std::size_t pairs_seen_ = 0;      // at the last sample
+  std::size_t objects_before_ = 0;  // at the last prediction
+  std::size_t frames_ = 0;          // refreshes since then, including this one
+  std::size_t waiting_ = 0;         // refreshes without a choice that are left after a failed
+                                    // allocation
   bool chosen_ = false;
-  bool build_due_ = false;  // in the last refresh, whatever was chosen
+  bool build_due_ = false;  // in the last refresh, for every structure
 };
 
 std::size_t number_of(StructureKind kind) noexcept {
@@ -206,7 +211,7 @@ void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
   }
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   if (pairs_seen_ == 0) pairs_seen_ = pairs;
-  // Where most objects came or went a build is due whatever is chosen.
+  // If most objects were inserted or removed, every structure needs a build.
   const bool other_scene = !chosen_ || live > 2 * before || 2 * live < before;
   if (other_scene || far_apart(live, objects_seen_) || far_apart(pairs, pairs_seen_) ||
       unseen_ / kMovesToLook > live) {
@@ -222,13 +227,14 @@ void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
   if (chosen_ && wanted_ == before_) consider(frame, wear, scattered);
 }
 
-// As if everything moved and all pairs were wanted, unless something else was asked for.
+// The first prediction assumes that everything moves. It assumes a query for all pairs if there
+// were no other queries.
 void AutomaticChoice::guess(FrameWork frame) noexcept {
   frame.changed = features_.objects;
   if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
   const PredictedCosts costs(features_, frame,
                              features_.pairs * static_cast<double>(features_.objects));
-  // The costs are known of more objects.
+  // The cost constants were fitted to scenes with more objects than kTooFew.
   const std::size_t best =
       features_.objects <= kTooFew ? number_of_brute_force() : costs.cheapest(kFramesAhead);
   if (left_[best] != 0) return;
@@ -237,8 +243,8 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
                                     : "the least cost expected from a sample of the scene";
 }
 
-// What comes stands behind the rows in order until there are so many that a build is due. The first
-// objects of a scene are part of its first build.
+// New objects are appended behind the sorted rows until a build is due. The first objects of a
+// scene are part of its first build and do not count.
 void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
   const std::size_t came = std::exchange(new_, 0);
   if (!chosen_) return;
@@ -248,8 +254,9 @@ void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
   build_share_of_new_ += std::min(1.0, kNewest * frames) * (share - build_share_of_new_);
 }
 
-// Where objects are fast, cells and strips are built in every frame, and trees wear and are built,
-// which nothing that is known of the scene tells beforehand. Brute force tells nothing of either.
+// Measures how often structures are built and how much they wear. Neither can be predicted from the
+// sample: if objects are fast, cells and strips are built in every frame, and trees wear and are
+// built. Brute force never builds, so it measures neither.
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::size_t own = has_cells(before_) ? 1 : 0;
   const bool tells = !is_brute_force(before_);
@@ -259,7 +266,8 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::uint64_t excess = wear.excess - (built != 0 ? 0 : std::min(excess_seen_, wear.excess));
   const double worn =
       kTest * static_cast<double>(excess) / (frames * static_cast<double>(features_.objects));
-  // The first frames of a structure tell more than later ones, but one build is no habit.
+  // The first frames of a structure weigh more than later ones, but a single build must not
+  // dominate.
   const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
   for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
@@ -280,7 +288,7 @@ double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candida
   const std::size_t kind = has_cells(candidates()[candidate]) ? 1 : 0;
   const double fresh = costs.of(candidate);
   const double worn = worn_[kind] * static_cast<double>(features_.objects);
-  // What makes trees be built makes objects leave cells.
+  // Motion that makes trees be built also makes objects leave their cells.
   const double builds = std::max({build_share_[kind], build_share_[0], build_share_of_new_});
   const double coherent = fresh +
                           std::max(0.0, builds - kUsualBuilds[kind]) * costs.build_of(candidate) +
@@ -288,7 +296,8 @@ double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candida
   return coherent + scattered_share_ * (costs.scattered_of(candidate) - coherent);
 }
 
-// What each structure would have saved is summed up until it pays for a part of the build.
+// Adds each structure's savings of this frame, and chooses the structure whose savings exceed its
+// price the most.
 void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept {
   const std::size_t pairs = pairs_.load(std::memory_order_relaxed);
   const PredictedCosts costs(features_, frame, static_cast<double>(pairs));
@@ -316,7 +325,7 @@ void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool sc
                                   : "cheaper for what moves and for its pairs";
 }
 
-// What has been paid for is spent.
+// A change resets all savings.
 void AutomaticChoice::note_change() noexcept {
   saved_ = {};
   if (!chosen_) return;

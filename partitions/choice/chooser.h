@@ -11,8 +11,8 @@
 
 namespace winnow {
 
-/// Counts questions since the last look. Up to a limit, past which the line is only read, so that
-/// threads which ask at once do not wait for each other.
+/// Counts queries since the last take(), up to a limit. Past the limit the counter is only read, so
+/// that concurrent queries do not contend for its cache line.
 class QueryCounter {
  public:
   void add(std::size_t count) noexcept {
@@ -31,52 +31,54 @@ class QueryCounter {
   std::atomic<std::size_t> count_{0};
 };
 
-/// What was asked of a partition.
+/// Kinds of queries that a chooser counts.
 enum class QueryKind : std::uint8_t { pairs, all_pairs, casts, regions, nearest };
 inline constexpr std::size_t kQueryKinds = 5;
 
-/// What goes on choosing a partition's structure, and what it is told of the partition's work.
+/// Interface of a partition's automatic choice of structure: it is notified of the partition's work
+/// and returns the structure for each refresh. PartitionState owns it; AutomaticChoice
+/// (automatic.cpp) implements it.
 class Chooser {
  public:
   Chooser() = default;
   Chooser(const Chooser&) = delete;
   Chooser& operator=(const Chooser&) = delete;
 
-  /// A structure to begin with.
+  /// The structure that a new partition begins with.
   [[nodiscard]] virtual StructureKind first() const noexcept = 0;
-  /// Those that it may choose.
+  /// All structures that choose() may return.
   [[nodiscard]] virtual std::span<const StructureKind> range() const noexcept = 0;
-  /// What a structure that is in use has been through.
+  /// State of the structure in use.
   struct Wear {
     std::uint64_t builds = 0;
-    /// Tests of 16 volumes that queries took since the last one, beyond those on a fresh structure.
+    /// Tests of 16 volumes in queries since the last build, compared with a fresh structure.
     std::uint64_t excess = 0;
-    /// New objects that a build is due at.
+    /// Number of new objects that makes a build due.
     std::size_t most_new = 1;
   };
-  /// The structure to refresh with; it holds `now`.
+  /// Returns the structure for this refresh; the rows are held by `now`.
   [[nodiscard]] virtual StructureKind choose(const Rows& rows, StructureKind now,
                                              const Wear& wear) noexcept = 0;
-  /// Ends a refresh that succeeded, with what was chosen or, if that did not get its memory, with
-  /// what was there before.
+  /// Ends a refresh that succeeded. `now` is the structure in use: the chosen one, or the previous
+  /// one if the memory of the chosen one could not be allocated.
   virtual void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept = 0;
-  /// Memory for what was chosen was refused.
+  /// The memory of the chosen structure could not be allocated.
   virtual void refused() noexcept = 0;
-  /// All objects are gone.
+  /// All objects were removed.
   virtual void clear() noexcept = 0;
   virtual void report(StructureChoice& choice) const noexcept = 0;
 
-  /// Its sizeof.
+  /// The size of the implementation in bytes.
   [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
   virtual void end(std::pmr::memory_resource* memory) noexcept = 0;
 
   void note_changes(std::size_t count) noexcept { changed_ += count; }
-  /// Of the changes, objects that were inserted.
+  /// Counts inserted objects, which are also counted as changes.
   void note_new(std::size_t count) noexcept { new_ += count; }
   void note(QueryKind kind, std::size_t count) noexcept {
     asked_[static_cast<std::size_t>(kind)].add(count);
   }
-  /// Of a query for all pairs that says something about the scene.
+  /// Stores the number of pairs that the last query for all pairs found.
   void note_pairs(std::size_t pairs) noexcept { pairs_.store(pairs, std::memory_order_relaxed); }
 
  protected:
@@ -86,9 +88,9 @@ class Chooser {
     return asked_[static_cast<std::size_t>(kind)].take();
   }
 
-  std::size_t changed_ = 0;            // objects since the last refresh
-  std::size_t new_ = 0;                // objects since it was last read
-  std::atomic<std::size_t> pairs_{0};  // in the last frame that asked for all
+  std::size_t changed_ = 0;            // objects changed since the last refresh
+  std::size_t new_ = 0;                // objects inserted since the last read of this count
+  std::atomic<std::size_t> pairs_{0};  // result of the last query for all pairs
 
  private:
   QueryCounter asked_[kQueryKinds];

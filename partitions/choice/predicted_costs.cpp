@@ -1,3 +1,5 @@
+// Adds up StructureCosts (structures/costs.h) for each candidate; see predicted_costs.h.
+
 #include "partitions/choice/predicted_costs.h"
 
 #include "partitions/structures/structure.h"
@@ -8,7 +10,7 @@
 namespace winnow {
 namespace {
 
-constexpr double kNearest = 4.0;  // times what a ray or box costs
+constexpr double kNearest = 4.0;  // cost of a nearest query in rays or boxes
 
 struct Candidates {
   std::array<StructureKind, kMostCandidates> kinds;
@@ -41,7 +43,7 @@ std::array<CostTerm, kFrameTerms> frame_terms(const SceneFeatures& scene, const 
   using Costs = StructureCosts;
   const auto n = static_cast<double>(scene.objects);
   const double changed = changed_of(scene, frame);
-  // Past a quarter of the objects no single changes are followed.
+  // If more than a quarter of the objects changed, pairs are found for all objects again.
   const bool much = 4.0 * changed > n;
   const auto queries = static_cast<double>(frame.pair_queries);
   const double full = much ? queries : static_cast<double>(frame.full_queries);

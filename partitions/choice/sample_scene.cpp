@@ -11,14 +11,14 @@
 namespace winnow {
 namespace {
 
-// At most this many rows are looked at, and of small scenes one in eight, but no fewer than 64.
+// The sample has one row in eight, but at least 64 and at most kMost.
 constexpr std::size_t kMost = 512;
 constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
-constexpr double kMostPairs = 16.0;  // per object: past that the estimate is mostly wrong
+constexpr double kMostPairs = 16.0;  // per object; larger estimates are mostly wrong
 
-// Exact at powers of two, straight between them: within 0.09 of log2, and unlike that the same on
-// every machine.
+// Exact at powers of two and linear between them: within 0.09 of log2, but identical on every
+// machine.
 double rough_log2(double value) noexcept {
   int exponent = 0;
   const double part = std::frexp(value, &exponent);
@@ -48,7 +48,7 @@ struct Sample {
     }
   }
 
-  // The value that a share of all lies below, which is a small one, or that a small one lies above.
+  // The value below which `share` of the sample lies. Fast only near either end.
   [[nodiscard]] double quantile(const std::array<float, kMost>& values,
                                 double share) const noexcept {
     const auto at = static_cast<std::size_t>(share * static_cast<double>(count - 1));
@@ -70,12 +70,12 @@ struct Sample {
   }
 };
 
-/// An axis divided evenly where objects have room on it.
+/// An axis divided evenly into cells.
 struct Axis {
   double from = 0.0;
   double range = 0.0;
   std::size_t cells = 1;
-  double cells_of_length = 0.0;  // one
+  double cells_of_length = 0.0;  // number of cells per unit of length
 
   void divide(std::size_t count) noexcept {
     cells = count;
@@ -83,12 +83,12 @@ struct Axis {
   }
   [[nodiscard]] std::size_t cell_of(float low) const noexcept {
     const double at = (static_cast<double>(low) - from) * cells_of_length;
-    // Written so that NaN, of an axis without end, becomes the first.
+    // The comparison sends NaN, from an axis of infinite range, to the first cell.
     return at > 0.0 ? static_cast<std::size_t>(std::min(at, static_cast<double>(cells - 1))) : 0;
   }
 };
 
-// 64 cells over the axes that have room: 4 x 4 x 4, 8 x 8 or 64 in a row.
+// Divides the axes that have room into 64 cells: 4 x 4 x 4, 8 x 8 or 64 in a row.
 void divide(std::array<Axis, 3>& axes, const std::array<double, 3>& room) noexcept {
   constexpr std::array<std::size_t, 4> kEach{1, 64, 8, 4};
   const auto roomy = [](double r) { return r > 4.0; };
@@ -127,7 +127,7 @@ SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
     axes[a].range = sample.quantile(sample.low[a], 0.98) - axes[a].from;
     const double edge = sample.mean_edge(a);
     features.room[a] = std::min(axes[a].range / std::max(edge, 1e-30), 1e12);
-    // Two objects meet on this axis where their lower ends are less than an edge apart.
+    // Two objects overlap on this axis if their lower bounds are less than an edge apart.
     pairs_of_one *= std::min(1.0, 2.0 / std::max(features.room[a], 1e-12));
   }
   const double small = std::max(sample.quantile(sample.longest, 0.05), 1e-30);

@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// Looks at a sample of the boxes of `live` objects. O(1) whatever the scene's size.
+/// Computes features from a sample of the boxes of `live` objects. O(1).
 [[nodiscard]] SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept;
 
 }  // namespace winnow

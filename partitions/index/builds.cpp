@@ -1,4 +1,6 @@
-// When rows are put in order anew, and how: at once, or as it was planned ahead.
+// SpatialIndex: decides when the rows are reordered, and reorders them at once or by a plan that
+// was made ahead over several refreshes. refresh() in spatial_index.cpp calls it; OrderPlan
+// computes the order.
 
 #include "partitions/index/spatial_index.h"
 
@@ -14,21 +16,22 @@
 namespace winnow {
 namespace {
 
-// A build at once, however much there is to do.
+// Work for a build that is completed at once.
 constexpr std::size_t kWholeBuild = std::numeric_limits<std::size_t>::max();
-// Of fewer rows a build is short enough.
+// With fewer rows a build is short enough to be done at once.
 constexpr std::size_t kWorthPlanning = 1024;
-// A plan begins so many refreshes earlier than it takes: the last one takes the order, and what is
-// foreseen comes sooner where objects fall.
+// A plan starts this many refreshes early: one refresh takes the order, and the forecast is late if
+// objects accelerate.
 constexpr std::size_t kSpareRefreshes = 2;
-// A plan waits where a refresh brings so many times fewer changes than the one that began it, in so
-// many refreshes in a row at most: where little moves for good, it has to go on.
+// A plan pauses while refreshes have kLull times fewer changes than the refresh that started it,
+// for at most kLongestLull refreshes in a row: if the motion has ended for good, the plan must
+// continue.
 constexpr std::size_t kLull = 4;
 constexpr std::size_t kLongestLull = 8;
-// A build is expected where the tail will have grown to this share of what makes it due.
+// A build is expected if the tail will have grown to this share of its limit.
 constexpr float kNearlyDue = 0.35F;
 
-// The mean edge of the box around 16 rows that follow each other: that in the middle of a sample.
+// Median, over a sample of blocks, of the mean edge of the box around a block.
 float edge_of_block(const BoundsPool& pool) noexcept {
   constexpr std::size_t kSample = 31;
   std::array<float, kSample> edge;
@@ -64,8 +67,8 @@ std::uint64_t SpatialIndex::most_wear() const noexcept {
   return structure_->build_price() * (rows_.size() + 64);
 }
 
-// Rows of many environments are in no order that keeps them apart: in cells, new, or moved from one
-// environment to another.
+// True if the rows of different environments are not kept apart: they are in cells, new, or were
+// moved from one environment to another.
 bool SpatialIndex::wants_grouping() const noexcept {
   const RowRegions& regions = rows_.regions();
   const std::size_t changed = rows_.filters().changed_environments();
@@ -73,7 +76,7 @@ bool SpatialIndex::wants_grouping() const noexcept {
   return rows_.pool().rows() - regions.sorted + changed > tail_limit();
 }
 
-// Plans an order, or does what is left of a plan, and takes it.
+// Starts a plan or continues it, runs it to the end and takes its order.
 Status SpatialIndex::build() {
   const StageScope stage(WorkStage::build);
   if (structure_->is_flat()) return build_flat();
@@ -94,8 +97,8 @@ bool SpatialIndex::start_plan(Structure& structure) noexcept {
   return plan_.start(rows_, structure, spare_rows(structure), wanted_parts(structure));
 }
 
-// Where rays and regions are asked for, in many refreshes or before anything else, they are worth
-// an order that takes longer to find. One that is torn at once is not worth much.
+// Many refreshes for rays and regions, or some before the first build, justify an order that takes
+// longer to compute. An order that lasts only two refreshes does not.
 KdParts SpatialIndex::wanted_parts(const Structure& structure) const noexcept {
   constexpr std::size_t kOften = 4;
   constexpr std::size_t kTorn = 2;
@@ -105,7 +108,7 @@ KdParts SpatialIndex::wanted_parts(const Structure& structure) const noexcept {
   return departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
 }
 
-// The rows are untouched until everything that can fail is done.
+// The rows are not changed before all steps that can fail have succeeded.
 Status SpatialIndex::take_order(bool moved) {
   RowRegions& regions = rows_.regions();
   regions.built = false;
@@ -186,8 +189,8 @@ bool SpatialIndex::plans_ahead() const noexcept {
          !rows_.filters().has_environments();
 }
 
-// Rows that a refresh may plan for. The longer orders last, the more refreshes share a plan: its
-// order is to be fresh when it is taken.
+// Returns the number of rows that a refresh plans. The longer orders last, the more refreshes share
+// a plan; they are limited so that the order is not out of date when it is taken.
 std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
   if (build_budget_ != 0) return build_budget_;
   const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
@@ -200,7 +203,7 @@ std::size_t SpatialIndex::changed() const noexcept {
   return rows_.stale().all() ? rows_.size() : rows_.stale().ids().size();
 }
 
-// A few objects that move are not to pay for what all wore out.
+// If few objects move now, their refreshes should not pay for the wear of earlier motion.
 void SpatialIndex::note_lull() noexcept {
   const bool quiet = plan_.underway() && build_budget_ == 0 && kLull * changed() < changed_at_plan_;
   lull_ = quiet ? lull_ + 1 : 0;
@@ -218,12 +221,13 @@ void SpatialIndex::go_on_planning() noexcept {
   give_up_plan();
 }
 
-// True if a build is to be expected in as many refreshes as planning it takes.
+// True if a build is expected in as many refreshes as a plan takes.
 bool SpatialIndex::build_is_near() const noexcept {
   if (!plans_ahead() || unforeseen_ != 0) return false;
   const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
   const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
-  // What builds so often is not saved anything: each order would be worn when it is taken.
+  // If builds are that frequent, planning saves nothing: each order would be out of date when it is
+  // taken.
   const bool at_once = planning_work(*structure_) >= whole;
   if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
   const std::uint64_t grown = tail_growth_.in(ahead);

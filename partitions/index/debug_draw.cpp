@@ -1,4 +1,4 @@
-// SpatialIndex: what it looks like.
+// SpatialIndex: debug drawing of trees, structures and objects.
 
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/debug_colours.h>
@@ -12,18 +12,18 @@
 namespace winnow {
 namespace {
 
-// Levels from the root down, so that a picture can be cut off at a depth.
+// Draws levels from the root down, so that `max_depth` cuts off the lower ones.
 void draw_tree(DebugDraw& draw, const TreeShape& tree, std::size_t max_depth) {
   for (std::size_t depth = 0; depth < std::min<std::size_t>(tree.levels, max_depth); ++depth) {
     const std::size_t level = tree.levels - 1 - depth;
     for (std::size_t node = 0; node < tree.count[level]; ++node) {
       const Aabb box = stored_box(tree.node[level], node);
-      if (box.is_valid()) draw.box(box, node_colour(depth));  // else it holds only holes
+      if (box.is_valid()) draw.box(box, node_colour(depth));  // otherwise it has only holes
     }
   }
 }
 
-// The middle of what is bounded: on an axis without ends zero, with one the end.
+// The middle of a bounded axis; the finite end of a half-bounded axis; 0 on an unbounded axis.
 Vec3f label_place(const Aabb& box) noexcept {
   Vec3f place;
   for (int axis = 0; axis < 3; ++axis) {

@@ -11,22 +11,23 @@
 
 namespace winnow {
 
-/// Tells, from a sample of the objects in regular rows, how many will leave the places where a
-/// build put them within the next refreshes, if all go on as they did since then.
+/// Predicts, from a sample of the objects in regular rows, how many objects will leave their places
+/// within the next refreshes if they keep their mean velocity since the build.
 class Departures {
  public:
   explicit Departures(std::pmr::memory_resource* memory) noexcept : seen_(memory) {}
 
-  /// Room for a sample of so many regular rows. False if memory is refused.
+  /// Makes room for a sample of `regular` regular rows. Returns false if an allocation fails.
   [[nodiscard]] bool reserve(std::size_t regular) noexcept {
     return regular < kSample || seen_.reserve(kSample);
   }
-  /// Notes where a sample of the regular rows' objects is. Room was made. O(1).
+  /// Stores the positions of a sample of the regular rows. Room must have been reserved. O(1).
   void begin(const Rows& rows) noexcept;
-  /// Objects have moved once more.
+  /// Counts a refresh after which objects have moved.
   void note_refresh() noexcept { ++refreshes_; }
   [[nodiscard]] std::size_t refreshes() const noexcept { return refreshes_; }
-  /// The expected share of those still there that will have left in so many refreshes. O(1).
+  /// Returns the expected share of the sampled objects still in regular rows that will have left
+  /// after `ahead` refreshes. O(1).
   [[nodiscard]] float share(const Rows& rows, const Structure& structure,
                             std::size_t ahead) const noexcept;
   void release() noexcept { seen_.release(); }
@@ -43,10 +44,10 @@ class Departures {
   std::size_t refreshes_ = 0;
 };
 
-/// A count that grows from refresh to refresh, ever faster it may be.
+/// Extrapolates a count that grows from refresh to refresh, at a constant or growing rate.
 class Growth {
  public:
-  /// The next count is the first of its kind.
+  /// Restarts: the next count is the first.
   void begin() noexcept { last_ = step_ = faster_ = 0; }
   void note(std::uint64_t count) noexcept {
     const std::uint64_t step = count > last_ ? count - last_ : 0;
@@ -54,7 +55,7 @@ class Growth {
     step_ = last_ != 0 ? step : 0;
     last_ = count;
   }
-  /// What it is expected to be in so many refreshes.
+  /// Returns the expected count after `refreshes` more refreshes.
   [[nodiscard]] std::uint64_t in(std::size_t refreshes) const noexcept {
     return last_ + step_ * refreshes + faster_ * refreshes * (refreshes + 1) / 2;
   }
@@ -62,7 +63,7 @@ class Growth {
  private:
   std::uint64_t last_ = 0;
   std::uint64_t step_ = 0;
-  std::uint64_t faster_ = 0;  // than the step before
+  std::uint64_t faster_ = 0;  // increase of the step
 };
 
 }  // namespace winnow

@@ -1,5 +1,4 @@
-// Which structure finds the rows, which one is to be next, and those that wait with memory of their
-// own.
+// SpatialIndex: replaces the structure, and keeps structures with reserved memory for later use.
 
 #include "partitions/index/spatial_index.h"
 
@@ -18,7 +17,7 @@ void SpatialIndex::end(const Held& one) noexcept {
   if (one.structure != nullptr) one.kind.info()->end(one.structure, memory_);
 }
 
-// With what was reserved for it, it may be taken again.
+// Keeps a structure with its reserved memory for later use, or ends it.
 void SpatialIndex::put_by(const Held& one) noexcept {
   if (one.structure == nullptr) return;
   if (!reserved_ || !let_wait(one)) end(one);
@@ -58,7 +57,7 @@ Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
   if (refused) return refresh();
   if (plans_ahead() && !structure_->is_flat() && !made->is_flat() && !needs_build()) {
     give_up_plan();
-    // What the present structure had planned with is of no use to the next.
+    // The scratch of the current structure's plan is of no use to the next structure.
     if (!reserved_) plan_.release();
     if (start_plan(*made)) {
       next_ = {kind, made};
@@ -85,7 +84,7 @@ void SpatialIndex::take_next_structure() noexcept {
   if (!structure_->prunes_rows() && !reserved_) regular_tree_.release();
 }
 
-// Memory that is there before it is needed.
+// Reservation of memory.
 
 bool SpatialIndex::reserve(std::size_t objects, Pages pages,
                            std::span<const StructureKind> later) noexcept {
@@ -116,7 +115,7 @@ bool SpatialIndex::reserve(std::size_t objects, Pages pages,
   return reserved_;
 }
 
-// Room for so many rows in order, and for those that are to be left behind them.
+// Makes room for `rows` rows in order and for `behind` rows in the tail.
 bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
   return rows_.reserve_rows(rows + behind) &&
          spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
@@ -124,7 +123,7 @@ bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pag
          departures_.reserve(rows);
 }
 
-// In a place that was left, or a new one. False if memory is refused.
+// Stores the structure in a free entry or a new one. Returns false if an allocation fails.
 bool SpatialIndex::let_wait(const Held& one) noexcept {
   Held* const place = std::ranges::find(waiting_, nullptr, &Held::structure);
   if (place == waiting_.end()) return waiting_.push_back(one);

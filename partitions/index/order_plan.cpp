@@ -1,3 +1,7 @@
+// Runs the stages of a plan: the structure orders its regular rows (Structure::plan), then the
+// remaining rows are ordered for the tree, by the structure (order_rest), by environment
+// (tree/environment_order.h) or by k-d cuts (tree/kd_order.h). SpatialIndex calls it (builds.cpp).
+
 #include "partitions/index/order_plan.h"
 
 #include "partitions/tree/environment_order.h"
@@ -8,9 +12,9 @@
 namespace winnow {
 namespace {
 
-// Entries that an order may have beyond the rows.
+// Entries of an order beyond the number of rows.
 constexpr std::size_t kSlack = 4 * kBlockRows;
-// So many cuts of a row take as long as looking at it once.
+// This many cuts of a row take as long as one visit of the row.
 constexpr std::size_t kCutsPerRow = 2;
 constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
 
@@ -38,8 +42,8 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   resumed_ = false;
   parts_ = parts;
   rows.regions().planned = planned_rows_;
-  // Cells of many worlds would lie on top of each other, and a cell's objects be tested against
-  // those of all of them: the tree, whose nodes know their environments, keeps them apart.
+  // Cells would mix the environments, and each object would be tested against objects of all of
+  // them. The nodes of the tree store environments, so the tree keeps them apart.
   if (rows.filters().has_environments()) {
     structure.leave_all(row_plan());
     part_ = Part::rest;
@@ -49,7 +53,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
 
 bool OrderPlan::advance(std::size_t work) noexcept {
   sort_moves();
-  // Where nothing is left to the tree there is nothing more to do.
+  // If nothing is left for the tree, the rest takes no work.
   const auto is_as_good_as_ready = [&] { return part_ == Part::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
     if (!run_stage(work)) return false;
@@ -58,13 +62,13 @@ bool OrderPlan::advance(std::size_t work) noexcept {
   return true;
 }
 
-// False if memory is refused.
+// Returns false if an allocation fails.
 bool OrderPlan::run_stage(std::size_t& work) noexcept {
   switch (part_) {
     case Part::structure: {
       const Planned planned = structure_->plan(row_plan(), stage_++);
       if (planned == Planned::done) part_ = Part::rest;
-      // A structure that leaves all rows to the tree has nothing to do.
+      // A structure that leaves all rows to the tree takes no work.
       if (planned == Planned::goes_on || !order_.empty()) work -= std::min(work, planned_rows_);
       return planned != Planned::out_of_memory;
     }
@@ -93,7 +97,7 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
   }
   const std::span<std::uint32_t> rest(rest_.data(), rest_.size());
   regular_ = order_.size();
-  // The tree's blocks begin behind the regular rows: no block belongs to both.
+  // The tree's blocks begin behind the regular rows, so that no block belongs to both.
   while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
   const Execution execution = rows_->execution_for(rest.size());
   if (rows_->filters().has_environments()) {

@@ -12,9 +12,9 @@
 
 namespace winnow {
 
-/// The order in which rows are to stand next, as a structure and the tree beside it want them. It
-/// is found in stages, which may be spread over refreshes: between these, objects move, come and
-/// go. What is out of date at the end does no harm: who puts the rows in this order looks for those
+/// Plans the next order of the rows, as the structure and the tree beside it need them. The stages
+/// may be spread over refreshes, and objects may move, be inserted or removed between stages. A
+/// plan that is out of date is harmless: the caller that reorders the rows then searches for rows
 /// that no longer fit.
 class OrderPlan {
  public:
@@ -27,48 +27,48 @@ class OrderPlan {
         list_(memory),
         points_(memory) {}
 
-  /// Room for an order of so many rows, of which so many may be moved elsewhere meanwhile, so that
-  /// no plan asks for more, but for what structures sort with. False if memory is refused.
+  /// Makes room for an order of `rows` rows, of which `moved` may be moved meanwhile, so that plans
+  /// allocate no memory except for the sort scratch of structures. Returns false if an allocation
+  /// fails.
   [[nodiscard]] bool reserve(std::size_t rows, std::size_t moved, Pages pages) noexcept;
-  /// What a structure is to make room in.
+  /// The scratch that a structure reserves.
   [[nodiscard]] BuildRoom room_for(std::size_t objects, Pages pages) noexcept {
     return {objects, pages, items_, list_, points_};
   }
 
-  /// Begins with the rows as they are; `room` more than these may come behind the order. False if
-  /// memory is refused.
+  /// Starts from the current rows; at most `room` further rows may be added behind the order.
+  /// Returns false if an allocation fails.
   [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room,
                            KdParts parts) noexcept;
-  /// Runs stages that go over about so many rows, one at least. False, and the plan is dropped, if
-  /// memory is refused.
+  /// Runs stages that visit about `work` rows in total, at least one stage. Returns false and drops
+  /// the plan if an allocation fails.
   [[nodiscard]] bool advance(std::size_t work) noexcept;
   void drop() noexcept;
 
-  /// From `start` until `drop`.
+  /// True from `start` until `drop`.
   [[nodiscard]] bool underway() const noexcept { return structure_ != nullptr; }
   [[nodiscard]] bool ready() const noexcept { return part_ == Part::ready; }
-  /// The structure that it is for.
+  /// The structure that the plan is for.
   [[nodiscard]] Structure* structure() const noexcept { return structure_; }
-  /// The rows that it began with are those below this.
+  /// The plan covers the rows below this, which existed at `start`.
   [[nodiscard]] std::size_t rows() const noexcept { return planned_rows_; }
 
-  /// The object in a row is about to be moved behind all others. Where memory is refused, that is
-  /// where it stays.
+  /// To be called before the object in `row` is moved behind all others. If the allocation fails,
+  /// the object stays at the end.
   void note_move(std::uint32_t row, ObjectId id) noexcept {
     if (row < planned_rows_) (void)moves_.push_back({row, id});
   }
 
-  // When it is ready.
+  // The following are valid once the plan is ready.
 
-  /// Makes the order one of all live rows as they are now. Objects that were moved behind the
-  /// others have the places that were planned for them where they stood, rows that came since
-  /// follow at the end, and those that have become empty leave their places empty. False if memory
-  /// is refused.
+  /// Turns the plan into an order of all current rows. Objects that were moved to the end get the
+  /// places planned for their former rows; rows added since `start` follow at the end; rows that
+  /// became empty leave holes. Returns false if an allocation fails.
   [[nodiscard]] bool complete() noexcept;
-  /// The old row of each new one: first the regular ones.
+  /// The old row of each new row, regular rows first.
   [[nodiscard]] Column<std::uint32_t>& order() noexcept { return order_; }
   [[nodiscard]] std::size_t regular() const noexcept { return regular_; }
-  /// What the structure is told when the rows stand in the order.
+  /// The argument for Structure::finish_build once the rows are in the order.
   [[nodiscard]] RowPlan row_plan() noexcept {
     return {planned_rows_,
             planned_objects_,
@@ -79,7 +79,7 @@ class OrderPlan {
             {moves_.data(), moves_.size()}};
   }
 
-  /// Scratch for sorting other rows by place, while no plan is underway.
+  /// Scratch for sorting other rows by position while no plan is underway.
   [[nodiscard]] Column<float>& points() noexcept { return points_; }
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept {
@@ -101,17 +101,17 @@ class OrderPlan {
   std::size_t regular_ = 0;
   Part part_ = Part::structure;
   unsigned stage_ = 0;
-  bool resumed_ = false;  // rows may have become empty since it began
+  bool resumed_ = false;  // rows may have become empty since the start
   KdParts parts_ = KdParts::tiles;
   KdCuts cuts_;
 
   Column<std::uint32_t> order_;
   Column<std::uint32_t> rest_;
   Column<RowMove> moves_;
-  Column<std::uint32_t> placed_;  // rows behind all that the plan began with which have a place
+  Column<std::uint32_t> placed_;  // rows beyond planned_rows_ that have a planned place
   Column<std::uint64_t> items_;
   Column<std::uint32_t> list_;
-  Column<float> points_;  // places of what is sorted by these
+  Column<float> points_;  // positions of rows, used as sort keys
 };
 
 }  // namespace winnow

@@ -10,29 +10,29 @@
 
 namespace winnow {
 
-/// How queries see a partition: boxes in rows, and what leads to them. Every row lies either in a
-/// block of one of the trees or in the flat blocks, which are all looked at.
+/// The rows of a partition as queries see them. Every row lies either in a block of one of the
+/// trees or in a flat block; flat blocks are all tested.
 struct QueryView {
-  /// Of the boxes: lower ends, then upper ends. Each query fills in all of them.
+  /// Lower bounds x, y, z, then upper bounds. Each query fills in all six.
   const float* column[6];
   const std::uint32_t* id = nullptr;
   FilterColumns filter;  ///< by row
-  FilterSpan span;       ///< of all objects' filters
+  FilterSpan span;       ///< summary of the filters of all objects
   const TreeShape* tree[2] = {};
   std::uint32_t trees = 0;
   std::uint32_t flat_blocks = 0;
-  float leaf_edge = 0.0F;  ///< of a typical block; 0 if there are no trees
+  float leaf_edge = 0.0F;  ///< edge of a typical block; 0 if there are no trees
 };
 
-/// Whom a query wants.
+/// Selects the objects that a query returns.
 struct QueryFilter {
   ObjectFilter object;
-  bool by_object = false;  ///< false: `object` meets every object there is
-  bool (*accept)(const void* context, std::uint32_t id) = nullptr;  ///< null: all
+  bool by_object = false;  ///< false: `object` accepts all objects
+  bool (*accept)(const void* context, std::uint32_t id) = nullptr;  ///< null: accepts all
   const void* context = nullptr;
 };
 
-/// Where kernels write object ids: while cursor <= limit there is room for 16.
+/// Output of kernels: while cursor <= limit there is room for 16 more object ids; then `grow`.
 struct IdSink {
   std::uint32_t* cursor = nullptr;
   std::uint32_t* limit = nullptr;

@@ -1,3 +1,6 @@
+// Refresh, refit and views of SpatialIndex. refresh() is called once per frame that changed rows:
+// it builds (builds.cpp), or moves rows that no longer fit to the tail and refits the trees.
+
 #include "partitions/index/spatial_index.h"
 
 #include <winnow/partitions/partition.h>
@@ -10,7 +13,8 @@
 namespace winnow {
 namespace {
 
-// Where an order was worn before it was taken, so many builds come as they come.
+// After a plan whose order was out of date when it was taken, this many builds are not planned
+// ahead.
 constexpr std::size_t kWaitAfterMistake = 4;
 
 }  // namespace
@@ -37,7 +41,7 @@ SpatialIndex::~SpatialIndex() {
 Status SpatialIndex::refresh() {
   rows_.pad();
   exchange_refused_ = false;
-  // Of rows that were put elsewhere nothing is planned any more.
+  // A plan is invalid once its rows were reordered.
   if (rows_.regions().planned == 0 || rows_.filters().has_environments()) give_up_plan();
   note_lull();
   Status status = Status::ok;
@@ -59,7 +63,7 @@ std::size_t SpatialIndex::tail() const noexcept {
   return rows > ordered ? rows - ordered : 0;
 }
 
-// `all` says that any row may have left where the order wants it, whatever changed last.
+// `all`: any row may no longer fit its place in the order, even if it did not change now.
 Status SpatialIndex::absorb_changes(bool all) {
   ++refits_;
   if (structure_->is_flat()) {
@@ -75,7 +79,8 @@ Status SpatialIndex::absorb_changes(bool all) {
     if (all) unforeseen_ = kWaitAfterMistake;
     return build();
   }
-  // What no longer fits a planned order may have moved long ago: its block is no stale one.
+  // A row that no longer fits a planned order may have moved long ago, so its block is not in the
+  // list of stale objects.
   tail_changed_ = tail_changed_ || (all && !misfits.list.empty());
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
@@ -92,24 +97,24 @@ Status SpatialIndex::absorb_changes(bool all) {
   return Status::ok;
 }
 
-// A second refresh, of a few more changes that nobody asked for in between, is none: what a build
-// is expected by grows from frame to frame.
+// A second refresh with few changes and no query in between does not count as a frame, because the
+// forecasts of builds extrapolate growth per frame.
 bool SpatialIndex::is_next_frame() const noexcept {
   const ChangeList& stale = rows_.stale();
   const bool asked = questioned_.exchange(false, std::memory_order_relaxed);
   return asked || stale.all() || 4 * stale.ids().size() >= rows_.size();
 }
 
-// Where everything jumped, one query of a tree in the old order would cost many builds: leaves tell
-// before it is asked. Slow wear is left to the count of tests.
+// If most objects jumped, one query of a tree in the old order would cost as much as many builds.
+// The sizes of the leaves show it before the query. Slow wear is detected by counting tests.
 bool SpatialIndex::is_torn() const noexcept {
   constexpr float kTorn = 2.0F;
-  constexpr float kTornOfPrice = 0.1F;  // what costs little to build is torn sooner
+  constexpr float kTornOfPrice = 0.1F;  // a lower limit if a build is cheap
   const float price = static_cast<float>(structure_->build_price());
-  // Of so few blocks a query tests nearly all, in whatever order their rows are.
+  // A query tests nearly all of so few blocks, whatever the order of their rows.
   constexpr std::size_t kFewBlocks = 12;
   if (tree_.blocks() <= kFewBlocks) return false;
-  // Cells and strips find what left them; beside them the tree holds what is of many kinds.
+  // Cells and strips detect objects that leave them; the tree beside them holds mixed rows.
   if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
   const float torn = std::min(kTorn, 1.0F + kTornOfPrice * price);
   return built_edge_ > 0.0F && tree_.typical_edge() > torn * built_edge_;
@@ -119,7 +124,7 @@ bool SpatialIndex::make_room_for_misfits() noexcept {
   return rows_.regions().regular == 0 || spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows);
 }
 
-// False if there are more than `most`, or likely so.
+// Returns false if there are more than `most` misfits, or probably are.
 bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
   const std::size_t regular = rows_.regions().regular;
   if (regular == 0) return true;
@@ -139,7 +144,7 @@ bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
 
 bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
-  // The same room until the next build: growing copies every column.
+  // Reserves the room of all moves until the next build: growing copies every column.
   const std::size_t needed = rows_.pool().rows() + rows.size();
   const std::size_t room = rows_.regions().ordered + most_in_tail(rows_.size());
   if (!rows_.reserve_rows(std::max(room, needed))) return false;
@@ -153,7 +158,7 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
 bool SpatialIndex::sort_tail() noexcept {
   RowRegions& regions = rows_.regions();
   const BoundsPool& pool = rows_.pool();
-  // Rows that an order is planned for stay where they are, and those behind them wait for it.
+  // The rows of a plan must stay in place; new rows behind them are sorted after it.
   if (plan_.underway() || pool.rows() < regions.sorted + kBlockRows) return true;
   const std::size_t begin = regions.ordered;
   RowSelection& live = rows_.selection();
@@ -171,7 +176,7 @@ bool SpatialIndex::sort_tail() noexcept {
   return true;
 }
 
-// `room` is for as many rows.
+// `room` has space for as many rows.
 bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept {
   const Execution execution = Execution::serial();
   return rows_.filters().has_environments()
@@ -215,14 +220,15 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
     return true;
   };
   if (reshape || order_changed || rows_.stale().all()) return refit_all();
-  // Rows of the tail were sorted, and blocks at the end came or went.
+  // The sorted tail, and blocks that were added or removed at the end, have to be refitted.
   std::size_t changed_from = std::min(blocks, blocks_before) - (blocks < blocks_before ? 1 : 0);
   if (tail_changed) {
     const std::size_t tail_block = std::max(rows_.regions().ordered / kBlockRows, first);
     changed_from = std::min(changed_from, tail_block - first);
   }
   const std::size_t behind = blocks - changed_from;
-  constexpr std::size_t kMost = 4;  // of so many blocks one: all together take less
+  constexpr std::size_t kMost = 4;  // if more than one block in four changed, refitting all takes
+                                    // less
   if (kMost * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
   if (!leaves.start(rows_.stale().ids().size() + behind) || !leaves.reserve_bits(blocks)) {
@@ -280,7 +286,7 @@ bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept
 void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
                              Asked asked) const noexcept {
   questioned_.store(true, std::memory_order_relaxed);
-  // The first query after a build sets what a query costs on a fresh structure.
+  // The first query after a build defines the cost on a fresh structure.
   std::atomic<std::uint64_t>& base = asked == Asked::all ? full_base_ : moved_base_;
   const std::uint64_t each = tests / queries + 1;
   std::uint64_t expected = 0;

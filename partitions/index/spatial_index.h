@@ -20,111 +20,111 @@ namespace winnow {
 
 struct Statistics;
 
-/// How rows are found: a structure over the regular rows, a block tree over all others, and what
-/// keeps both right while rows change.
+/// Finds rows: owns the structure over the regular rows (see RowRegions) and a block tree over all
+/// other rows, and keeps both up to date while rows change. PartitionState calls it; builds.cpp,
+/// exchange.cpp, strays.cpp and debug_draw.cpp implement parts of it.
 ///
-/// Behind the regular rows every row is a leaf of a block tree: objects that do not suit the
+/// All rows behind the regular rows are leaves of the block tree: objects that do not suit the
 /// structure (oversize, unbounded, in overfull cells), objects inserted since the last build, and
-/// objects that moved out of where the build put them. So no input can make a structure degenerate:
-/// what does not fit it is pruned by the tree.
+/// objects that moved out of the place that the build gave them. So no input makes a structure
+/// degenerate: the tree prunes whatever does not fit it.
 ///
-/// Queries other than pairs go through blocks of rows, whatever region these lie in: cells and
-/// strips are runs of rows, so a second block tree over the regular rows leads to them. It is made
-/// when such a query first comes, and refitted after changes; a scene that never asks does not pay
-/// for it.
+/// Queries other than pairs use block trees only. The cells and strips of a structure are ranges of
+/// rows, so a second block tree over the regular rows serves these queries. It is built for the
+/// first such query and refitted after changes; a scene without such queries does not pay for it.
 ///
-/// Filters are looked up where a test hits. Nodes know what the filters below them have between
-/// them, so that subtrees which a filter cannot meet are not entered; the blocks of flat structures
-/// have such nodes, without boxes, for that alone. Where more than one environment is in use a
-/// build puts each one's rows together: worlds at the same place cost no more than their sum.
+/// Filters are tested after boxes. Tree nodes store a summary of the filters below them, so that a
+/// query skips subtrees that its filter excludes. Flat structures have such nodes without boxes for
+/// this purpose. If more than one environment is in use, a build groups the rows by environment, so
+/// that worlds at the same place cost no more than their sum.
 ///
-/// A build permutes the rows themselves, so the pool is the sorted copy. It happens when the share
-/// of new rows, moved rows or holes passes a limit, when an update scatters the objects (see Rows),
-/// or when the extra tests that a worn structure has cost since the last build exceed the price of
-/// a build: at most twice the cost of the best schedule known in hindsight (the ski-rental bound;
-/// Karlin et al., Algorithmica 3, 1988). The decision counts tests, never time, so every machine
-/// takes it at the same frame.
+/// A build permutes the rows themselves, so the pool is the sorted copy. A build is due if the
+/// share of new rows, moved rows or holes exceeds a limit, if an update scatters the objects (see
+/// Rows), or if wear exceeds the price of a build. Wear is the number of extra tests since the last
+/// build, compared with a fresh structure. The total cost of wear and builds is at most twice the
+/// cost of the best schedule known in hindsight (the ski-rental bound; Karlin et al., Algorithmica
+/// 3, 1988). Decisions count tests, never time, so every machine builds in the same frame.
 ///
-/// Most of a build is finding the order. Where a build can be seen coming, because objects near the
-/// edge of their cells, the tail grows or wear does, the order is planned in stages over the
-/// refreshes before it, while the old one serves (see OrderPlan): no frame pays for all of it. What
-/// moved since a row was planned is found when the rows stand in the new order, as what leaves its
-/// cell in any frame is. A build that comes unforeseen does what is left of the plan at once.
+/// Most of a build is spent on the order. If a build can be foreseen, because objects approach the
+/// borders of their cells, the tail grows or wear grows, the order is planned in stages over the
+/// preceding refreshes while the old order is in use (see OrderPlan), so that no frame pays for all
+/// of it. Rows that moved after they were planned are found once the rows are in the new order,
+/// like objects that leave their cells in any frame. A build that was not foreseen completes the
+/// plan at once.
 class SpatialIndex {
  public:
-  /// `build_budget` is that of PartitionOptions.
+  /// `build_budget` as in PartitionOptions.
   SpatialIndex(std::pmr::memory_resource* memory, Rows& rows, std::size_t build_budget) noexcept;
   ~SpatialIndex();
   SpatialIndex(const SpatialIndex&) = delete;
   SpatialIndex& operator=(const SpatialIndex&) = delete;
 
-  /// Exchanges the structure; the next refresh orders the rows. False, and nothing changed, if
-  /// memory is refused.
+  /// Replaces the structure; the next refresh orders the rows. Returns false and changes nothing if
+  /// an allocation fails.
   [[nodiscard]] bool set_structure(StructureKind kind) noexcept;
   [[nodiscard]] StructureKind kind() const noexcept { return kind_; }
   [[nodiscard]] const Structure& structure() const noexcept { return *structure_; }
   [[nodiscard]] std::size_t build_budget() const noexcept { return build_budget_; }
 
-  /// Makes room for a build of so many objects, wherever they lie, and for what pair queries then
-  /// read, with the structure that is there and with each of those that may be taken `later`. It
-  /// lasts until `release_memory`. What objects have in filters is not counted in. False if memory
-  /// is refused. O(pages) if they are touched.
+  /// Makes room for a build of `objects` objects at any positions and for the pair queries that
+  /// follow, with the current structure and with each structure in `later`. Filters are not
+  /// included. The room lasts until `release_memory`. Returns false if an allocation fails.
+  /// O(pages) if `pages` are touched.
   [[nodiscard]] bool reserve(std::size_t objects, Pages pages,
                              std::span<const StructureKind> later) noexcept;
-  /// Brings everything up to date that pair queries read. What fails is tried again by the next
-  /// refresh.
+  /// Updates everything that pair queries read. A step that fails is repeated by the next refresh.
   Status refresh();
-  /// The same with another structure: at once where a build is due, else when further refreshes
-  /// have planned its order. Where it does not get the memory it needs, with the one that is there;
-  /// `refused` says so.
+  /// Refreshes with another structure. The structure is replaced at once if a build is due, else
+  /// after further refreshes have planned its order. If its memory cannot be allocated, sets
+  /// `refused` and refreshes with the current structure.
   Status refresh_as(StructureKind kind, bool& refused);
-  /// True while another structure is planned. It is given up where the rows are put elsewhere in
-  /// the meantime.
+  /// True while the order of another structure is being planned. The plan is dropped if the rows
+  /// are reordered in the meantime.
   [[nodiscard]] bool exchanging() const noexcept { return next_.structure != nullptr; }
-  /// True if the last refresh gave it up because memory was refused.
+  /// True if the last refresh dropped that plan because an allocation failed.
   [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
 
-  /// Queries other than pairs are about to come, after changes.
+  /// To be called before queries other than pairs that follow a change.
   void note_asked() const noexcept {
     asked_.fetch_add(1, std::memory_order_relaxed);
     questioned_.store(true, std::memory_order_relaxed);
   }
-  /// True if `refresh_queries` has to be called, by one thread, before queries other than pairs.
+  /// True if one thread has to call `refresh_queries` before queries other than pairs.
   [[nodiscard]] bool queries_stale() const noexcept {
     return queries_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
   }
   Status refresh_queries() const;
-  /// How queries other than pairs see the rows.
+  /// Fills in the rows and trees that queries other than pairs read.
   void view(QueryView& view) const noexcept;
 
-  /// Over the rows behind the regular ones.
+  /// The tree over the rows behind the regular ones.
   [[nodiscard]] const BlockTree& tree() const noexcept { return tree_; }
-  /// All hits of a batch.
+  /// Passes all hits of a batch to the sink. Returns false if the sink could not grow.
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept;
 
-  /// What answering so many pair queries has cost, in tests of 16 volumes. Of objects that asked
-  /// for all their pairs, or of those that asked because they moved.
+  /// Notes the cost of `queries` pair queries, in tests of 16 volumes. `all`: every object was
+  /// queried; `moved`: only objects that moved.
   enum class Asked : std::uint8_t { all, moved };
   void note_work(std::uint64_t tests, std::uint64_t queries, Asked asked) const noexcept;
-  /// What pair queries since the last build have cost beyond what they do on a fresh structure.
+  /// Wear: extra tests of pair queries since the last build, compared with a fresh structure.
   [[nodiscard]] std::uint64_t excess_tests() const noexcept {
     return excess_.load(std::memory_order_relaxed);
   }
 
-  /// Rows that may stand behind the built ones before a build is due.
+  /// The number of rows in the tail that makes a build due.
   [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
 
-  /// The structure and, as far as levels from the root down, the tree.
+  /// Draws the structure, and the tree down to `max_depth` levels below the root.
   void draw(DebugDraw& draw, std::size_t max_depth) const;
   void draw_objects(DebugDraw& draw, const DebugDrawOptions& options) const;
   [[nodiscard]] std::uint64_t builds() const noexcept { return builds_; }
   void add_statistics(Statistics& statistics) const noexcept;
   void add_bytes(Footprint& footprint) const noexcept;
-  /// Gives back scratch and, where there are no objects, everything.
+  /// Frees scratch memory; frees everything if there are no objects.
   void release_memory() noexcept;
 
  private:
-  /// A structure, or none.
+  /// A structure and its kind; `structure` may be null.
   struct Held {
     StructureKind kind{};
     Structure* structure = nullptr;
@@ -141,11 +141,11 @@ class SpatialIndex {
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
     return objects / 16 + 64;
   }
-  /// Rows that a tail may get: no object is in it twice.
+  /// The maximum size of a tail: it holds no object twice.
   [[nodiscard]] static std::size_t most_in_tail(std::size_t objects) noexcept {
     return std::min(tail_limit(objects), objects);
   }
-  /// Room that a build leaves behind its rows for a tail.
+  /// Rows that a build reserves for the tail.
   [[nodiscard]] static std::size_t spare_rows(const Structure& structure,
                                               std::size_t objects) noexcept {
     return (structure.prunes_rows() ? 2 : 1) * most_in_tail(objects);
@@ -156,7 +156,7 @@ class SpatialIndex {
   [[nodiscard]] std::size_t tail() const noexcept;
   [[nodiscard]] bool wants_grouping() const noexcept;
   Status build();
-  /// `moved` says that objects may have since the plan was begun.
+  /// `moved`: objects may have moved since the plan was started.
   Status take_order(bool moved);
   [[nodiscard]] bool start_plan(Structure& structure) noexcept;
   [[nodiscard]] KdParts wanted_parts(const Structure& structure) const noexcept;
@@ -198,40 +198,41 @@ class SpatialIndex {
   Structure* structure_ = nullptr;
   BlockTree tree_;
 
-  // Unless the structure prunes rows or is flat it serves all queries but pairs, and is made when
-  // the first one comes.
+  // Serves all queries other than pairs. Unless the structure prunes rows or is flat it is built
+  // for the first such query.
   mutable BlockTree regular_tree_;
-  Column<Held> waiting_;            // to be taken, with what was reserved for them
-  mutable float leaf_edge_ = 0.0F;  // of a typical block
+  Column<Held> waiting_;            // reserved structures for later use, with their memory
+  mutable float leaf_edge_ = 0.0F;  // edge of a typical block
   mutable std::atomic<bool> queries_stale_{true};
   mutable std::atomic<std::size_t> asked_{0};    // refreshes for such queries since the last build
-  mutable std::atomic<bool> questioned_{false};  // in any way since the last refresh
+  mutable std::atomic<bool> questioned_{false};  // any query since the last refresh
 
-  float built_edge_ = 0.0F;      // of a typical leaf of the tree, as the build left it
-  std::size_t known_wide_ = 0;   // blocks that are wide, but not by objects that have jumped
+  float built_edge_ = 0.0F;      // edge of a typical leaf of the tree after the build
+  std::size_t known_wide_ = 0;   // blocks that are wide, but not because of outliers
   std::size_t built_holes_ = 0;  // padding that the build left between the regions
-  bool tail_changed_ = false;    // rows of it stand elsewhere
-  bool order_changed_ = false;   // so do others
-  bool reserved_ = false;        // memory is there to stay, whatever the structure
+  bool tail_changed_ = false;    // rows of the tail were reordered
+  bool order_changed_ = false;   // other rows were reordered, too
+  bool reserved_ = false;        // memory is reserved for every structure
   bool exchange_refused_ = false;
 
-  Column<float> spare_;               // what columns are permuted through
-  Column<std::uint32_t> tail_order_;  // while the tail is sorted
+  Column<float> spare_;               // scratch for permuting columns
+  Column<std::uint32_t> tail_order_;  // scratch for sorting the tail
 
   // Planning ahead.
   const std::size_t build_budget_;
   OrderPlan plan_;
-  Held next_;  // is taken with the plan, if the structure is to be exchanged
+  Held next_;  // the structure of the plan, if it will replace the current one
   Departures departures_;
   Growth tail_growth_;
   Growth wear_growth_;
-  std::size_t refreshes_before_plan_ = 0;  // since the build before it
-  std::size_t changed_at_plan_ = 0;  // objects, since the refresh before the one that began it
-  std::size_t lull_ = 0;             // refreshes in a row that changed far fewer
-  std::size_t unforeseen_ = 0;       // builds to wait for until one is foreseen again
+  std::size_t refreshes_before_plan_ = 0;  // refreshes between the last build and the start of the
+                                           // plan
+  std::size_t changed_at_plan_ = 0;        // objects changed in the refresh that started the plan
+  std::size_t lull_ = 0;                   // consecutive refreshes with far fewer changes
+  std::size_t unforeseen_ = 0;             // builds left until plans are made ahead again
 
-  // Wear, in tests of 16 volumes: what a query costs on a fresh structure, and what those since
-  // have cost beyond that.
+  // Wear, in tests of 16 volumes: the cost of one query on a fresh structure (for all objects, for
+  // moved objects), and the excess of the queries since then.
   mutable std::atomic<std::uint64_t> full_base_{0};
   mutable std::atomic<std::uint64_t> moved_base_{0};
   mutable std::atomic<std::uint64_t> excess_{0};

@@ -1,4 +1,6 @@
-// Objects of a tree that have jumped away from those they share a block with.
+// SpatialIndex: finds outliers ("strays"), which are objects that jumped away from the others in
+// their block of the tree, and moves them to the tail. refresh() calls it after refitting the
+// trees.
 
 #include "partitions/index/spatial_index.h"
 
@@ -9,16 +11,18 @@
 namespace winnow {
 namespace {
 
-// Blocks are looked into that are so many times as wide as blocks were when they were built.
+// A block is searched for outliers if it is this many times as wide as a typical block after the
+// build.
 constexpr float kWide = 3.0F;
-// An object has jumped away if it is so many times as far from the middle of its block as half of
-// the others are, and by half the width of such a block more.
+// An object is an outlier if its distance from the median of its block exceeds kFar times the
+// median distance plus half the width of a wide block.
 constexpr float kFar = 4.0F;
-// Looking into a block takes as long as so many tests for each of its rows.
+// Searching a block costs this many tests for each of its rows.
 constexpr std::uint64_t kLook = 16;
-// Of fewer changes, one in so many, wear tells soon enough.
+// If fewer than one object in this many changed, the count of tests detects wear soon enough.
 constexpr std::size_t kFewChanges = 256;
-// So does it of few blocks: what costs more to build is kept while it wears further.
+// Also if few blocks became wide: the higher the price of a build, the more wide blocks are
+// accepted.
 constexpr std::size_t kWearOfPrice = 512;
 
 /// The bounded objects of one block of rows.
@@ -47,7 +51,7 @@ struct BlockMembers {
     return *middle;
   }
 
-  /// How far each object is from the middle, along the axis where that is farthest.
+  /// The distance of each object from the median, along the axis where it is largest.
   [[nodiscard]] std::array<float, kBlockRows> distances() const noexcept {
     std::array<float, kBlockRows> far{};
     for (const auto& along : centre) {
@@ -62,7 +66,7 @@ struct BlockMembers {
 
 }  // namespace
 
-// Blocks of rows that the last order put there.
+// The number of full blocks in the order of the last build.
 std::size_t SpatialIndex::ordered_blocks() const noexcept {
   return std::min(tree_.blocks(), rows_.regions().ordered / kBlockRows);
 }
@@ -71,8 +75,8 @@ std::size_t SpatialIndex::wide_blocks() const noexcept {
   return tree_.count_wide(ordered_blocks(), kWide * built_edge_);
 }
 
-// An object that jumps makes its block meet all others. Blocks that have become wide since the last
-// look tell that there may be some.
+// An outlier makes the box of its block overlap many others. Blocks that became wide since the last
+// search may contain one.
 Status SpatialIndex::look_for_strays() {
   const bool few = !rows_.stale().all() && rows_.stale().ids().size() * kFewChanges < rows_.size();
   if (few || rows_.regions().regular != 0 || !(built_edge_ > 0.0F)) return Status::ok;
@@ -80,11 +84,11 @@ Status SpatialIndex::look_for_strays() {
   known_wide_ = std::min(known_wide_, wide);
   const std::uint64_t price = structure_->build_price() * ordered_blocks();
   if (wide <= known_wide_ + price / kWearOfPrice) return Status::ok;
-  // Where looking into them costs more than a build, that is done.
+  // If the search costs more than a build, the rows are built.
   return wide * kLook > price ? build() : take_out_strays();
 }
 
-// Lists them, up to a limit. False if memory is refused.
+// Lists about `limit` outliers at most. Returns false if an allocation fails.
 bool SpatialIndex::collect_strays(std::size_t limit) noexcept {
   RowSelection& strays = rows_.selection();
   if (!strays.start(limit + kBlockRows)) return false;
@@ -102,8 +106,8 @@ bool SpatialIndex::collect_strays(std::size_t limit) noexcept {
   return true;
 }
 
-// Puts them behind the rows in order, where they are sorted by place. More than may stand there
-// want a build.
+// Moves the outliers to the tail, which is sorted by position. Builds if they exceed the tail's
+// limit.
 Status SpatialIndex::take_out_strays() {
   const std::size_t limit = tail_limit();
   const std::size_t room = limit + 1 - std::min(limit, tail());
@@ -111,7 +115,7 @@ Status SpatialIndex::take_out_strays() {
   RowSelection& strays = rows_.selection();
   if (strays.list.size() >= room) return build();
   if (!strays.list.empty()) {
-    // The rows of a plan have to stay in their order, and these are in none.
+    // The rows of a plan must stay in place, but outliers are moved.
     give_up_plan();
     order_changed_ = true;
     if (!move_to_tail(strays.entries()) || !sort_tail() || !refit_trees()) {

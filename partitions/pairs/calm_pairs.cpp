@@ -1,4 +1,7 @@
-// Pairs of objects of which most stay within a margin of where their rows have them; see Calm.
+// Pair queries of a resting scene: starting and updating the Verlet list of Calm. While boxes are
+// deferred, rows hold boxes that differ from the given ones by up to a margin. A query then tests
+// the watched pairs, and queries with the objects that left their margin. Called by
+// answer_self_pairs in self_pairs.cpp.
 
 #include <winnow/core/rounding.h>
 #include "partitions/pairs/event_writer.h"
@@ -17,7 +20,7 @@ constexpr std::size_t kNearQueriesPerTask = 64;
 constexpr std::size_t kFewestObjects = 256;
 
 bool given_overlap(const DeferredBoxes::Box& a, const DeferredBoxes::Box& b) noexcept {
-  // Without branches: of watched pairs each answer is a coin toss.
+  // Branchless: the overlap of a watched pair is unpredictable.
   unsigned ok = 1;
   for (int axis = 0; axis < 3; ++axis) {
     ok &= static_cast<unsigned>(a.min[axis] <= b.max[axis]) &
@@ -26,8 +29,8 @@ bool given_overlap(const DeferredBoxes::Box& a, const DeferredBoxes::Box& b) noe
   return ok != 0;
 }
 
-/// How much nearer to each other two ends can come than they are stored: two margins, each of which
-/// was compared with a rounded difference.
+/// Returns by how much the gap of two stored ends can shrink: two margins, each with the rounding
+/// of the comparison that it was tested by.
 double reach_of(float margin) noexcept {
   return 2.0 * static_cast<double>(margin) * (1.0 + 0x1p-20);
 }
@@ -36,7 +39,7 @@ double finite(float end) noexcept {
   return static_cast<double>(std::clamp(end, -FLT_MAX, FLT_MAX));
 }
 
-/// The boxes of some rows, larger by `reach`, as those of a batch that asks for pairs (it, other).
+/// The boxes of rows, enlarged by `reach`, as a query batch that reports pairs (row, other).
 struct NearBatch {
   alignas(64) float ends[6][kNearQueriesPerTask + kBlockRows];
   std::uint32_t ids[kNearQueriesPerTask + kBlockRows];
@@ -76,7 +79,8 @@ struct NearBatch {
 
 bool PartitionState::stays_calm(const PairBuffer& out, const PairOptions& options,
                                 const EventWriter* events) const noexcept {
-  // More than some in a hundred that came, went, or got another filter are better asked together.
+  // If more than 1/16 of the objects were inserted, removed, filtered or left their margin, a full
+  // query is cheaper.
   const std::size_t disturbed = rows.moved().ids().size();
   return deferred_.active() && 16 * disturbed <= rows.size() &&
          options.predicate.accept == nullptr && can_update_in_place(out, options, events) &&
@@ -84,7 +88,7 @@ bool PartitionState::stays_calm(const PairBuffer& out, const PairOptions& option
          pairs_.calm.watched.size() <= Calm::most_watched(rows.size(), out.size());
 }
 
-// After a frame in which all pairs were asked for. Without the memory it needs nothing begins.
+// Called after a full query. If memory is refused, deferring does not start.
 void PartitionState::begin_calm(PairBuffer& out, const PairOptions& options) const noexcept {
   Calm& calm = pairs_.calm;
   const bool can = options.order == Order::fast && options.predicate.accept == nullptr &&
@@ -100,14 +104,15 @@ void PartitionState::begin_calm(PairBuffer& out, const PairOptions& options) con
   deferred_.drop();
 }
 
-// False if these are more than `most`, too.
+// Collects the watched pairs of all rows. False if memory is refused or there are more than `most`.
 bool PartitionState::watch_all(std::size_t most) const noexcept {
-  // Some rows at a time, so that what they find takes little memory.
+  // In batches, to limit the memory of their results.
   constexpr std::size_t kAtOnce = 1024;
   constexpr std::size_t kSample = 64;
   Column<Calm::Watched>& watched = pairs_.calm.watched;
   const std::size_t count = rows.pool().rows();
-  // What some rows find tells of a crowd before it is found, the square of whose size that may be.
+  // Sample some rows first: a crowd of n objects has up to n^2 pairs, and the sample stops the
+  // search before it finds them all.
   const std::size_t stride = std::max<std::size_t>(1, count / kSample);
   if (!watch_rows(0, count, stride) || watched.size() * stride > 2 * most) return false;
   watched.clear();
@@ -130,7 +135,7 @@ bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
   std::uint64_t tests = 0;
   if (ask_near(asking.entries(), near_, tests) != Status::ok) return false;
   for (const Pair& pair : near_) {
-    // Of two that find each other the one with the lesser id counts.
+    // Each pair is found from both sides; keep it from the smaller id.
     if (pair.first >= pair.second || !is_watched(pair)) continue;
     const bool met = given_overlap(deferred_.given()[pair.first], deferred_.given()[pair.second]);
     if (!pairs_.calm.watched.push_back({pair.first, pair.second, met})) return false;
@@ -138,7 +143,7 @@ bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
   return true;
 }
 
-// True unless boxes so near to the stored ones overlap for sure.
+// False if the boxes overlap for every position within their margins.
 bool PartitionState::is_watched(const Pair& pair) const noexcept {
   const DeferredBoxes::Box& a = deferred_.stored()[pair.first];
   const DeferredBoxes::Box& b = deferred_.stored()[pair.second];
@@ -152,8 +157,7 @@ bool PartitionState::is_watched(const Pair& pair) const noexcept {
   return false;
 }
 
-// Appends (object, other) for all whose stored boxes come within reach of each other, for the rows
-// that ask.
+// Appends (row's object, other) for all stored boxes within reach of the stored boxes of the rows.
 Status PartitionState::ask_near(std::span<const std::uint32_t> asking, PairBuffer& out,
                                 std::uint64_t& tests) const {
   const std::size_t count = asking.size();
@@ -200,8 +204,8 @@ Status PartitionState::calm_self_pairs(PairBuffer& out, EventWriter* events) con
   return Status::ok;
 }
 
-// Of what the objects that moved have found keeps the pairs that overlap, in the order of ids, and
-// watches those that may begin or end.
+// Filters the pairs that moved objects found: keeps overlapping ones as (smaller id, larger id),
+// and watches the ones whose overlap may change.
 bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept {
   Column<Calm::Watched>& watched = pairs_.calm.watched;
   const std::uint64_t* const bits = rows.moved().bits();
@@ -224,7 +228,7 @@ bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept
   return true;
 }
 
-// Watched pairs that begin or end.
+// Adds the watched pairs that began or ended to `linked`.
 bool PartitionState::note_watched(LinkedPairs& linked) const noexcept {
   const DeferredBoxes::Box* const given = deferred_.given();
   for (Calm::Watched& pair : pairs_.calm.watched) {

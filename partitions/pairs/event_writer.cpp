@@ -1,3 +1,6 @@
+// Computes the events of a pair query: both frames are sorted and merged, or a linked buffer passes
+// its changes directly (`tell`). Called by the pair queries in self_pairs.cpp and calm_pairs.cpp.
+
 #include "partitions/pairs/event_writer.h"
 
 #include "core/sort/radix_sort.h"
@@ -18,14 +21,14 @@ constexpr ObjectId second_of(std::uint64_t pair) {
   return static_cast<ObjectId>(pair);
 }
 
-// Sorts a list that is sorted by first object by the second one, too.
+// Sorts runs of equal first object by the second object.
 void sort_runs(std::span<std::uint64_t> list) {
   constexpr std::size_t kShort = 16;
   std::size_t begin = 0;
   while (begin < list.size()) {
     std::size_t end = begin + 1;
     while (end < list.size() && first_of(list[end]) == first_of(list[begin])) {
-      // Short runs are sorted as they are met.
+      // Short runs are sorted by insertion.
       if (end - begin < kShort) {
         const std::uint64_t pair = list[end];
         std::size_t at = end;
@@ -93,7 +96,7 @@ bool EventWriter::sort_into(Column<std::uint64_t>& list, std::span<const Pair> p
     std::sort(list.begin(), list.end());
     return true;
   }
-  // By the first object in linear time; of each there are few.
+  // Radix sort by the first object; each has few pairs, which sort_runs sorts.
   if (!events_.spare_.resize(count)) return false;
   const auto bits = static_cast<unsigned>(std::bit_width(keys_.slot_count()));
   const std::uint64_t* const sorted =
@@ -138,7 +141,7 @@ bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
   return give_client_data() && reserve_frame(moved, false);
 }
 
-// Both lists ascend. Writes the pairs that persist to `to` on.
+// Merges two ascending lists. Writes the pairs that persist from `to` on.
 bool EventWriter::merge(Pair*& to) noexcept {
   const std::uint64_t* before = events_.before_.begin();
   const std::uint64_t* const before_end = events_.before_.end();
@@ -178,8 +181,8 @@ bool EventWriter::begin(std::uint64_t pair) noexcept {
   return events_.begun_.push_back({keys_.key_of(first_of(pair)), keys_.key_of(second_of(pair))});
 }
 
-// Beside the begun and ended pairs, which are sorted by now. That of objects that ended a pair is
-// what it was in the last frame.
+// Fills the client data of the sorted begun and ended pairs. Ended pairs use the data of the last
+// frame.
 bool EventWriter::give_client_data() noexcept {
   PairEvents& e = events_;
   if (!e.with_client_data_) return true;
@@ -195,7 +198,7 @@ bool EventWriter::give_client_data() noexcept {
   return true;
 }
 
-// Room for whose the ids are in this frame, of which those that moved, or all, may have changed.
+// Reserves the stamps and client data of this frame. Those of `moved`, or all, may have changed.
 bool EventWriter::reserve_frame(std::span<const ObjectId> moved, bool all) noexcept {
   moved_ = moved;
   all_ = all || !follows_;
@@ -224,7 +227,7 @@ void EventWriter::take_frame(PairBuffer::Provenance provenance) noexcept {
   }
 }
 
-// Without memory: the buffer has held all of these pairs at once.
+// Allocates nothing, because the buffer held all of these pairs before.
 bool EventWriter::undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept {
   PairEvents& e = events_;
   e.begun_.clear();

@@ -11,15 +11,15 @@
 
 namespace winnow {
 
-/// Finds for one query which pairs begin and end. It is told what the buffer holds before it
-/// changes (one of the `hold` functions) and compares that with what it holds afterwards. Pairs are
-/// told apart by keys: the stamps of the last frame say whether an id is still the same object's.
-/// These change last (`take_frame`), when nothing can fail any more: a query that was refused
-/// memory is undone (`undo`), and the next one compares with the same frame. A function that
-/// returns false was refused memory.
+/// Finds the pairs that begin and end in one query. Call order: a `hold` function before the buffer
+/// changes, then `compare` or `tell`, which compare the new pairs with the old ones, then
+/// `take_frame`. Pairs are compared by keys: the stamps of the last frame show whether an id
+/// belongs to the same object. The stamps change only in `take_frame`, which cannot fail. If a
+/// query fails for lack of memory, `undo` restores the last frame, and the next query compares with
+/// it again. Functions that return bool return false if memory is refused, unless stated otherwise.
 class EventWriter {
  public:
-  /// `out` as it is before the query of a partition.
+  /// `out` is the buffer before the query.
   EventWriter(PairEvents& events, const KeyTable& keys, const PairBuffer& out,
               std::uint64_t partition, const Execution& execution) noexcept
       : events_(events), keys_(keys), execution_(execution) {
@@ -29,57 +29,58 @@ class EventWriter {
     events_.before_.clear();
   }
 
-  /// All pairs may end.
+  /// Any pair may end.
   [[nodiscard]] bool hold_all(const PairBuffer& out) noexcept;
-  /// Pairs of objects that moved may end; they are dropped from the buffer.
+  /// Pairs of moved objects may end; they are dropped from the buffer.
   [[nodiscard]] bool hold_moved(PairBuffer& out, const std::uint64_t* moved) noexcept;
-  /// No pair ends, or those that do stay in their places until nothing can fail any more.
+  /// No pair ends, or ended pairs stay in the buffer until nothing can fail any more.
   void hold_none(const PairBuffer& out) noexcept {
     kept_ = follows_ ? out.size() : 0;
     held_ = Held::kept;
   }
 
-  /// Fills the events and puts the pairs that persist first, those that began behind them.
-  /// `moved` are the objects that changed since the last frame, unless `all` may have. O(pairs that
-  /// were dropped or found anew + moved).
+  /// Fills the events and orders the buffer: persisting pairs first, then begun ones. `moved` are
+  /// the objects that changed since the last frame; ignored if `all` may have changed. O(dropped or
+  /// found pairs + moved).
   [[nodiscard]] bool compare(PairBuffer& out, std::span<const ObjectId> moved, bool all) noexcept;
 
-  /// The same for a linked buffer, whose changes are found otherwise: pairs that began, the last
-  /// ones of `out`, and the indices of those that ended. O(both + moved).
+  /// As above for a linked buffer, which passes its changes: the begun pairs, which are the last
+  /// ones of `out`, and the indices of the ended pairs. O(begun + ended + moved).
   [[nodiscard]] bool tell(const PairBuffer& out, std::span<const Pair> begun,
                           std::span<const std::uint32_t> ended,
                           std::span<const ObjectId> moved) noexcept;
-  /// Looks for ids among `moved` that went to another object since the last frame.
+  /// Notes whether ids of `moved` belong to another object than in the last frame.
   void find_renewed(std::span<const ObjectId> moved) noexcept {
     other_keys_ = any_other_key(moved, false);
   }
-  /// True if the id, which was a live object's in the last frame, is one of those.
+  /// True if the id, live in the last frame, now belongs to another object. Call after
+  /// `find_renewed`.
   [[nodiscard]] bool is_renewed(ObjectId id) const noexcept { return other_keys_ && is_other(id); }
 
-  /// Room for frames of up to so many pairs and objects. False if memory is refused.
+  /// Reserves memory for frames of up to `pairs` pairs and `objects` objects.
   [[nodiscard]] static bool reserve(PairEvents& events, std::size_t pairs, std::size_t objects,
                                     Pages pages) noexcept;
 
-  /// True if the events tell of the frame that the buffer holds.
+  /// True if the events describe the frame that the buffer holds.
   [[nodiscard]] bool follows() const noexcept { return follows_; }
-  /// Where events keep their pairs for a caller who has no buffer.
+  /// Returns the buffer that events use if the caller has none.
   [[nodiscard]] static PairBuffer& own_buffer(PairEvents& events) noexcept { return events.pairs_; }
-  /// Which frame the events tell of.
+  /// Returns the frame that the events describe.
   [[nodiscard]] static PairBuffer::Provenance provenance(const PairEvents& events) noexcept {
     return events.provenance_;
   }
   [[nodiscard]] std::size_t persisting() const noexcept { return events_.persisting_; }
 
-  /// Ends a query: the events tell of this frame, and know whose the ids are in it.
+  /// Ends a query: the events describe this frame, and the stamps of its ids are stored.
   void take_frame(PairBuffer::Provenance provenance) noexcept;
-  /// Puts the pairs of the last frame back into the buffer, in any order, and gives that frame
-  /// another name: none begin or end. False if the events do not tell of that frame; the caller
-  /// empties the buffer then.
+  /// Restores the pairs of the last frame in the buffer, in any order, and gives that frame a new
+  /// provenance; no pair begins or ends. False if the events do not describe that frame: the caller
+  /// then empties the buffer.
   [[nodiscard]] bool undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept;
 
  private:
-  /// Which pairs of the last frame are not in the buffer but elsewhere: none, those from `kept_` on
-  /// in `dropped_`, or all in `before_`.
+  /// Location of the pairs of the last frame: `kept`: the first `kept_` in the buffer; `dropped`:
+  /// those and dropped_; `all`: before_.
   enum class Held : std::uint8_t { nothing, kept, dropped, all };
 
   [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
@@ -97,12 +98,12 @@ class EventWriter {
   PairEvents& events_;
   const KeyTable& keys_;
   const Execution& execution_;
-  bool other_keys_ = false;  // an id went to another object since the last frame
-  bool follows_ = false;     // the events tell of the frame that the buffer holds
-  std::size_t kept_ = 0;     // pairs at the front of the buffer that persist for sure
+  bool other_keys_ = false;  // an id belongs to another object than in the last frame
+  bool follows_ = false;     // the events describe the frame that the buffer holds
+  std::size_t kept_ = 0;     // pairs at the front of the buffer that persist
   Held held_ = Held::nothing;
-  std::span<const ObjectId> moved_;  // of which take_frame has something to remember, or
-  bool all_ = false;                 // of all
+  std::span<const ObjectId> moved_;  // ids whose stamps take_frame stores
+  bool all_ = false;                 // store the stamps of all ids
 };
 
 }  // namespace winnow

@@ -1,3 +1,6 @@
+// Linking a PairBuffer and changing it in place; the class comment in linked_pairs.h describes the
+// method. Called by the linked and resting pair queries (self_pairs.cpp, calm_pairs.cpp).
+
 #include "partitions/pairs/linked_pairs.h"
 
 #include "partitions/pairs/pair_tracker.h"
@@ -9,16 +12,15 @@
 namespace winnow {
 namespace {
 
-// Following the pairs of an object that moved costs about as much as a pass over all pairs of so
-// many objects, however many pairs objects have.
+// Following the links of one moved object costs about as much as a pass over all pairs of 48
+// objects, independent of the number of pairs per object.
 constexpr std::size_t kObjectsPassed = 48;
-// Frames in which all pairs of a buffer get their links.
+// Frames over which all pairs of a buffer get links.
 constexpr std::size_t kLinkFrames = 4;
-// No pair: both of its ids are kNoObject.
+// No valid pair: both ids are kNoObject.
 constexpr std::uint64_t kTaken = ~std::uint64_t{0};
 
-// Found pairs by hash: a table of a power of two, at most half full, in which a pair stands at the
-// first free entry from its own on.
+// Hash table of the found pairs: linear probing, size a power of two, at most half full.
 struct FoundTable {
   std::uint64_t* entry;
   std::size_t mask;
@@ -29,7 +31,7 @@ struct FoundTable {
         mask(entries.size() - 1),
         shift(64U - static_cast<unsigned>(std::bit_width(mask))) {}
 
-  // Where the pair stands, or else would: an entry that is 0, which is no pair either.
+  // Returns the entry of the pair, or the empty entry (0) where it would be inserted.
   [[nodiscard]] std::uint64_t& find(std::uint64_t pair) const noexcept {
     auto at = static_cast<std::size_t>(pair * 0x9E3779B97F4A7C15U >> shift);
     while (entry[at] != 0 && entry[at] != pair) at = (at + 1) & mask;
@@ -37,7 +39,7 @@ struct FoundTable {
   }
 };
 
-// Never 0: first < second.
+// Never 0, because first < second.
 constexpr std::uint64_t as_number(const Pair& pair) noexcept {
   return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
 }
@@ -129,7 +131,7 @@ bool LinkedPairs::table_found() noexcept {
   return true;
 }
 
-// True if the pair was found, and then only once.
+// True if the pair was found. Marks it as taken, so that a second call returns false.
 bool LinkedPairs::take_found(const Pair& pair) noexcept {
   std::uint64_t& entry = FoundTable(out_.page_table_).find(as_number(pair));
   if (entry == 0) return false;
@@ -137,7 +139,7 @@ bool LinkedPairs::take_found(const Pair& pair) noexcept {
   return true;
 }
 
-// What nobody has taken began.
+// Found pairs that no old pair has taken began.
 void LinkedPairs::keep_begun() noexcept {
   std::size_t size = kept_;
   for (const std::uint64_t entry : out_.page_table_) {
@@ -147,7 +149,7 @@ void LinkedPairs::keep_begun() noexcept {
   out_.pairs_.set_size(size);
 }
 
-// Of the lists of both objects, which are walked side by side, the shorter one decides the cost.
+// Walks the lists of both objects in turn, so that the shorter list determines the cost.
 bool LinkedPairs::end(const Pair& pair) noexcept {
   std::uint32_t place[2] = {out_.heads_[pair.first], out_.heads_[pair.second]};
   for (std::uint32_t side = 0;; side ^= 1U) {
@@ -163,7 +165,7 @@ bool LinkedPairs::sort() noexcept {
   return PairTracker::sort(out_, out_.heads_.size(), kept_, out_.size()) && out_.links_.grow(most);
 }
 
-// The last pair takes the place of another, or is that other.
+// Replaces a pair by the last one; both may be the same.
 void LinkedPairs::replace(std::uint32_t index, std::uint32_t last) noexcept {
   const std::size_t linked = out_.links_.size();
   if (index < linked) leave(index);

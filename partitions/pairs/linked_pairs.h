@@ -8,68 +8,68 @@
 
 namespace winnow {
 
-/// Keeps a PairBuffer up to date at a cost that follows what moved and how many pairs that has: no
-/// pass over all pairs, nor over all objects.
+/// Updates a PairBuffer in place. The cost depends on the moved objects and their pairs; there is
+/// no pass over all pairs or all objects.
 ///
-/// Every pair stands in two lists, that of its first and that of its second object. A place in a
-/// list is twice the pair's index in the buffer, plus one in the list of the second object. Lists
-/// lead both ways, so that a pair leaves in O(1) even that of an object with many pairs.
+/// Each pair is in two doubly linked lists, one for each of its objects. A list element is encoded
+/// as 2 * index of the pair, + 1 in the list of the second object. Removing a pair is O(1) even for
+/// an object with many pairs.
 ///
-/// To link all pairs at once would be a frame that costs several others. So links are made for some
-/// of them in each frame, from the front; the rest is looked through until it has its own.
+/// Linking all pairs at once would cost as much as several frames. Links are therefore made for a
+/// part of the pairs in each frame, from the front; pairs without links are scanned.
 ///
-/// An update is told what was found anew about the objects that moved, and compares that with what
-/// their lists hold. Pairs that are in both stay where they are. A pair that ended is replaced by
-/// the last one of the buffer, those at the back going first; pairs that began follow the others,
-/// sorted. So the order of pairs depends on what happened, but on no order in which anything was
-/// found: it is the same on any number of threads and any instruction set.
+/// An update compares the pairs that were found for moved objects with the pairs in their lists.
+/// Pairs in both stay in place. An ended pair is replaced by the last pair of the buffer, in
+/// descending order of index. Begun pairs are appended, sorted. The order of pairs thus depends on
+/// earlier frames but not on the order in which pairs were found: it is the same for any number of
+/// threads and any instruction set.
 class LinkedPairs {
  public:
   explicit LinkedPairs(PairBuffer& out) noexcept : out_(out) {}
 
-  /// The buffer is never linked: for who looks at all pairs in every frame whatever moved.
+  /// Forbids linking, for buffers whose pairs are all read in every frame anyway.
   void forbid() noexcept { out_.may_link_ = false; }
-  /// True if a frame in which so many of the objects moved is to update the buffer here: where few
-  /// do, the second of two frames in a row begins to link it.
+  /// True if a frame with `moved` moved objects should be updated in place: few moved, and either
+  /// few moved in the last frame or the buffer is linked already.
   [[nodiscard]] bool is_due(std::size_t moved, std::size_t objects) const noexcept;
   [[nodiscard]] static bool is_linked(const PairBuffer& out) noexcept {
     return out.state_ == PairBuffer::State::linked;
   }
-  /// False where that is forbidden, and for more pairs than links can name.
+  /// False if linking is forbidden, or there are more pairs than a link can encode.
   [[nodiscard]] bool can_link() const noexcept {
     return out_.may_link_ && out_.size() <= kNoPlace / 4;
   }
-  /// Begins to link the buffer unless that has begun, with room for objects below `slots`. False if
+  /// Starts linking if the buffer is not linked, and makes room for objects below `slots`. False if
   /// memory is refused.
   [[nodiscard]] bool link(std::size_t slots) noexcept;
-  /// Links all that is left, once that has begun.
+  /// Links all remaining pairs of a linked buffer.
   void link_rest() noexcept { link_next(out_.size()); }
-  /// In this frame, in which so many of the objects moved, the pairs are changed by other means.
+  /// Notes that pairs change by other means in a frame with `moved` moved objects.
   void loosen(std::size_t moved, std::size_t objects) noexcept;
-  /// All pairs were found anew.
+  /// Notes that all pairs were found again.
   void loosen() noexcept { out_.state_ = PairBuffer::State::loose; }
 
-  /// Of pairs in the buffer from `kept` on, found anew about the objects that moved (a bit each in
-  /// `is_moved`), keeps those that began, and finds which of the others ended. Where renewed(id)
-  /// says that an id went to another object, its pairs end and begin. False if memory is refused.
+  /// Compares the old and new pairs of the moved objects (also a bitmap, `is_moved`). The pairs
+  /// from `kept` on were found in this frame; only begun ones stay there. Collects the indices of
+  /// the pairs before `kept` that ended. If renewed(id), the id belongs to another object now, so
+  /// that its pairs end and begin. False if memory is refused.
   template <typename Renewed>
   [[nodiscard]] bool compare(std::size_t kept, std::span<const std::uint32_t> moved,
                              const std::uint64_t* is_moved, Renewed&& renewed) noexcept;
-  /// One more pair that began, or ended, of objects that did not move; all are linked.
+  /// Adds a begun or ended pair of objects that did not move. All pairs must be linked.
   [[nodiscard]] bool begin(const Pair& pair) noexcept { return out_.pairs_.push_back(pair); }
   [[nodiscard]] bool end(const Pair& pair) noexcept;
-  /// Brings what began and ended in order, and makes room for their links. False if memory is
-  /// refused.
+  /// Sorts begun and ended pairs and reserves their links. False if memory is refused.
   [[nodiscard]] bool sort() noexcept;
 
-  /// Pairs that began, sorted.
+  /// Returns the begun pairs, sorted.
   [[nodiscard]] std::span<const Pair> begun() const noexcept { return out_.pairs().subspan(kept_); }
-  /// Indices in the buffer of pairs that ended, from the back to the front.
+  /// Returns the indices of the ended pairs, descending.
   [[nodiscard]] std::span<const std::uint32_t> ended() const noexcept {
     return {out_.places_.data(), out_.places_.size()};
   }
-  /// Takes out what ended and links what began. Until then the pairs of the last frame stand where
-  /// they stood.
+  /// Removes ended pairs and links begun ones. Until then the pairs of the last frame stay in
+  /// place.
   void apply() noexcept;
 
  private:
@@ -110,7 +110,7 @@ bool LinkedPairs::compare(std::size_t kept, std::span<const std::uint32_t> moved
     for (std::uint32_t place = out_.heads_[id]; place != kNoPlace;) {
       const std::uint32_t index = place >> 1U;
       const std::uint32_t side = place & 1U;
-      // Of two objects that both moved the one with the lesser id looks at their pair.
+      // If both objects moved, the pair is compared from the smaller id.
       const ObjectId other = object_at(out_.pairs_[index], side ^ 1U);
       if (!(other < id && has_moved(other)) && !compare_pair(index)) return false;
       place = out_.links_[index].next[side];

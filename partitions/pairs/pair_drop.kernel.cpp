@@ -6,24 +6,23 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Bit i, before others.
+/// Bit i is the lowest bit of the result.
 std::uint64_t from_bit(const std::uint64_t* bits, std::uint32_t i) {
   return bits[i >> 6U] >> (i & 63U);
 }
 
-/// One by one: gathers of bits take longer, or hardly less. What wider instruction sets bring are
-/// shifts by a variable.
+/// Scalar: gathering bits is not faster. Wider instruction sets contribute variable shifts.
 template <bool KeepDropped>
 std::size_t split(const std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved,
                   std::uint32_t* kept, std::uint32_t* dropped) {
   std::uint32_t* out = kept;
   for (std::size_t i = 0; i < count; ++i) {
-    // Both ids in one integer, which compilers leave alone; which of them is first does not matter.
+    // Load both ids as one integer, which compilers do not split. Their order does not matter.
     std::uint64_t pair;
     std::memcpy(&pair, pairs + 2 * i, sizeof pair);
     const auto a = static_cast<std::uint32_t>(pair);
     const auto b = static_cast<std::uint32_t>(pair >> 32U);
-    // Without a branch: who moved is a coin toss.
+    // Branchless: the set of moved objects is unpredictable.
     const std::size_t hit = (from_bit(moved, a) | from_bit(moved, b)) & 1U;
     if constexpr (KeepDropped) {
       std::memcpy(dropped, &pair, sizeof pair);

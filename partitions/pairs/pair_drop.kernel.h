@@ -8,11 +8,11 @@
 namespace winnow {
 
 struct PairDropKernels {
-  /// Drops, in place and keeping the order, every pair of ids of which one has its bit set in
-  /// `moved`; returns how many pairs are left.
+  /// Removes, in place and in stable order, every pair with an id whose bit is set in `moved`;
+  /// returns the number of remaining pairs.
   std::size_t (*drop)(std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved);
-  /// The same, writing the pairs that stay to `kept`, which may be where `pairs` begin or before,
-  /// and the others to `dropped`, which has room for all.
+  /// As above, but writes remaining pairs to `kept`, which may be `pairs` or lie before it, and
+  /// removed ones to `dropped`, which has room for all.
   std::size_t (*part)(const std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved,
                       std::uint32_t* kept, std::uint32_t* dropped);
 };

@@ -14,10 +14,10 @@ namespace {
 
 constexpr unsigned kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-// Pairs that are sorted by comparing them sooner than digits are counted.
+// For fewer pairs a comparison sort is faster than counting digits.
 constexpr std::size_t kFew = 256;
 
-// One stable pass of a radix sort by `kDigitBits` of member `Key` from `shift` on.
+// One stable pass of a radix sort: kDigitBits of member `Key` from bit `shift` on.
 template <ObjectId Pair::*Key>
 void pass(const Pair* from, Pair* to, std::size_t count, unsigned shift) {
   std::array<std::size_t, kDigits> start{};
@@ -42,7 +42,7 @@ void PairTracker::drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
 
 bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
                        Column<Pair>& dropped) noexcept {
-  // A piece at a time, so that the list need not have room for all.
+  // In pieces, so that `dropped` need not have room for all pairs.
   constexpr std::size_t kPiece = 4096;
   const std::size_t count = out.pairs_.size();
   auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
@@ -82,7 +82,7 @@ bool PairTracker::sort(PairBuffer& out, std::size_t slots, std::size_t begin,
     pass<&Pair::first>(from, to, count, shift);
     std::swap(from, to);
   }
-  // As many passes for each member: an even number, so the result stands where it began.
+  // Both members need the same number of passes, so the total is even and the result is in place.
   return true;
 }
 

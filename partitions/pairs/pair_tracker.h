@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// A partition's access to the provenance of a PairBuffer.
+/// Access of a partition to the private data of a PairBuffer.
 class PairTracker {
  public:
   [[nodiscard]] static PairBuffer::Provenance provenance(const PairBuffer& out) noexcept {
@@ -17,26 +17,26 @@ class PairTracker {
     out.provenance_ = provenance;
   }
 
-  /// Drops every pair that has an object in the set, keeping the order. O(pairs).
+  /// Removes every pair with an object in the bitmap, in stable order. O(pairs).
   static void drop(PairBuffer& out, const std::uint64_t* moved) noexcept;
 
-  /// The same, adding the pairs that it drops to `dropped`, which is empty. False, and unchanged
-  /// but for the order, if memory is refused.
+  /// As above; appends removed pairs to `dropped`, which must be empty. If memory is refused,
+  /// returns false and keeps all pairs, in another order.
   [[nodiscard]] static bool drop(PairBuffer& out, const std::uint64_t* moved,
                                  Column<Pair>& dropped) noexcept;
 
-  /// Sorts by (first, second), all ids below `slots`. O(pairs); false if memory is refused.
+  /// Sorts by (first, second); ids are below `slots`. O(pairs). False if memory is refused.
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots) noexcept {
     return sort(out, slots, 0, out.size());
   }
-  /// The same for pairs [begin, end) alone.
+  /// Sorts pairs [begin, end) only.
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t begin,
                                  std::size_t end) noexcept;
 
-  /// The first `size` of the pairs that stand in its array.
+  /// Keeps the first `size` pairs in the array.
   static void set_size(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
 
-  /// The pairs, which keep their provenance.
+  /// Returns the pairs for editing; provenance stays.
   [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.pairs_.data(); }
 };
 

@@ -1,3 +1,7 @@
+// Collects the pairs of parallel tasks. The serial path writes into the buffer; the parallel path
+// writes pages, which gather_pages copies into the order of tasks. See the class comment in
+// pair_writer.h.
+
 #include "partitions/pairs/pair_writer.h"
 
 #include <algorithm>
@@ -17,13 +21,13 @@ std::uint32_t* words(Pair* pair) {
   return reinterpret_cast<std::uint32_t*>(pair);
 }
 
-// Points the sink at [from, end) of pairs.
+// Points the sink at the pairs [from, end).
 void aim(PairSink& sink, Pair* from, Pair* end) {
   sink.cursor = words(from);
   sink.limit = words(end) - 2 * kSinkSlack;
 }
 
-// A page's table entry: the task that filled it and how much it holds.
+// Table entry of a page: the task that filled it and its number of pairs.
 constexpr std::uint64_t entry(std::size_t task, std::size_t count) {
   return static_cast<std::uint64_t>(task) << 32U | count;
 }
@@ -36,7 +40,7 @@ constexpr std::size_t count_of(std::uint64_t e) {
 
 }  // namespace
 
-/// The pages, of which tasks take the next one; what is in each, and which tasks are done.
+/// State shared by the tasks of a parallel query: pages, their contents, and finished tasks.
 struct PairWriter::PageClaims {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
@@ -47,8 +51,9 @@ struct PairWriter::PageClaims {
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint64_t> tests{0};
   std::atomic<bool> full{false};
-  // The task before which all have written to the buffer's array, up to `led`. It alone changes
-  // the two; none leads any more once one has needed a page.
+  // The leading task writes to the buffer's array: all tasks before it are done and wrote there, up
+  // to `led`. Only the leading task changes these two. Once a leading task needed a page, no task
+  // leads.
   std::atomic<std::size_t> leading{0};
   std::size_t led = 0;
 };
@@ -58,7 +63,7 @@ Status PairWriter::append(std::size_t tasks, void* context, Task run) {
                                                      : append_parallel(tasks, context, run);
 }
 
-// Pages for the pairs of so many tasks: all but one of a task's are full.
+// Returns the number of pages for that many tasks: each task fills all of its pages but one.
 std::size_t PairWriter::pages_for(const PairBuffer& out, std::size_t tasks) noexcept {
   const std::size_t pages = out.pairs_.capacity() / kPageContent + tasks + 16;
   return std::max(pages, out.pages_.capacity() / kPage);
@@ -76,14 +81,14 @@ bool PairWriter::reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
 struct PairWriter::SerialOutput {
   const PairWriter& writer;
   Column<Pair>& pairs;
-  const std::size_t before;  // pairs that were there
+  const std::size_t before;  // pairs in the buffer at the start
   const std::size_t tasks;
-  Pair* few;                     // where the first ones are found, if not in the array
-  std::size_t task = 0;          // that is running
-  std::size_t checked = before;  // pairs that the predicate has been asked about
+  Pair* few;                     // storage of the first pairs, or null for the array
+  std::size_t task = 0;          // running task
+  std::size_t checked = before;  // pairs that passed the predicate
 
-  // Pairs to have room for: every growth writes all to fresh pages, which costs more than to find
-  // them. Tasks are about alike, so that some of them tell of the rest.
+  // Capacity to grow to. Growing copies all pairs into fresh pages, which costs more than finding
+  // them, so the total is extrapolated from the tasks that are done.
   [[nodiscard]] std::size_t room() const {
     constexpr std::size_t kEnoughTasks = 3;
     const std::size_t least =
@@ -95,7 +100,7 @@ struct PairWriter::SerialOutput {
                       std::max(least, 4 * pairs.capacity()));
   }
 
-  // Takes in what the sink got since; false if memory is refused.
+  // Takes over the pairs that the sink received; false if memory is refused.
   [[nodiscard]] bool take(const PairSink& sink) {
     if (few != nullptr) return take_few(sink);
     const auto used = static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2;
@@ -128,10 +133,10 @@ std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noex
 Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
-  // The slack of the kernels is many times what a small world has of pairs: the first are found
-  // beside the array, which then has room for what there is.
+  // The kernels' slack is many times the number of pairs of a small world. The first pairs are
+  // therefore written beside the array, which then grows to the actual number.
   constexpr std::size_t kBeside = 2 * kSinkSlack;
-  alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // no pairs yet, which would be written
+  alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // uninitialized, unlike Pair[]
   auto* const room = reinterpret_cast<Pair*>(bytes);
   const bool is_tight = before + kBeside > pairs.capacity();
   SerialOutput output{*this, pairs, before, tasks, is_tight ? room : nullptr};
@@ -147,7 +152,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
     if (!o.take(full)) return false;
     Column<Pair>& column = o.pairs;
     const std::size_t used = column.size();
-    // The predicate may have left some free.
+    // The predicate may have freed enough room.
     const bool enough = used + 2 * kSinkSlack <= column.capacity();
     if (!enough && !column.reserve(o.room()) && !column.reserve(used + 2 * kSinkSlack)) {
       return false;
@@ -171,7 +176,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
 Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
   PageClaims claims;
   claims.led = out_.pairs_.size();
-  // A guess from what the buffer held last.
+  // Initial guess: what the buffer held last.
   std::size_t pages = pages_for(out_, tasks);
   while (make_pages(claims, pages, tasks)) {
     run_on_pages(tasks, claims, context, run);
@@ -184,7 +189,7 @@ Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
   return Status::out_of_memory;
 }
 
-// Makes room for so many pages; those that have been written move along.
+// Allocates pages; pages that are already written are moved.
 bool PairWriter::make_pages(PageClaims& claims, std::size_t pages, std::size_t tasks) {
   Column<Pair>& content = out_.pages_;
   Column<std::uint64_t>& table = out_.page_table_;
@@ -204,8 +209,8 @@ bool PairWriter::make_pages(PageClaims& claims, std::size_t pages, std::size_t t
   return true;
 }
 
-// Pages to go on with where there were too few: tasks are about alike, so that those which are done
-// tell of the rest. What the others have written counts for nothing.
+// Returns the number of pages to continue with, extrapolated from the tasks that are done. Discards
+// the output of unfinished tasks.
 std::size_t PairWriter::more_pages(PageClaims& claims, std::size_t tasks) {
   claims.next.store(claims.limit);
   std::size_t done = 1;
@@ -216,16 +221,16 @@ std::size_t PairWriter::more_pages(PageClaims& claims, std::size_t tasks) {
   return std::clamp(claims.limit * tasks / done, 2 * claims.limit, 4 * claims.limit);
 }
 
-/// What a task writes to: the buffer's array while it leads and that has room, then pages.
+/// Output of one task: the buffer's array while it leads and the array has room, then pages.
 struct PairWriter::TaskOutput {
   const PairWriter& writer;
   PageClaims& claims;
   const std::size_t task;
-  Pair* begin = nullptr;  // what it writes to now, if anything
+  Pair* begin = nullptr;  // current destination, or null
   Pair* end = nullptr;
-  std::size_t checked = 0;  // pairs from there that the predicate has been asked about
+  std::size_t checked = 0;  // pairs from `begin` on that passed the predicate
   std::size_t page = PageClaims::kNone;
-  std::size_t in_array = 0;  // pairs that it has written there
+  std::size_t in_array = 0;  // pairs written to the array
 
   bool write(void* context, Task run) {
     const bool leads = claims.leading.load(std::memory_order_acquire) == task;
@@ -240,7 +245,7 @@ struct PairWriter::TaskOutput {
     if (has_room()) {
       aim(sink, begin, end);
     } else {
-      // Starts with nothing: a task that finds no pair takes no page.
+      // Start without a page, so that a task without pairs takes none.
       begin = nullptr;
       sink.cursor = &none + 1;
       sink.limit = &none;
@@ -273,7 +278,7 @@ struct PairWriter::TaskOutput {
 
   bool go_on(PairSink& sink) {
     take(sink);
-    // What the predicate leaves free is written on, so that pages follow what it accepts.
+    // Reuse the room of rejected pairs, so that the number of pages depends on accepted ones.
     if (begin == nullptr || !has_room()) {
       begin = nullptr;
       page = claims.next.fetch_add(1, std::memory_order_relaxed);
@@ -299,9 +304,9 @@ void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* conte
   });
 }
 
-// Puts what stands on pages behind what stands in the array.
+// Copies the pages behind the pairs in the array.
 Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
-  // Counting sort of pages by task; within a task pages were claimed in ascending order.
+  // Counting sort of pages by task; a task claimed its pages in ascending order.
   const std::size_t pages = claims.next.load();
   std::uint64_t* const offset = claims.done;
   std::fill_n(offset, tasks + 1, 0U);
@@ -312,7 +317,7 @@ Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
   pairs.set_size(claims.led);
-  // Pages may have been taken for nothing, and the array may be none yet.
+  // All pages may be empty, and then the array may be unallocated.
   if (offset[tasks] == 0) return Status::ok;
   const auto all = static_cast<std::size_t>(claims.led + offset[tasks]);
   if (!pairs.grow(all)) {
@@ -320,7 +325,7 @@ Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
     return Status::out_of_memory;
   }
   pairs.set_size(all);
-  // From here the entry holds where its page goes instead of whose it is.
+  // From here on an entry holds the destination of its page instead of the task.
   for (std::size_t p = 0; p < pages; ++p) {
     const std::uint64_t e = claims.entries[p];
     const std::uint64_t to = offset[task_of(e)];

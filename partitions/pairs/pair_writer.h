@@ -13,20 +13,20 @@
 
 namespace winnow {
 
-/// Appends the output of many tasks to a PairBuffer, in the order of the tasks whatever thread runs
-/// which. On one thread tasks write straight into the buffer. On several, so does the task before
-/// which all are done, while the buffer has room: schedulers deal out runs of tasks that follow
-/// each other, so that the output of one thread needs no copy. Any other task claims pages of the
-/// buffer's scratch one at a time, which are copied into order at the end. There are pages for all
-/// that the buffer can hold, so frames with the same results allocate nothing.
+/// Appends the output of many tasks to a PairBuffer in the order of the tasks, whichever threads
+/// run them. On one thread, tasks write directly into the buffer. On several threads, a task also
+/// does so if all tasks before it are done and the buffer has room: schedulers hand out runs of
+/// consecutive tasks, so one thread's output needs no copy. All other tasks claim pages of scratch
+/// memory, which are copied in order at the end. The number of pages follows the capacity of the
+/// buffer, so that frames with the same results allocate nothing.
 class PairWriter {
  public:
-  /// Only pairs that `predicate` accepts are appended; it is asked by whichever thread found them.
+  /// Appends only pairs that `predicate` accepts. It is called on the thread that found the pair.
   PairWriter(PairBuffer& out, const Execution& execution,
              const PairPredicate& predicate = {}) noexcept
       : out_(out), execution_(execution), predicate_(predicate) {}
 
-  /// Runs run(i, sink) for every i < tasks; it returns false when its sink could not grow.
+  /// Runs run(i, sink) for every i < tasks; `run` returns false if its sink could not grow.
   template <typename Run>
   Status append(std::size_t tasks, Run&& run) {
     return append(tasks, &run, [](void* context, std::size_t i, PairSink& sink) {
@@ -34,12 +34,11 @@ class PairWriter {
     });
   }
 
-  /// Makes room in a buffer for so many pairs of so many tasks, at most. False if memory is
-  /// refused.
+  /// Makes room for up to `pairs` pairs of up to `tasks` tasks. False if memory is refused.
   [[nodiscard]] static bool reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
                                     const Execution& execution, Pages pages) noexcept;
 
-  /// Tests of 16 volumes that the tasks counted.
+  /// Returns the tests of 16 volumes that the tasks counted.
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
 
  private:

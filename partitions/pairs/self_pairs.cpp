@@ -1,4 +1,13 @@
-// All pairs of a partition, anew or by what moved, and those between two.
+// Pair queries of a partition. answer_self_pairs chooses one of four ways to find all pairs:
+//
+//   resting      boxes are deferred, at most 1/16 of the objects left their margin, no predicate
+//   linked       nothing moved, or few objects moved in two consecutive frames (LinkedPairs)
+//   incremental  the buffer is tracked, and few objects moved or events are reported
+//   full         otherwise
+//
+// Resting and linked also require a tracked buffer, Order::fast, and events, if any, of the same
+// frame. The resting way is in calm_pairs.cpp. Tasks write through PairWriter; EventWriter finds
+// events.
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
@@ -19,14 +28,14 @@ namespace {
 constexpr const char* kSelfPairs = "Partition::self_pairs";
 constexpr std::size_t kQueriesPerTask = 64;
 constexpr std::size_t kTreeTasks = 64;
-// Finding all pairs takes so many times as long as other work on as many objects.
+// Cost of a full pair query per object, relative to other work per object.
 constexpr std::size_t kPairWork = 2;
 
 constexpr std::size_t ceil_divide(std::size_t a, std::size_t b) {
   return (a + b - 1) / b;
 }
 
-/// Rows [begin, end) of a partition asking about volumes of their own kind.
+/// Rows [begin, end) of a partition as queries with their own volumes.
 QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) noexcept {
   const RowView view = rows.view();
   QueryBatch batch;
@@ -43,8 +52,8 @@ QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) no
 
 }  // namespace
 
-/// How the tasks of a full pair query are numbered: the regular region's own, then the tree's, then
-/// the tree's rows against the regular region.
+/// Tasks of a full pair query in order: the structure's tasks for regular rows, tasks over the
+/// tree, and the rows of the tree against the regular rows.
 struct PartitionState::SelfTasks {
   std::size_t regular = 0;
   std::size_t tree = 0;
@@ -61,12 +70,12 @@ struct PartitionState::SelfTasks {
     tree = ceil_divide(p.index.tree().groups(), groups_per_task);
     if (p.rows.regions().regular != 0) {
       const std::size_t asking = p.rows.pool().rows() - first_tree_row;
-      // Whole blocks each.
+      // Each task gets whole blocks.
       queries_per_task *= ceil_divide(asking, kTreeTasks * kQueriesPerTask);
       cross = ceil_divide(asking, queries_per_task);
     }
   }
-  /// Tasks that there may be over so many rows.
+  /// Returns the largest number of tasks for that many rows.
   [[nodiscard]] static std::size_t most(std::size_t rows) noexcept {
     const std::size_t groups = rows / (16 * kBlockRows) + 2;
     return std::min(kMostTasks, rows) + std::min(2 * kTreeTasks, groups) +
@@ -106,7 +115,7 @@ Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool alone,
 
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
   const DefaultEnvironment environment;
-  // In no order: the events are sorted, and nobody sees the pairs.
+  // Order::fast: events are sorted anyway, and the pairs are not returned.
   return self_pairs(EventWriter::own_buffer(events), events,
                     {Order::fast, options.incremental, options.predicate});
 }
@@ -134,7 +143,7 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
 
 Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
                                          EventWriter* events) const {
-  // One buffer at a time is tracked; a query that runs beside a tracked one does without.
+  // Only one buffer is tracked at a time. A query concurrent with a tracked one is not tracked.
   Lock lock = Lock::if_free(tracker_mutex_);
   const bool all = !options.incremental || out.empty();
   const bool tracked = lock.owns_lock() && options.incremental;
@@ -159,14 +168,14 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
   if (all_anew) begin_calm(out, options);
   if (chooser_ == nullptr) return Status::ok;
   if (all) note(QueryKind::all_pairs, 1);
-  // What a predicate leaves says nothing about the scene.
+  // The number of pairs after a predicate is no feature of the scene.
   if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
   return Status::ok;
 }
 
-// The buffer holds this frame from here on, and the events tell of it.
+// From here on the buffer holds this frame and the events describe it.
 void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept {
-  // Untracked, the serial still tells the events whose frame the buffer holds.
+  // Even if the buffer is not tracked, events compare its serial.
   const PairBuffer::Provenance provenance{pairs_.identity, ++pairs_.last_serial};
   PairTracker::set_provenance(out, provenance);
   if (events != nullptr) events->take_frame(provenance);
@@ -175,12 +184,12 @@ void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* even
   pairs_.tracked_serial = provenance.serial;
 }
 
-// A refused query leaves the buffer empty or, if events follow it, with the pairs of the last
-// frame. The next query looks for all pairs in either case: its answer does not depend on which
-// request was refused.
+// After a failure the buffer is empty or, if events follow it, holds the pairs of the last frame.
+// In both cases the next query is a full one, so that its result does not depend on which
+// allocation failed.
 void PartitionState::undo_self_pairs(PairBuffer& out, bool calm,
                                      EventWriter* events) const noexcept {
-  // Some of the watched pairs may be noted as of a frame that was not answered.
+  // Some watched pairs may already have the state of the frame that failed.
   if (calm) pairs_.tracked_serial = 0;
   const PairBuffer::Provenance untracked{pairs_.identity, ++pairs_.last_serial};
   if (events == nullptr || !events->undo(out, untracked)) return out.clear();
@@ -189,7 +198,7 @@ void PartitionState::undo_self_pairs(PairBuffer& out, bool calm,
 
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept {
-  // Pairs that stay where they are are in no order, and events must know them.
+  // Updating in place keeps no order, and events must describe the same frame.
   return can_update(out) && options.order == Order::fast &&
          (events == nullptr || events->follows());
 }
@@ -203,10 +212,10 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
   return redo_self_pairs(out, options, update, events);
 }
 
-// True if those that moved asking one by one cost less than all asking together. Where nothing
-// prunes, all asking costs the square. Else the more pairs objects have, the more there is to drop
-// and to find again (measured from 1 to 30 pairs each), and runs of cells are walked faster than
-// cells are found.
+// True if querying with the moved objects costs less than a full query. Without pruning a full
+// query is O(n^2). Otherwise the limit decreases with the number of pairs per object, which are
+// dropped and found again, and with cells, because a full query visits consecutive cells without
+// searching them.
 bool PartitionState::asks_few(const PairBuffer& out) const noexcept {
   constexpr std::size_t kFlat = 4;
   constexpr std::size_t kTree = 8;
@@ -218,7 +227,7 @@ bool PartitionState::asks_few(const PairBuffer& out) const noexcept {
   return share * rows.moved().ids().size() <= rows.size() + 64;
 }
 
-// True if nothing moved, or if the buffer is linked. Without the memory for that it is not.
+// True if nothing moved, or if the buffer is linked or could be linked. False if memory is refused.
 bool PartitionState::update_in_place(PairBuffer& out) const noexcept {
   const std::size_t moved = rows.moved().ids().size();
   LinkedPairs linked(out);
@@ -328,7 +337,7 @@ Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredica
   return ask_moved(out, predicate);
 }
 
-// Leaves the rows of the live objects that moved in the selection. False if memory is refused.
+// Selects the rows of the live objects that moved. False if memory is refused.
 bool PartitionState::list_moved() const noexcept {
   const std::span<const ObjectId> moved = rows.moved().ids();
   const std::size_t limit = rows.pool().rows();
@@ -337,7 +346,7 @@ bool PartitionState::list_moved() const noexcept {
   for (const ObjectId id : moved) {
     if (rows.keys().is_live(id)) asking.add(rows.keys().row_of(id));
   }
-  // Neighbours in the pool are neighbours in space: in row order queries share cache lines.
+  // Neighbours in the pool are neighbours in space: queries in row order share cache lines.
   asking.sort(limit);
   return true;
 }
@@ -383,7 +392,7 @@ Status Partition::pairs_with(const Partition& other, PairBuffer& out,
   const PartitionState& theirs = *other.state_;
   if (const Status status = mine.settle(); status != Status::ok) return status;
   if (const Status status = theirs.settle(); status != Status::ok) return status;
-  // The smaller side asks: each question costs about the logarithm of the side that is asked.
+  // Query with the smaller side: each query costs about the logarithm of the other side.
   const Status status = size() <= other.size()
                             ? mine.ask(theirs, HitMode::query_first, options.predicate, out)
                             : theirs.ask(mine, HitMode::query_second, options.predicate, out);

@@ -7,16 +7,18 @@
 
 namespace winnow {
 
-/// A box that moves along a line, against boxes [low, high]: they touch during an interval of t per
-/// axis, ended by (near - origin) / d and (far - origin) / d, where near is the end of the box that
-/// is met first, and origin the end of the moving box that meets it. A ray is a box without extent.
+/// A cast prepared for the kernels: a box that moves along a line, tested against boxes by the slab
+/// method (Kay, Kajiya 1986). On each axis the boxes overlap during the interval of t from (near -
+/// near_origin) / d to (far - far_origin) / d, where `near` is the end of the tested box that the
+/// moving box reaches first, and the origins are ends of the moving box. A ray is a box of zero
+/// extent.
 ///
-/// The tests of 16 boxes are in float and never miss; what they let pass is decided in double. For
-/// them t is scaled by a power of two that brings the largest component of the direction into
-/// [1/2, 1), so that no product underflows by more than the tests allow for. On an axis without
-/// motion the reciprocal is infinite and the origins are moved outward by one float, so that
-/// 0 * infinity comes up only where there is no hit. An axis whose motion is too slow for a float
-/// reciprocal repeats the fastest axis instead: only the test in double looks at it.
+/// The float tests of 16 boxes never miss a hit; a test in double decides on the rows that pass.
+/// The float tests scale t by a power of two, so that the largest component of the direction lies
+/// in [1/2, 1) and underflow stays within the slack of the tests. On an axis without motion the
+/// reciprocal is infinite, and the origins are moved outward by one float, so that 0 * infinity
+/// occurs only without a hit. An axis whose motion is too slow for a float reciprocal uses the
+/// values of the fastest axis; only the test in double tests it.
 struct Sweep {
   float near_origin[3];
   float far_origin[3];
@@ -33,16 +35,16 @@ struct Sweep {
   double min_t;
   double max_t;
 
-  /// Goes on where the boxes touch, for shapes that are not boxes: the first t >= from at which the
-  /// shape touches the box (six floats), or a negative number.
+  /// For shapes that are not boxes, called for rows whose box the bounding box touches: returns the
+  /// first t >= `from` at which the shape touches the box (six floats), or a negative number.
   double (*touch)(const void* shape, const float* box, double from) = nullptr;
   const void* shape = nullptr;
 };
 
-/// Sweeps that go down the trees together at most; all must go the same way.
+/// Largest number of sweeps in one joint traversal. Their directions must satisfy `same_way`.
 inline constexpr std::uint32_t kMostSweeps = 64;
 
-/// True if two sweeps meet the same columns of boxes first.
+/// True if two sweeps reach the same columns of boxes first.
 static inline bool same_way(const Sweep& a, const Sweep& b) {
   bool same = true;
   for (int i = 0; i < 3; ++i) {
@@ -52,22 +54,22 @@ static inline bool same_way(const Sweep& a, const Sweep& b) {
   return same;
 }
 
-/// Results that are sorted together at most.
+/// Largest number of results that sort_few sorts.
 inline constexpr std::uint32_t kMostSorted = 64;
 
-/// The result of a sweep that hits nothing.
+/// Result of a sweep without a hit.
 inline constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
 
-/// Results are t's bits << 32 | id, which sorts by t and then by id, since t >= 0.
+/// A result is (bits of t) << 32 | id. Because t >= 0, integers sort by t, then by id.
 struct CastKernels {
-  /// For each of `count` <= kMostSweeps sweeps the least hit.
+  /// Finds the least hit of each of `count` <= kMostSweeps sweeps.
   void (*closest)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
                   std::uint64_t* best);
-  /// For each of `count` sweeps any hit.
+  /// Finds any hit of each of `count` <= kMostSweeps sweeps.
   void (*any)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
               std::uint64_t* found);
-  /// All hits of `count` <= kMostSweeps sweeps, in no order: two pairs each, (question of the
-  /// sweep, id) and (bits of t, 0). False if the sink is full.
+  /// Finds all hits of `count` <= kMostSweeps sweeps, unsorted. Writes two pairs per hit:
+  /// (question[s], id) and (bits of t, 0). False if the sink is full.
   bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, const std::uint32_t* question,
               const QueryFilter&, PairSink&);
   /// Sorts at most kMostSorted results.

@@ -1,4 +1,5 @@
-// Rays and swept volumes.
+// Casts of a partition: rays and swept volumes. The public functions prepare sweeps (sweep.h), call
+// a kernel (casts.kernel.cpp) and write hits (hit_writer.h). Batches of rays run in parallel.
 
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
@@ -19,7 +20,7 @@ WINNOW_DEFINE_KERNELS(CastKernels, cast_kernels)
 
 namespace {
 
-/// A cast ready for the kernels. Not to be moved: the sweep points into it.
+/// A cast prepared for the kernels. Not movable, because the sweep points into it.
 class PreparedCast {
  public:
   explicit PreparedCast(const Cast& cast) noexcept {
@@ -67,7 +68,7 @@ class PreparedCast {
 };
 
 constexpr std::size_t kGroup = HitWriter::kGroup;
-// Groups that are finished before the next ones begin: what they found stays in the cache.
+// Groups that are sorted before the next ones are traced, while their hits are in the cache.
 constexpr std::size_t kGroupsTogether = 16;
 
 bool all_valid(const RayBatch& rays) noexcept {
@@ -77,7 +78,7 @@ bool all_valid(const RayBatch& rays) noexcept {
   return true;
 }
 
-/// Which half of space each axis of a ray goes to.
+/// Returns a bit per axis: 1 if the ray goes in the negative direction.
 unsigned octant(const Ray& ray) noexcept {
   unsigned result = 0;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -86,7 +87,7 @@ unsigned octant(const Ray& ray) noexcept {
   return result;
 }
 
-/// Some rays of a batch, in parties that go the same way and are traversed together.
+/// A part of a batch of rays, split into groups of one octant that are traversed together.
 class RayGroup {
  public:
   RayGroup(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
@@ -102,7 +103,7 @@ class RayGroup {
   RayGroup(const RayGroup&) = delete;
   RayGroup& operator=(const RayGroup&) = delete;
 
-  /// Prepares the next party. False if there is none.
+  /// Prepares the next group. False if there is none.
   bool next() noexcept {
     questions_ = left_;
     count_ = 0;
@@ -116,7 +117,7 @@ class RayGroup {
   }
   [[nodiscard]] const Sweep* sweeps() const noexcept { return sweep_.data(); }
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
-  /// Of each sweep, its ray in the batch.
+  /// Per sweep, the index of its ray in the batch.
   [[nodiscard]] const std::uint32_t* questions() const noexcept { return questions_; }
 
  private:
@@ -135,12 +136,12 @@ void write_columns(const HitColumns& out, std::size_t i, const Hit& hit) noexcep
   if (out.t != nullptr) out.t[i] = hit.t;
 }
 
-/// The hit that a kernel's result stands for; a null hit if there is none.
+/// Returns the hit of a kernel's result; a null hit if there is none.
 Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
   return result != kNoHit ? to_hit(keys, result) : Hit{};
 }
 
-/// A kernel that finds one hit of each of some sweeps.
+/// A kernel that finds one hit per sweep.
 using FindHits = void (*)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
                           std::uint64_t* found);
 
@@ -174,7 +175,7 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
     for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
     return Status::ok;
   }
-  // Small tasks, so that a batch of some thousands has work for every thread.
+  // Small tasks, so that a batch of a few thousand rays occupies every thread.
   constexpr std::size_t kTask = kGroup / 4;
   state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
     RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));

@@ -1,3 +1,7 @@
+// Kernels of casts: closest, any and all hits of up to kMostSweeps sweeps. casts.cpp calls them;
+// the tests of boxes and the joint traversal are in sweep.wide.h, the ordered descent in
+// descent.wide.h.
+
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/sweep.wide.h"
 
@@ -5,8 +9,8 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Calls found(t, id) for every row from `first_row` on that the sweep touches by
-/// `limit`; it returns false to end the descent.
+/// Calls found(t, id) for every row from `first_row` on that the sweep touches before `limit`.
+/// `found` returns false to end the descent.
 template <typename Found>
 bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
                const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
@@ -35,10 +39,10 @@ class NearestHits {
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     const std::uint64_t hit = hit_of(t, id);
     if (wanted_.asks_caller() && (hit >= best_[s] || !wanted_.accepts(id))) return;
-    // Whether it is nearer is a coin toss: no branch.
+    // Branchless: the comparison is unpredictable.
     const std::uint64_t best = hit < best_[s] ? hit : best_[s];
     best_[s] = best;
-    // Up to the next float: what shows the same t may have the smaller id.
+    // The limit is the next float, because an object with the same rounded t may have a smaller id.
     const float shown = value_of(static_cast<std::uint32_t>(best >> 32U) + 1);
     const float next = scaled_limit(sweeps_[s], static_cast<double>(shown));
     limit_[s] = next < limit_[s] ? next : limit_[s];
@@ -51,7 +55,7 @@ class NearestHits {
   float* limit_;
 };
 
-/// Keeps one hit of every sweep, whichever is found first, and asks for no more of that sweep.
+/// Keeps the first found hit of every sweep, and ends that sweep.
 class AnyHits {
  public:
   AnyHits(const Sweep*, const Wanted& wanted, std::uint64_t* found, float* limit)
@@ -65,7 +69,7 @@ class AnyHits {
   }
 
  private:
-  // No sweep begins before 0.
+  // Every sweep begins at t >= 0.
   static constexpr float kBeforeAll = -1.0F;
 
   const Wanted& wanted_;
@@ -73,8 +77,8 @@ class AnyHits {
   float* limit_;
 };
 
-/// Looks for hits along the first stretch of all sweeps together, which reaches about as far as the
-/// first hits in a scene of even density, and goes on with each sweep that found none there.
+/// Traces the first segment of all sweeps together, then each sweep without a hit there on its own.
+/// The segment reaches about as far as the first hits in a scene of even density.
 template <typename Hits>
 class StretchAndRest {
  public:
@@ -85,20 +89,20 @@ class StretchAndRest {
         wanted_(view, filter),
         hits_(sweeps, wanted_, found, limit_),
         count_(count) {
-    // Without blocks to lead to them all rows are tested anyway.
+    // Without trees all rows are tested anyway.
     const float edge = view.leaf_edge;
     const float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
       found[s] = kNoHit;
       from_[s] = sweeps[s].from;
       last_[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
-      // A unit of scaled t is about a unit of length.
+      // One unit of scaled t is about one unit of length.
       const float end = from_[s] + stretch;
       end_[s] = limit_[s] = end < last_[s] ? end : last_[s];
     }
   }
 
-  /// `go_on(probe, wanted, limit, test)` visits the blocks of rows of a sweep by `test(first_row)`.
+  /// Calls go_on(probe, wanted, limit, test), which must call test(first_row) for blocks of rows.
   template <typename GoOn>
   void run(GoOn&& go_on) {
     JointSweeps<Hits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
@@ -120,8 +124,8 @@ class StretchAndRest {
  private:
   static constexpr float kStretch = 0.4F;
 
-  /// True where nothing is left of a sweep, or what it hit lies before the end of the stretch by
-  /// more than the rounding of the tests.
+  /// True if nothing of the sweep is left, or its hit lies before the end of the segment by more
+  /// than the rounding of the tests.
   [[nodiscard]] bool is_finished(std::uint32_t s) const {
     return limit_[s] < end_[s] || !(end_[s] < last_[s]);
   }
@@ -145,7 +149,7 @@ void closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
       });
 }
 
-/// One sweep has no others to go with.
+/// A single sweep needs no joint traversal.
 void any_of_one(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
                 std::uint64_t& found) {
   const Wanted wanted(view, filter);
@@ -176,7 +180,7 @@ class AllHits {
   AllHits(const Wanted& wanted, const std::uint32_t* question, PairSink& sink)
       : wanted_(wanted), question_(question), sink_(sink) {}
 
-  /// Two pairs per hit, and a sink with room has some for 272.
+  /// A hit takes two pairs. A sink with room has it for 272 pairs, enough for 128 hits.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;
@@ -206,11 +210,12 @@ bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
   return JointSweeps<AllHits>(view, sweeps, from, limit, wanted, hits).run(count);
 }
 
-/// Every element's place is counted, 16 comparisons at once, with no branch that depends on the
-/// data. What is counted by is most of t and the element's number, so that no two are equal; what
-/// differs in the rest of t, or not at all, is put right at the end.
+/// Counting rank sort: finds the position of each element by 16 comparisons at a time, without
+/// data-dependent branches. The keys are the upper bits of t with the element's index in the low
+/// bits, so that all are distinct. An insertion sort then orders elements that differ only in the
+/// other bits.
 void sort_few(std::uint64_t* results, std::uint32_t size) {
-  constexpr std::uint32_t kLeastNormal = 0x00800000U;  // denormals may count as zero
+  constexpr std::uint32_t kLeastNormal = 0x00800000U;  // denormals may compare as zero
   alignas(64) float key[kMostSorted];
   std::uint64_t copy[kMostSorted];
   const std::uint32_t blocks = (size + kLanes - 1) / kLanes;

@@ -1,8 +1,8 @@
 #pragma once
 
-// The way through a partition's blocks in the order in which a query reaches them, and what all
-// queries share. A query brings a probe, which tests 16 boxes at once, and what is to be done with
-// the rows that pass.
+// Traversal of a partition's blocks by a query, in row order or nearest first, and the filter that
+// all queries share. A query passes a probe, which tests 16 boxes at once, and a function for the
+// blocks of rows that are reached. Used by the kernels of casts, regions and nearest queries.
 
 #include "partitions/index/query_view.h"
 #include "partitions/tree/hits.wide.h"
@@ -11,7 +11,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Which candidates a query wants of nodes and rows.
+/// Filters the nodes and rows that a query may return.
 class Wanted {
  public:
   Wanted(const QueryView& view, const QueryFilter& filter) : view_(view), filter_(filter) {}
@@ -26,9 +26,9 @@ class Wanted {
     return passing_rows(view_.filter, view_.span.apart, first_row, candidates,
                         range_of(filter_.object));
   }
-  /// True if the caller has the last word.
+  /// True if the caller has a predicate.
   [[nodiscard]] bool asks_caller() const { return filter_.accept != nullptr; }
-  /// The caller's last word.
+  /// Returns the result of the caller's predicate.
   [[nodiscard]] bool accepts(std::uint32_t id) const {
     return filter_.accept == nullptr || filter_.accept(filter_.context, id);
   }
@@ -38,8 +38,8 @@ class Wanted {
   const QueryFilter& filter_;
 };
 
-/// The bits of a float >= 0, which sort as it does. Zero may have a sign: compilers take 0 + -0 for
-/// 0, which it is not where the host rounds down.
+/// Returns the bits of a float >= 0, which sort like the float. The sign is masked out: the sum of
+/// +0 and -0 is -0 if the host rounds down, although compilers assume +0.
 inline std::uint32_t order_of(float value) {
   std::uint32_t bits;
   __builtin_memcpy(&bits, &value, sizeof bits);
@@ -51,25 +51,25 @@ inline float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// The order of the largest float <= value; value >= 0.
+/// order_of the largest float <= value, for value >= 0.
 inline std::uint32_t order_of_rounded_down(double value) {
   if (value >= static_cast<double>(kLargest<float>)) return order_of(kLargest<float>);
   const auto nearest = static_cast<float>(value);
   return order_of(nearest) - (static_cast<double>(nearest) > value ? 1U : 0U);
 }
 
-/// No order of a descent is larger; one that is means that there is none.
+/// Upper bound of the order of a node; a larger value means that there is no node.
 inline constexpr float kMostOrder = 1e38F;
 
-/// The open nodes of a descent: of each level the last sixteen, of which those that were gone to
-/// come first by their keys. A key is a node's order but for its last four bits, which tell which
-/// of the sixteen it is; no two are equal, and none is denormal, which may count as zero. Probe:
-/// `Mask16 test(columns, at, limit, Floats& order)` with order in [0, kMostOrder], and infinite in
-/// the lanes that fail.
+/// The open nodes of a nearest-first descent. Each level stores the 16 siblings opened last, with a
+/// key each; siblings with keys up to gone_to_ are done. A key is the node's order with the lane in
+/// its low four bits, so that keys of siblings are distinct; keys are never denormal, which may
+/// compare as zero. Probe: `Mask16 test(columns, at, limit, Floats& order)`, where order is in [0,
+/// kMostOrder], and infinite in lanes that fail.
 template <typename Probe>
 class OpenNodes {
  public:
-  /// `limit` may be lowered from visit to visit.
+  /// `limit` may be lowered between visits.
   OpenNodes(const QueryView& view, const TreeShape& tree, const Probe& probe, const Wanted& wanted,
             const float& limit)
       : view_(view), tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
@@ -92,7 +92,7 @@ class OpenNodes {
     return true;
   }
 
-  /// The nearest of the last ones that lies within the limit.
+  /// Returns the nearest remaining sibling of the lowest open level, if it lies within the limit.
   [[gnu::always_inline]] bool take(std::uint32_t& level, std::uint32_t& node) {
     const std::uint32_t last = order_of(last_key());
     while (open_ != 0) {
@@ -124,13 +124,13 @@ class OpenNodes {
     const Floats without_number(value_of(~(kLanes - 1U)));
     return (positive & without_number) | Floats::load(reinterpret_cast<const float*>(kEach));
   }
-  /// No key of a node within the limit is larger.
+  /// Upper bound of the keys of nodes within the limit.
   [[nodiscard]] float last_key() const {
     const float most = limit_ < kMostOrder ? limit_ : kMostOrder;
     return value_of(order_of(most > kLeastOrder ? most : kLeastOrder) | (kLanes - 1U));
   }
-  // By force: compilers leave out calls of functions that only ask for memory.
-  /// Asks for the rows of blocks that wait.
+  // always_inline: compilers remove calls of functions that only prefetch.
+  /// Prefetches the rows of blocks that are visited later.
   [[gnu::always_inline]] void fetch_rows(std::uint32_t first_block, Mask16 blocks) const {
     for (; blocks != 0; blocks &= blocks - 1) {
       const std::size_t block = tree_.first_block + first_block + first(blocks);
@@ -147,15 +147,15 @@ class OpenNodes {
   const Probe& probe_;
   const Wanted& wanted_;
   const float& limit_;
-  /// A bit for each level of which some wait.
+  /// A bit per level that has remaining siblings.
   std::uint32_t open_ = 0;
   std::uint32_t first_node_[kMaxTreeLevels];
   float gone_to_[kMaxTreeLevels];
   alignas(64) float key_[kMaxTreeLevels][kLanes];
 };
 
-/// Visits all blocks that the probe reaches within a limit, in the order of rows.
-/// `visit(first_row)` returns false to end it.
+/// Visits all blocks that the probe reaches within a limit, in row order. `visit(first_row)`
+/// returns false to end the traversal.
 template <typename Probe, typename Visit>
 bool visit_in_row_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
                         float limit, Visit&& visit) {
@@ -179,8 +179,8 @@ bool visit_in_row_order(const QueryView& view, const Probe& probe, const Wanted&
   return true;
 }
 
-/// Visits blocks about in the order in which the probe reaches their nodes, as far as `limit` says,
-/// which visiting may lower. `visit(first_row)` returns false to end the descent.
+/// Visits blocks that the probe reaches within `limit`, approximately nearest first. A visit may
+/// lower the limit. `visit(first_row)` returns false to end the descent.
 template <typename Probe, typename Visit>
 bool visit_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
                     const float& limit, Visit&& visit) {

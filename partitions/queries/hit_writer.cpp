@@ -8,7 +8,7 @@
 namespace winnow {
 namespace {
 
-/// A hit as casts write it.
+/// A hit as the cast kernels write it.
 struct Found {
   std::uint32_t question;
   ObjectId id;
@@ -31,7 +31,8 @@ void sort(std::uint64_t* begin, std::uint64_t* end) noexcept {
   }
 }
 
-/// The first hit of a question or a later one; hits of different groups of questions are in order.
+/// Returns the index of the first hit of this or a later question. Hits are sorted by group of
+/// questions.
 std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t question) noexcept {
   std::size_t low = 0;
   std::size_t high = hits;
@@ -88,7 +89,7 @@ void HitWriter::finish_group(HitBuffer& out, std::size_t first, std::size_t last
     const Found hit(pairs, i);
     out.keys_[start[hit.question - first]++] = hit.order();
   }
-  // Each start has moved on to the next.
+  // Each start has advanced to the start of the next question.
   std::uint64_t* const order = out.keys_.data();
   for (std::size_t q = 0; q < last - first; ++q) {
     sort(order + (q == 0 ? begin : start[q - 1]), order + start[q]);

@@ -10,33 +10,33 @@
 
 namespace winnow {
 
-/// The hit that (t's bits << 32 | id) stands for.
+/// Returns the hit encoded as (bits of t) << 32 | id.
 [[nodiscard]] inline Hit to_hit(const KeyTable& keys, std::uint64_t found) noexcept {
   const auto id = static_cast<ObjectId>(found);
   return {keys.key_of(id), keys.client_data(id),
           std::bit_cast<float>(static_cast<std::uint32_t>(found >> 32U))};
 }
 
-/// A query's access to the inside of a HitBuffer. Casts first write two pairs a hit, (question,
-/// object) and (bits of t, 0), those of one group of questions after those of another, but in no
-/// order within a group; then `finish` puts them in order.
+/// Access of queries to the private data of a HitBuffer. Cast kernels write two pairs per hit,
+/// (question, object) and (bits of t, 0). Groups of questions come in order, hits within a group do
+/// not. `finish` sorts them.
 class HitWriter {
  public:
-  /// Questions in a group.
+  /// Questions per group.
   static constexpr std::size_t kGroup = 1024;
 
-  /// Empties the buffer for `questions` questions. False if memory is refused.
+  /// Empties the buffer for that many questions. False if memory is refused.
   [[nodiscard]] static bool start(HitBuffer& out, std::size_t questions) noexcept;
-  /// Found and not yet finished.
+  /// Hits that `finish` has not processed yet.
   [[nodiscard]] static PairBuffer& found(HitBuffer& out) noexcept { return out.found_; }
-  /// Makes hits of what was found for questions [first, last), where `first` begins a group, sorted
-  /// by question, t and id. False if memory is refused.
+  /// Converts the hits of questions [first, last), sorted by question, t and id; `first` is the
+  /// first of a group. False if memory is refused.
   [[nodiscard]] static bool finish(HitBuffer& out, std::size_t first, std::size_t last,
                                    const KeyTable& keys, const Execution& execution) noexcept;
 
-  /// Scratch for a nearest query.
+  /// Scratch of a nearest query.
   [[nodiscard]] static Column<std::uint64_t>& heap(HitBuffer& out) noexcept { return out.keys_; }
-  /// Makes hits of what is in that scratch, of one question. False if memory is refused.
+  /// Converts this scratch to the hits of one question. False if memory is refused.
   [[nodiscard]] static bool write_heap(HitBuffer& out, const KeyTable& keys) noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Nearest objects.
+// `Partition::nearest`: prepares the query and calls the kernel (nearest.kernel.cpp).
 
 #include "core/threads/float_environment.h"
 #include "partitions/queries/nearest.kernel.h"
@@ -13,7 +13,7 @@ WINNOW_DEFINE_KERNELS(NearestKernels, nearest_kernels)
 
 namespace {
 
-/// A heap whose entries lie in a column.
+/// Returns a heap whose entries are stored in a column.
 NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
   NearestHeap heap;
   heap.entries = entries.data();

@@ -6,7 +6,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Squares of distances to 16 boxes, in float and never too large.
+/// Squared distances to 16 boxes in float, rounded so that they are never too large.
 class DistanceProbe {
  public:
   explicit DistanceProbe(const NearestQuery& query) : query_(query) {}
@@ -31,7 +31,7 @@ class DistanceProbe {
   const NearestQuery& query_;
 };
 
-/// The distance to a row's box.
+/// Returns the distance to the box of a row, in double.
 double distance(const NearestQuery& query, const float* const* column, std::size_t r) {
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ double distance(const NearestQuery& query, const float* const* column, std::size
   return __builtin_sqrt(square);
 }
 
-/// The least square that a distance beyond `t` can show.
+/// Returns an upper bound of the float square of any distance <= t.
 float square_limit(float t) {
   const double square = static_cast<double>(t) * static_cast<double>(t);
   return square < 3e38 ? static_cast<float>(square) * 1.000001F + 1e-37F : __builtin_inff();
@@ -72,7 +72,7 @@ class Heap {
   }
 
  private:
-  /// Replaces the worst.
+  /// Replaces the worst entry.
   void sink(std::uint64_t entry) {
     std::size_t place = 0;
     for (;;) {
@@ -109,7 +109,8 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
       if ((heap.full() && entry >= heap.worst()) || !wanted.accepts(id)) continue;
       if (!heap.add(entry)) return false;
       if (!heap.full()) continue;
-      // Up to the next float: what shows the same distance may have the smaller id.
+      // The limit is the next float, because an object with the same rounded distance may have a
+      // smaller id.
       limit = square_limit(value_of(static_cast<std::uint32_t>(heap.worst() >> 32U) + 1));
     }
     return true;

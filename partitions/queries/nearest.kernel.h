@@ -8,12 +8,12 @@
 
 namespace winnow {
 
-/// The nearest objects so far: a heap of (distance's bits << 32 | id) with the worst in front.
+/// Max-heap of the nearest objects so far; an entry is (bits of the distance) << 32 | id.
 struct NearestHeap {
   std::uint64_t* entries = nullptr;
   std::size_t size = 0;
   std::size_t room = 0;
-  std::size_t most = 0;  ///< objects wanted
+  std::size_t most = 0;  ///< number of objects to find
   bool (*grow)(NearestHeap& heap) = nullptr;
   void* owner = nullptr;
 };
@@ -25,7 +25,7 @@ struct NearestQuery {
 };
 
 struct NearestKernels {
-  /// The heap's objects, in the order of a heap. False if it cannot grow.
+  /// Fills the heap. False if it cannot grow.
   bool (*nearest)(const QueryView&, const NearestQuery&, const QueryFilter&, NearestHeap&);
 };
 

@@ -1,4 +1,5 @@
-// Which objects meet a region.
+// Overlap queries of a partition: one region (regions.h) or a batch of boxes. Results go to an
+// OverlapBuffer or, as pairs, through PairWriter.
 
 #include <winnow/core/hits.h>
 #include "core/threads/float_environment.h"
@@ -14,7 +15,7 @@
 
 namespace winnow {
 
-/// A query's access to the inside of an OverlapBuffer.
+/// Access of queries to the private data of an OverlapBuffer.
 class OverlapWriter {
  public:
   explicit OverlapWriter(OverlapBuffer& out) noexcept : out_(out) {
@@ -26,7 +27,7 @@ class OverlapWriter {
 
   [[nodiscard]] RegionSinks& sinks() noexcept { return sinks_; }
 
-  /// Puts the crossing objects behind those inside. False if memory is refused.
+  /// Appends the crossing objects to the objects inside. False if memory is refused.
   [[nodiscard]] bool finish(Order order) noexcept {
     out_.ids_.set_size(written(sinks_.inside, out_.ids_));
     out_.crossing_.set_size(written(sinks_.crossing, out_.crossing_));
@@ -59,7 +60,8 @@ class OverlapWriter {
       return true;
     };
   }
-  /// A column too small for any write makes the first one grow it.
+  /// If the column is too small for one write, the sink starts full, so that the first write grows
+  /// it.
   static void place(IdSink& sink, Column<ObjectId>& column, std::size_t used) noexcept {
     static constinit ObjectId none = 0;
     const bool fits = column.capacity() >= kLanes;
@@ -75,7 +77,7 @@ namespace {
 
 constexpr std::size_t kBoxesPerTask = 64;
 
-/// Some of a caller's boxes as kernels want them.
+/// A range of the caller's boxes as a query batch.
 class BoxColumns {
  public:
   BoxColumns(const BoxSource& boxes, std::size_t begin, std::size_t end) noexcept {
@@ -100,7 +102,8 @@ class BoxColumns {
   QueryBatch batch_;
 };
 
-/// Asks about the object of a pair of a box and an object.
+/// Returns a pair predicate that applies the caller's predicate to the object of a (box, object)
+/// pair.
 PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
   if (filter->accept == nullptr) return {};
   return {[](void* context, ObjectId, ObjectId second) {
@@ -162,7 +165,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     if (index.structure().is_flat())
       return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
     batch.filter = {&asking.layers, &asking.mask, &asking.environment};
-    // Telling it apart from the others costs one look.
+    // True is always safe, and costs one test.
     batch.environments = true;
     batch.one_filter = true;
     batch.meets_all = !wanted.wanted().by_object;

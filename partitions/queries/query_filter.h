@@ -6,7 +6,7 @@
 
 namespace winnow {
 
-/// A caller's filter as kernels take it. Not to be moved: what it hands out points into it.
+/// Converts a caller's filter for the kernels. Not movable, because its QueryFilter points to it.
 class KernelFilter {
  public:
   KernelFilter(const Filter& filter, const QueryView& view, const KeyTable& keys) noexcept
@@ -14,7 +14,8 @@ class KernelFilter {
     wanted_.object = filter.object();
     FilterSpan asking;
     asking.add(wanted_.object);
-    // Without filters in the partition every object has the default one: one answer for all.
+    // If the partition stores no filters, every object has the default filter, so one test decides
+    // for all.
     const bool meets_all = surely_meet(asking, view.span);
     const bool filtered = view.filter.layers != nullptr;
     wanted_.by_object = filtered && !meets_all;

@@ -8,34 +8,35 @@
 
 namespace winnow {
 
-/// How a region and a box lie.
+/// Relation of a box to a region.
 enum class Containment : std::uint8_t { apart, crossing, inside };
 
-/// Decides on the box of a row (six floats), for regions that 16 lanes of float cannot.
+/// Test in double of the box of a row (six floats), for rows that the float tests leave undecided.
 struct ExactRegion {
   Containment (*meets)(const void* region, const float* box) = nullptr;
   const void* region = nullptr;
 };
 
-/// A half-space for tests of 16 boxes. The largest component of the normal lies in [1/16, 1/8), so
-/// that nothing overflows.
+/// A half-space for float tests. The largest component of the normal lies in [1/16, 1/8), so that
+/// nothing overflows.
 struct WidePlane {
   float normal[3];
   float offset;
-  std::uint8_t farthest[3];  ///< column of a box's end that lies the most inside
+  std::uint8_t farthest[3];  ///< per axis, the column of the box's end farthest inside
 };
 
-/// The part of a box that is inside of all planes. Without planes no `exact` is needed. If there
-/// are `more` conditions that only `exact` knows, no test here says "inside".
+/// The part of a box that lies inside all planes. Without planes `exact` is not needed. `more`
+/// means that only `exact` tests some conditions: the float tests then never return "inside".
 struct PlaneRegion {
   float low[3];
   float high[3];
   const WidePlane* planes = nullptr;
   std::uint32_t count = 0;
   bool more = false;
-  /// True if a box that reaches inside of every plane meets the region, and there is nothing more.
+  /// True if the planes decide: a box that overlaps [low, high] and reaches inside every plane
+  /// overlaps the region.
   bool planes_decide = false;
-  /// What normal . p + offset may be off by: rounding times the largest coordinate, plus margin.
+  /// Error bound of normal . p + offset: rounding * largest coordinate + margin.
   float rounding = 0.0F;
   float margin = 0.0F;
   ExactRegion exact;
@@ -47,24 +48,24 @@ struct BallRegion {
   ExactRegion exact;
 };
 
-/// What a sweep passes over.
+/// The volume that a box sweeps.
 struct SweptRegion {
   Sweep sweep;
   ExactRegion exact;
 };
 
-/// Where objects are written that lie inside, and those that cross the border.
+/// Outputs for objects inside the region and for objects that cross its border.
 struct RegionSinks {
   IdSink inside;
   IdSink crossing;
 };
 
-/// All return false if a sink is full.
+/// All functions return false if a sink is full.
 struct RegionKernels {
   bool (*planes)(const QueryView&, const PlaneRegion&, const QueryFilter&, RegionSinks&);
   bool (*ball)(const QueryView&, const BallRegion&, const QueryFilter&, RegionSinks&);
   bool (*swept)(const QueryView&, const SweptRegion&, const QueryFilter&, RegionSinks&);
-  /// All pairs (batch.id of the box, object) of a batch of boxes with the flat blocks.
+  /// Finds all pairs (batch.id of the box, object) of a batch of boxes with the flat blocks.
   bool (*flat_boxes)(const QueryView&, const QueryBatch&, const QueryFilter&, PairSink&);
 };
 

@@ -1,3 +1,6 @@
+// Preparation of regions for the kernels: each kind of region becomes a set of planes, a ball or a
+// swept box, with the test in double that decides in the end (touch.h). Called by overlaps.cpp.
+
 #include "partitions/queries/regions.h"
 
 #include "partitions/queries/sweep.h"
@@ -15,12 +18,12 @@ WINNOW_DEFINE_KERNELS(RegionKernels, region_kernels)
 
 namespace {
 
-// Roundings of a plane test in float, and what the plane's own coefficients may be off by, each of
-// up to three eighths of the largest coordinate.
+// Error bound of a float plane test relative to the largest coordinate, with rounded coefficients.
+// Each rounding is relative to at most 3/8 of that coordinate.
 constexpr float kPlaneRounding = 8 * 0x1p-24F;
 
-/// `size` bounds the terms that the offset was computed from, if it was; `margin` grows to cover
-/// what heights above the plane may be off by.
+/// `size` bounds the terms from which the offset was computed; 0 if it was given. `margin` is
+/// raised to cover the error of heights above the plane.
 WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float& margin) noexcept {
   int exponent = 0;
   (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);
@@ -30,10 +33,10 @@ WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float
     wide.normal[i] = static_cast<float>(normal[i] * scale);
     wide.farthest[i] = static_cast<std::uint8_t>(wide.normal[i] < 0.0F ? i : i + 3);
   }
-  // Beyond the largest float it outweighs every point there is.
+  // An offset beyond the largest float outweighs every point.
   const auto most = static_cast<double>(FLT_MAX);
   wide.offset = static_cast<float>(std::clamp(offset * scale, -most, most));
-  // Products of tiny normals and coordinates can vanish altogether.
+  // 1e-36 covers products of tiny normals and coordinates that underflow.
   margin = std::max(margin, std::abs(wide.offset) * kPlaneRounding + 1e-36F +
                                 static_cast<float>(std::min(1e-14 * size * scale, most)));
   return wide;
@@ -96,7 +99,7 @@ Status PreparedRegion::prepare(const OrientedBox& box) noexcept {
   const Eigen::Vector3d center = box.center.cast<double>();
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d normal = axes.col((i + 1) % 3).cross(axes.col((i + 2) % 3));
-    // A face without a direction bounds nothing that lanes could test.
+    // A degenerate face has no direction, so that the float tests cannot use it.
     if (normal.isZero(0.0)) {
       planes_.more = true;
       continue;
@@ -122,7 +125,7 @@ Status PreparedRegion::prepare(const Sphere& sphere) noexcept {
 
 Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
   if (!capsule.is_valid()) return Status::invalid_argument;
-  // The ball at one end, moved to the other.
+  // The ball at one end, swept to the other.
   const Eigen::Vector3d along = capsule.b.cast<double>() - capsule.a.cast<double>();
   if (along.isZero(0.0)) {
     kind_ = Kind::ball;

@@ -11,7 +11,7 @@
 
 namespace winnow {
 
-/// A region that kernels can take. Not to be moved: parts of it point at each other.
+/// A region prepared for the kernels. Not movable, because its parts point at each other.
 class PreparedRegion {
  public:
   explicit PreparedRegion(const Region& region) noexcept;
@@ -36,7 +36,7 @@ class PreparedRegion {
   void within(const Aabb& box) noexcept;
   void prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept;
 
-  // Of more planes than this, the first prune and all decide.
+  // If there are more planes, only the first ones prune; the test in double uses all.
   static constexpr std::size_t kMostPlanes = 16;
 
   Kind kind_ = Kind::planes;

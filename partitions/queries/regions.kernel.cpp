@@ -1,3 +1,7 @@
+// Kernels of overlap queries: tests of 16 boxes against a region (PlaneProbe, BallProbe,
+// SweptProbe), and the traversal of flat blocks and trees with them (RegionTraversal). regions.cpp
+// and overlaps.cpp call them.
+
 #include "partitions/queries/descent.wide.h"
 #include "partitions/queries/region.kernel.h"
 #include "partitions/queries/sweep.wide.h"
@@ -7,34 +11,34 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Which of 16 boxes may meet a region, which surely lie inside, and of which only the exact test
-/// knows.
+/// Result of a float test of 16 boxes: `met`: may overlap the region; `inside`: certainly inside;
+/// `open`: needs the exact test.
 struct Met {
   Mask16 met = 0;
   Mask16 inside = 0;
   Mask16 open = 0;
 };
 
-/// The largest coordinate of each box.
+/// Returns the largest coordinate of each box.
 inline Floats reach_of(const Box16& box) {
   const Floats high = max(box.high[0], max(box.high[1], box.high[2]));
   const Floats low = min(box.low[0], min(box.low[1], box.low[2]));
   return max(high, 0.0F - low);
 }
 
-/// Blocks of rows in no order that are scanned together: what is collected of them is still in the
-/// nearest cache when it is gathered.
+/// Unordered blocks that are scanned together, so that collected rows are still in the L1 cache
+/// when they are gathered.
 constexpr std::uint32_t kScanned = 64;
 
-/// The rows of some blocks that meet the box of a region.
+/// The rows of some blocks that overlap the region's box.
 class RowsInBox {
  public:
   explicit RowsInBox(const PlaneRegion& region) : region_(region) {}
 
-  /// False if they are so many that planes had better be tested on all rows.
+  /// False if there are so many rows that testing the planes on all rows is cheaper.
   bool collect(const QueryView& view, const Wanted& wanted, std::uint32_t begin,
                std::uint32_t end) {
-    // Sixteen rows that lie apart cost some three times what those of a block do.
+    // Scattered rows cost about three times as much as the rows of a block.
     const unsigned most = (end - begin) * (kLanes / 4);
     for (std::uint32_t block = begin; block < end; ++block) {
       const std::uint32_t row = block * kLanes;
@@ -53,13 +57,13 @@ class RowsInBox {
   std::uint32_t row_[kScanned * kLanes / 4 + 2 * kLanes];
 };
 
-/// Sixteen rows side by side.
+/// 16 scattered rows copied side by side.
 struct GatheredRows {
   alignas(64) float box[6][kLanes] = {};
   std::uint32_t id[kLanes] = {};
   const float* column[6] = {box[0], box[1], box[2], box[3], box[4], box[5]};
 
-  /// Rows from a place on; gives back which lanes hold one.
+  /// Loads rows from `first_place` on; returns the lanes that hold one.
   Mask16 load(const QueryView& view, const RowsInBox& rows, unsigned first_place) {
     const unsigned left = rows.size() - first_place;
     const unsigned taken = left < kLanes ? left : kLanes;
@@ -72,8 +76,8 @@ struct GatheredRows {
   }
 };
 
-/// Six planes, as a frustum has, against rows in no order, of which most miss: all that the planes
-/// need stays in registers from block to block.
+/// Scan of unordered rows, most of which miss, with the six planes of a frustum. The planes stay in
+/// registers from block to block.
 class FrustumScan {
  public:
   static constexpr std::uint32_t kPlanes = 6;
@@ -90,7 +94,7 @@ class FrustumScan {
     }
   }
 
-  /// False if none of the 16 boxes from `at` on meets the region.
+  /// False if none of the 16 boxes from `at` on overlaps the region.
   [[nodiscard]] bool may_meet(std::size_t at) const {
     const Box16 box = load_slabs<3>(column_, at);
     Mask16 met = overlap(box, region_.low, region_.high);
@@ -130,7 +134,7 @@ class PlaneProbe {
     if (result.met == 0) return result;
     const Floats slack = region_.count != 0 ? rounding_of(box) : Floats(0.0F);
     Mask16 surely = result.met;
-    // All planes, whether or not boxes are left: the next plane costs less than a wrong guess.
+    // Test all planes even if no box is left: another plane costs less than a mispredicted branch.
     for (std::uint32_t k = 0; k < region_.count; ++k) {
       const WidePlane& plane = region_.planes[k];
       const Floats most = height(plane, column[plane.farthest[0]] + at,
@@ -144,7 +148,7 @@ class PlaneProbe {
   }
 
  private:
-  /// `surely`: the boxes that reach inside of all planes by more than rounding.
+  /// `surely`: boxes that reach inside all planes by more than the rounding error.
   void find_inside(const Box16& box, const float* const* column, std::size_t at,
                    const Floats& slack, Mask16 surely, Met& result) const {
     result.open = result.met;
@@ -169,13 +173,13 @@ class PlaneProbe {
 
   static unsigned opposite(unsigned column) { return column < 3 ? column + 3 : column - 3; }
 
-  /// What the heights of these boxes' corners may be off by.
+  /// Error bound of the heights of the boxes' corners.
   [[nodiscard]] Floats rounding_of(const Box16& box) const {
     return multiply_add(reach_of(box), Floats(region_.rounding), Floats(region_.margin));
   }
 
-  /// normal . p + offset of a corner of each box. Each step is monotone in the box's ends: what
-  /// holds for a node holds for the boxes below it.
+  /// Returns normal . p + offset for a corner of each box. Every step is monotone in the ends of
+  /// the box, so a result for a node also holds for the boxes below it.
   static Floats height(const WidePlane& plane, const float* x, const float* y, const float* z) {
     const Floats a = multiply_add(Floats::load(x), Floats(plane.normal[0]), Floats(plane.offset));
     const Floats b = multiply_add(Floats::load(y), Floats(plane.normal[1]), a);
@@ -192,7 +196,7 @@ class BallProbe {
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
   [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
-    // More than the rounding of either side; squares may also be lost below the smallest float.
+    // kMore exceeds the rounding of both sides; kTiny covers squares that underflow.
     constexpr float kMore = 1.000002F;
     constexpr float kTiny = 1e-36F;
     const Box16 box = load_slabs<3>(column, at);
@@ -209,7 +213,7 @@ class BallProbe {
       far = far + span * span;
     }
     const float square = region_.radius * region_.radius;
-    // A square that overflows says nothing about what lies inside.
+    // An infinite square cannot prove that a box lies inside.
     const float finite_square = square < kLargest<float> ? square : kLargest<float>;
     const Mask16 live = bits(box.low[0] <= kLargest<float>);
     Met result;
@@ -272,7 +276,7 @@ class RegionTraversal {
     return true;
   }
 
-  /// Blocks [begin, end), at most kScanned.
+  /// Requires end - begin <= kScanned.
   bool scan_some(std::uint32_t begin, std::uint32_t end) {
     if constexpr (requires { probe_.is_frustum(); }) {
       if (probe_.is_frustum()) {
@@ -298,7 +302,7 @@ class RegionTraversal {
     return true;
   }
 
-  /// Notes the blocks that pass without a branch, and looks at them after that.
+  /// Collects the blocks that pass without a branch, then tests them.
   bool scan_planes(std::uint32_t begin, std::uint32_t end) {
     const FrustumScan scan(probe_.region(), view_.column);
     std::uint32_t passed[kScanned];
@@ -331,7 +335,7 @@ class RegionTraversal {
         });
   }
 
-  /// Every row below a node that lies inside.
+  /// Writes every row below a node that lies inside.
   bool take_all(const TreeShape& tree, std::uint32_t level, std::uint32_t node) {
     const std::uint64_t begin = std::uint64_t{node} << (4 * level);
     std::uint64_t end = std::uint64_t{node + 1} << (4 * level);
@@ -350,7 +354,7 @@ class RegionTraversal {
     return take_met(found, view_.id + first_row, view_.column, first_row);
   }
 
-  /// Writes what was met of sixteen rows with these ids, whose boxes lie in columns from `at` on.
+  /// Writes the matches among 16 rows with these ids and with boxes in the columns from `at` on.
   bool take_met(Met found, const std::uint32_t* id, const float* const* column, std::size_t at) {
     if (found.met == 0) return true;
     found.inside &= found.met;

@@ -10,7 +10,7 @@ namespace winnow {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Slower than this beside the fastest axis, and the reciprocal is no normal float.
+// Below this speed, relative to the fastest axis, the reciprocal is not a normal float.
 constexpr double kSlowest = 0x1p-120;
 
 }  // namespace
@@ -23,14 +23,14 @@ void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, dou
   s.max_t = max_t;
   const Eigen::Vector3d speed = direction.cwiseAbs();
   const double most = speed.maxCoeff();
-  // The power of two above the fastest: its exponent bits plus one.
+  // The next power of two above `most`: its exponent bits plus one.
   const auto exponent = std::bit_cast<std::uint64_t>(most) >> 52U;
   s.scale = std::bit_cast<double>((exponent + 1) << 52U);
   s.from = round_down(min_t * s.scale);
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis];
     const auto a = static_cast<std::uint8_t>(axis);
-    // Which way it goes cannot be foreseen: no branch.
+    // Branchless: the direction is unpredictable.
     const auto back = static_cast<unsigned>(d < 0.0);
     const float end[2] = {box.max[axis], box.min[axis]};
     s.near_column[a] = static_cast<std::uint8_t>(a + 3 * back);
@@ -44,7 +44,7 @@ void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, dou
     s.inverse[a] = static_cast<float>(s.exact_inverse[a] * s.scale);
     if (d == 0.0) {
       s.exact_inverse[a] = std::numeric_limits<double>::infinity();
-      // What reaches beyond the range of float has infinite ends, which have no float beyond.
+      // Boxes beyond the range of float have infinite ends, which have no next float.
       if (s.near_origin[a] < kInfinity) s.near_origin[a] = next_up(s.near_origin[a]);
       if (s.far_origin[a] > -kInfinity) s.far_origin[a] = -next_up(-s.far_origin[a]);
       s.inverse[a] = kInfinity;

@@ -7,8 +7,8 @@
 
 namespace winnow {
 
-/// Prepares the sweep of a box along direction * [min_t, max_t], in its place: what is copied right
-/// after it was written waits for every store. The direction is not zero.
+/// Prepares the sweep of a box along direction * [min_t, max_t]; the direction is not zero. Writes
+/// in place, because copying a struct that was just written stalls on its stores.
 void make_sweep(Sweep& sweep, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
                 double max_t) noexcept;
 

@@ -1,30 +1,31 @@
 #pragma once
 
-// Moving boxes against the boxes of rows and nodes: sixteen against one sweep in float, single rows
-// in double, and many sweeps together.
+// Tests of sweeps (moving boxes) against the boxes of rows and nodes: 16 boxes in float
+// (SweepTest), one row in double (ExactSweepTest), and a joint traversal of many sweeps
+// (JointSweeps). Used by casts.kernel.cpp and regions.kernel.cpp.
 
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/descent.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Rounding of three operations on either side, and more.
+/// Covers the rounding of three operations on each side.
 inline constexpr float kSweepSlack = 1.0000006F;
-/// What denormal results can lose, also where the caller flushes them to zero.
+/// Covers underflow, also if the caller flushes denormals to zero.
 inline constexpr float kSweepTiny = 1e-37F;
 
-/// The largest scaled t that a hit at or before t can show in float.
+/// Returns an upper bound of the scaled float t of any hit at or before t.
 inline float scaled_limit(const Sweep& sweep, double t) {
   const double scaled = t * sweep.scale * static_cast<double>(kSweepSlack) + 2e-37;
-  // Conversion of what is beyond float is undefined; infinity stands for it.
+  // Converting a value beyond float is undefined; infinity replaces it.
   return scaled < 3e38 ? static_cast<float>(scaled) * kSweepSlack : __builtin_inff();
 }
 
-/// Sixteen boxes against one sweep.
+/// Float test of 16 boxes against one sweep.
 class SweepTest {
  public:
   explicit SweepTest(const Sweep& sweep) : SweepTest(sweep, sweep.from) {}
-  /// From a later scaled t on.
+  /// Starts at a later scaled t.
   SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(from) {
     for (int i = 0; i < 3; ++i) {
       near_origin_[i] = Floats(sweep.near_origin[i]);
@@ -33,8 +34,8 @@ class SweepTest {
     }
   }
 
-  /// Which of the boxes from `at` on may be touched at a scaled t <= limit, and when at the
-  /// earliest, or kMostOrder; infinity for the others.
+  /// Returns the boxes from `at` on that may be touched at a scaled t <= limit. `enter` gets a
+  /// lower bound of t, at most kMostOrder, and infinity for the other boxes.
   [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at, float limit,
                                      Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
@@ -43,12 +44,12 @@ class SweepTest {
                                  column[sweep_.far_column[2]]};
     return test(near, far, at, limit, enter);
   }
-  /// Which of them alone.
+  /// As above without `enter`.
   Mask16 test(const float* const* column, std::size_t at, float limit) const {
     Floats enter;
     return test(column, at, limit, enter);
   }
-  /// The same where the columns that are met first and last are known.
+  /// As above for given columns of the ends that are reached first and last.
   [[gnu::always_inline]] Mask16 test(const float* const* near, const float* const* far,
                                      std::size_t at, float limit, Floats& enter) const {
     Floats e[3];
@@ -60,7 +61,7 @@ class SweepTest {
     enter = max(max(e[0], e[1]), max(e[2], from_));
     const Floats exit = min(min(x[0], x[1]), x[2]);
     const Floats late = exit * kSweepSlack + kSweepTiny;
-    // The limit first: what is not a number, as padding can make, must not become the limit.
+    // `limit` is the first operand: if padding makes `late` NaN, `last` is NaN and the box fails.
     const Floats last = min(Floats(limit), late);
     const Mask16 touched = bits(enter <= last);
     enter = or_infinity(enter <= last, min(enter, kMostOrder));
@@ -79,11 +80,11 @@ class SweepTest {
   Floats from_;
 };
 
-/// Decides on single rows. In double: of three operations each, entry and exit are off by less than
-/// 4e-16 of themselves.
+/// Test of single rows in double. Entry and exit take three operations each: their relative error
+/// is below 4e-16.
 class ExactSweepTest {
  public:
-  /// For sweeps that go the same way as this one.
+  /// Also serves other sweeps that satisfy `same_way` with this one.
   ExactSweepTest(const Sweep& sweep, const float* const* column) : column_(column) {
     for (int i = 0; i < 3; ++i) {
       near_[i] = column[sweep.exact_near_column[i]];
@@ -91,15 +92,15 @@ class ExactSweepTest {
     }
   }
 
-  /// The first t at which the sweep touches the box of row r, or a negative number.
+  /// Returns the first t at which the sweep touches the box of row r, or a negative number.
   [[nodiscard]] double touch(const Sweep& sweep, std::size_t r) const {
     double enter = sweep.min_t;
     double exit = sweep.max_t;
     for (int i = 0; i < 3; ++i) {
       const double near = static_cast<double>(near_[i][r]) - sweep.exact_near_origin[i];
       const double far = static_cast<double>(far_[i][r]) - sweep.exact_far_origin[i];
-      // On an axis without motion these are infinite, or not numbers where ends touch: then the
-      // comparisons keep what there was.
+      // On an axis without motion these are infinite, or NaN if ends touch. The comparisons then
+      // keep the previous value.
       const double e = near * sweep.exact_inverse[i];
       const double x = far * sweep.exact_inverse[i];
       enter = e > enter ? e : enter;
@@ -119,21 +120,21 @@ class ExactSweepTest {
   const float* far_[3];
 };
 
-/// Takes many sweeps down the trees together. What is to be left out must lie beyond a sweep's
-/// limit from the start. All sweeps go the same way (`same_way`), so that which columns they meet
-/// first is settled once per loop.
+/// Joint traversal of the trees with many sweeps, which must satisfy `same_way`, so that the
+/// columns to test are chosen once per loop.
 ///
-/// `Hits` takes what is touched: `void touched(sweep, t, id)`, and `bool make_room()` before 128 of
-/// them at most, which returns false to end the traversal.
+/// `Hits` receives touched rows: `void touched(sweep, t, id)`, and `bool make_room()` before at
+/// most 128 of them, which returns false to end the traversal. A lowered limit only skips boxes
+/// that are not tested yet; rows collected before are still passed on.
 template <typename Hits>
 class JointSweeps {
  public:
-  /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower a limit.
+  /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower limits.
   JointSweeps(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
               const Wanted& wanted, Hits& hits)
       : view_(view), sweeps_(sweeps), from_(from), limit_(limit), wanted_(wanted), hits_(hits) {}
 
-  /// Sweeps [0, count).
+  /// Traces sweeps [0, count).
   bool run(std::uint32_t count) {
     for (std::uint32_t t = 0; t < view_.trees; ++t) {
       tree_ = view_.tree[t];
@@ -150,10 +151,10 @@ class JointSweeps {
  private:
   friend JointTraversal<JointSweeps>;
   static constexpr unsigned kHitsAtOnce = 128;
-  // Blocks of rows lie in six columns, anywhere: they are fetched so many tests before their turn.
+  // Prefetch distance in tests. The six columns of a block are far apart in memory.
   static constexpr unsigned kAhead = 6;
 
-  /// The columns that all sweeps meet first, and last.
+  /// The columns of the ends that the sweeps reach first and last.
   struct Ways {
     const float* near[3];
     const float* far[3];
@@ -166,7 +167,7 @@ class JointSweeps {
     }
   };
 
-  // By force: it is most of the loops that it stands in.
+  // always_inline: it makes up most of the loops that call it.
   [[nodiscard, gnu::always_inline]] Mask16 touching(const Ways& ways, std::uint32_t s,
                                                     std::size_t at) const {
     Floats enter;

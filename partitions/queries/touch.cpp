@@ -1,3 +1,5 @@
+// Tests in double of shapes against the box of one row; see touch.h.
+
 #include "partitions/queries/touch.h"
 
 #include <Eigen/Geometry>
@@ -10,7 +12,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// A handful of roundings in double.
+// A few roundings in double.
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 struct Box {
@@ -24,14 +26,14 @@ struct Box {
   }
 };
 
-/// How far a point is from a box.
+/// Distance of a point from a box.
 struct Gap {
-  Vector away = Vector::Zero();  ///< from the box's nearest point to the point
+  Vector away = Vector::Zero();  ///< from the closest point of the box to the point
   double distance = 0.0;
-  double error = 0.0;  ///< bound on the rounding of `distance`
+  double error = 0.0;  ///< error bound of `distance`
 };
 
-/// `size` bounds what the coordinates of `p` were computed from.
+/// `size` bounds the terms from which the coordinates of `p` were computed.
 Gap gap_to(const Box& box, const Vector& p, const Vector& size) noexcept {
   Gap gap;
   for (int i = 0; i < 3; ++i) {
@@ -44,8 +46,9 @@ Gap gap_to(const Box& box, const Vector& p, const Vector& size) noexcept {
   return gap;
 }
 
-/// The parameter in [0, 1] at which a + s * along is nearest to the box: the root of the derivative
-/// of the squared distance, which is increasing and linear between the crossings of six planes.
+/// Returns the parameter s in [0, 1] at which a + s * along is closest to the box: the root of the
+/// derivative of the squared distance, which increases and is linear between the crossings of the
+/// six planes.
 double nearest_on_segment(const Box& box, const Vector& a, const Vector& along) noexcept {
   const auto slope = [&](double s) {
     double sum = 0.0;
@@ -74,7 +77,7 @@ double nearest_on_segment(const Box& box, const Vector& a, const Vector& along) 
                     : below;
 }
 
-/// From a capsule's axis, moved by `shift`, to a box.
+/// Returns the gap between a capsule's axis, moved by `shift`, and a box.
 Gap axis_gap(const Capsule& capsule, const Vector& shift, const Box& box) noexcept {
   const Vector a = capsule.a.cast<double>();
   const Vector b = capsule.b.cast<double>();
@@ -88,7 +91,7 @@ Gap axis_gap(const Capsule& capsule, const Vector& shift, const Box& box) noexce
   return gap;
 }
 
-/// The distance of the farthest corner from a point.
+/// Returns the distance of the farthest corner from a point.
 double farthest(const Box& box, const Vector& p) noexcept {
   return (box.low - p).cwiseAbs().cwiseMax((box.high - p).cwiseAbs()).norm();
 }
@@ -112,7 +115,7 @@ double touch_capsule(const void* shape, const float* six, double from) {
     if (next <= t) return t;
     t = std::min(next, moving.max_t);
   }
-  // Grazing so closely that halving the distance goes on and on.
+  // A grazing contact, at which the distance keeps halving.
   return t;
 }
 
@@ -133,7 +136,7 @@ Containment meet_capsule(const void* region, const float* six) {
   const auto radius = static_cast<double>(capsule.radius);
   const Gap gap = axis_gap(capsule, Vector::Zero(), box);
   if (gap.distance - gap.error > radius * (1.0 + kRounding)) return Containment::apart;
-  // A convex region holds the box if it holds its corners.
+  // A convex region contains the box if it contains the corners.
   const Vector a = capsule.a.cast<double>();
   const Vector along = capsule.b.cast<double>() - a;
   const double square = along.squaredNorm();
@@ -151,7 +154,7 @@ Containment meet_capsule(const void* region, const float* six) {
 
 namespace {
 
-/// The interval of normal . (p - center) over a box, and a bound on its rounding.
+/// The interval of normal . (p - center) over a box, with error bounds.
 struct Shadow {
   double low = 0.0;
   double high = 0.0;

@@ -11,28 +11,27 @@
 
 namespace winnow {
 
-// What decides, in double, whether a shape meets the box of a row. Boxes are six floats: low, high;
-// an end of +-FLT_MAX stands for infinity. Each errs to the side of meeting by a few roundings of
-// the coordinates that take part.
+// Tests in double of a shape against the box of a row: the final decision for rows that pass the
+// float tests. A box is six floats, low then high; +-FLT_MAX stands for infinity. Within a few
+// roundings of the coordinates, each test errs on the side of overlap.
 
-/// A capsule (or a ball: ends that are equal) that moves along direction * [0, max_t].
+/// A capsule (or ball, if its ends are equal) that moves along direction * [0, max_t].
 struct MovingCapsule {
   Capsule capsule;
   Eigen::Vector3d direction;
   double max_t;
 };
 
-/// The first t >= from at which it touches the box, or a negative number; `shape` is a
-/// MovingCapsule. The distance from the box is a convex function of t, so Newton's steps from the
-/// left never pass the first root; they converge quadratically, and by halves where the capsule
-/// only grazes the box.
+/// Returns the first t >= from at which the shape touches the box, or a negative number; `shape` is
+/// a MovingCapsule. The distance from the box is a convex function of t, so Newton steps from the
+/// left never pass the first root. They converge quadratically, or linearly if the capsule only
+/// grazes the box.
 [[nodiscard]] double touch_capsule(const void* shape, const float* box, double from);
 
-// `region` is a Sphere, Capsule, OrientedBox, std::span<const Plane>.
+// `region` points to a Sphere, Capsule, OrientedBox or std::span<const Plane>.
 [[nodiscard]] Containment meet_sphere(const void* region, const float* box);
 [[nodiscard]] Containment meet_capsule(const void* region, const float* box);
-/// Separating axes: three of the box, three of the oriented one, nine products of edges
-/// (Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996).
+/// Separating axis test (SAT) with 15 axes (Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996).
 [[nodiscard]] Containment meet_oriented_box(const void* region, const float* box);
 [[nodiscard]] Containment meet_planes(const void* region, const float* box);
 

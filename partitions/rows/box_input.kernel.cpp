@@ -1,3 +1,6 @@
+// Kernels of box input: validate given boxes, write them into the columns of rows, and compare
+// given boxes with stored ones. Called by the sources in volume_source.h and by DeferredBoxes.
+
 #include "partitions/rows/box_input.kernel.h"
 #include "simd/lanes/boxes.h"
 
@@ -16,16 +19,16 @@ bool box_is_legal(const float* f, float infinity) {
   return true;
 }
 
-/// Sixteen boxes are 96 floats. Against the same floats three places on, each lower end meets its
-/// upper end; the other lanes are left out.
+/// Tests 16 boxes (96 floats) at once. A load shifted by three floats puts each upper end into the
+/// lane of its lower end; kLower selects the lanes of lower ends.
 bool legal(const float* floats, std::size_t count) {
   const float infinity = __builtin_inff();
-  // The largest finite float: compared by <= it does what < infinity does.
+  // <= the largest finite float is the same test as < infinity.
   const Floats most = Floats(kLargest<float>);
   const Floats least = Floats(-kLargest<float>);
   constexpr Mask16 kLower[3] = {0x71C7U, 0xC71CU, 0x1C71U};
   std::size_t i = 0;
-  // One box short of the end, because the shifted loads run three floats over.
+  // Stops one box before the end: the shifted loads read three floats further.
   for (; i + kLanes < count; i += kLanes) {
     Mask16 bad = 0;
     for (unsigned part = 0; part < kFloats; ++part) {
@@ -49,7 +52,7 @@ bool legal_listed(const float* floats, const std::uint32_t* number, std::size_t 
   const auto at = [&](std::size_t i) { return floats + std::size_t{number[i]} * kFloats; };
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) {
-    // Boxes are met in any order: the next 16 are on their way meanwhile.
+    // Boxes are read in arbitrary order, so the next 16 are prefetched.
     const std::size_t ahead = i + 2 * kLanes <= count ? i + 2 * kLanes : count;
     for (std::size_t k = i + kLanes; k < ahead; ++k) __builtin_prefetch(at(k));
     const Box16 box = load_boxes([&](int lane) { return at(i + static_cast<std::size_t>(lane)); });
@@ -73,7 +76,7 @@ float clamp(float value) {
 
 constexpr std::uint32_t kNoBox = ~0U;
 
-/// The number of an id's box; none of `ids` or more.
+/// Index of the box of an id, or kNoBox.
 template <bool Listed>
 [[gnu::always_inline]] inline std::uint32_t number_of(const BoxOfId& box_of, std::uint32_t id) {
   const std::uint32_t k = id - box_of.first;
@@ -81,7 +84,7 @@ template <bool Listed>
   return k < box_of.ids ? box_of.table[k] : kNoBox;
 }
 
-/// Where the boxes of sixteen rows are; lanes of `missing` have none.
+/// Pointers to the boxes of 16 rows; lanes in `missing` have none.
 struct BoxesOfRows {
   const float* box[kLanes];
   Mask16 missing;
@@ -105,7 +108,7 @@ void write_boxes(const float* floats, const BoxOfId& box_of, const std::uint32_t
                  float* const* column, std::size_t begin, std::size_t end) {
   const Floats most = Floats(kLargest<float>);
   const Floats least = Floats(-kLargest<float>);
-  // Boxes are met in any order: those of the next two blocks are on their way meanwhile.
+  // Boxes are read in arbitrary order, so the boxes of the next two blocks are prefetched.
   constexpr std::size_t kBlocks = 3;
   BoxesOfRows blocks[kBlocks];
   const auto find = [&](std::size_t row, std::size_t block) {
@@ -161,9 +164,10 @@ void write_in_order(const float* floats, std::size_t count, float* const* column
   }
 }
 
-/// The longest edge of those that end on both sides, negated.
+/// The negated longest edge of each box, without axes that are infinite on a side.
 Floats minus_longest_edge(const Box16& box) {
-  // Infinite ends are stored as the largest float: all others are at most the one below it.
+  // Infinite ends are stored as the largest float, so every finite end is at most the float below
+  // it.
   constexpr float kMost = 0x1.fffffcp127F;
   static_assert(kMost < kLargest<float>);
   Floats least = Floats(0.0F);
@@ -195,7 +199,7 @@ void within(const float* const* given, const float* const* stored, std::size_t c
   }
 }
 
-/// Calls visit(box) for each of sixteen boxes of which one of 96 floats is not `good`, ascending.
+/// Calls visit(box), ascending, for each of 16 boxes that has a float without its bit in `good`.
 template <typename Visit>
 [[gnu::always_inline]] inline void for_each_bad_box(const Mask16* good, const Visit& visit) {
   unsigned last = kLanes;
@@ -208,7 +212,7 @@ template <typename Visit>
   }
 }
 
-/// An infinite end is near itself alone.
+/// The comparison by == covers infinite ends, whose difference is NaN.
 bool is_near(const float* box, const float* near, float margin) {
   for (std::size_t c = 0; c < kFloats; ++c) {
     const float d = box[c] - near[c];
@@ -255,7 +259,7 @@ bool is_within(const float* box, const float* around) {
   return true;
 }
 
-/// Sixteen boxes are 96 floats: after 48 of them their ends come in the same order again.
+/// The pattern of lower and upper ends repeats after 48 floats (three registers, eight boxes).
 std::uint32_t beyond(const float* boxes, const float* around, std::size_t count,
                      std::uint32_t* out) {
   constexpr std::size_t kOrders = 3;

@@ -7,46 +7,46 @@
 
 namespace winnow {
 
-/// Which of many boxes an object has: those of ids from `first` on, one for each or by a table.
+/// Maps object ids to boxes: either box i for id `first` + i, or by a table.
 struct BoxOfId {
   std::uint32_t first;
-  std::uint32_t ids;                     ///< further ids have none
-  const std::uint32_t* table = nullptr;  ///< by id - first: number of its box, ~0 if it has none
+  std::uint32_t ids;                     ///< ids from first + ids on have no box
+  const std::uint32_t* table = nullptr;  ///< by id - first: index of the box, ~0 for none
 };
 
 struct BoxInputKernels {
-  /// True if `count` boxes of six floats one after another (min xyz, max xyz) are all legal: min <=
-  /// max on every axis, no NaN, not wholly at infinity.
+  /// True if `count` consecutive boxes of six floats (min xyz, max xyz) are all legal: min <= max
+  /// on every axis, no NaN, not wholly at infinity.
   bool (*legal)(const float* floats, std::size_t count);
 
-  /// The same of the boxes that `count` numbers name.
+  /// As above, for the boxes with `count` given indices.
   bool (*legal_listed)(const float* floats, const std::uint32_t* number, std::size_t count);
 
-  /// Gives each row of [begin, end) the box that its object has, of six floats each, ends at
-  /// infinity as +-FLT_MAX; rows of objects without one stay as they are. Both ends are multiples
-  /// of 16; ids are readable for 32 rows more.
+  /// Writes the box of each object (six floats) to its row in [begin, end), infinite ends as
+  /// +-FLT_MAX. Rows of objects without a box stay as they are. `begin` and `end` are multiples
+  /// of 16.
   void (*write_rows)(const float* floats, const BoxOfId& box_of, const std::uint32_t* id,
                      float* const* column, std::size_t begin, std::size_t end);
 
-  /// Gives rows from `row` on `count` boxes, one after another.
+  /// Writes `count` consecutive boxes to the rows from `row` on.
   void (*write_in_order)(const float* floats, std::size_t count, float* const* column,
                          std::size_t row);
 
-  /// Sets the bits in `words` of those of `count` boxes that lie within the stored ones, where
-  /// these are larger by at most twice the margin distance + share * longest finite edge. Columns
-  /// of lower, then of upper ends, readable to the next multiple of 16; further bits are undefined.
+  /// Sets bit i of `words` if given box i lies within stored box i, and the stored box is larger by
+  /// at most twice the margin `distance` + `share` * longest finite edge. Columns hold lower, then
+  /// upper ends and are readable to the next multiple of 16; bits beyond `count` are undefined.
   void (*within)(const float* const* given, const float* const* stored, std::size_t count,
                  float distance, float share, std::uint64_t* words);
 
-  /// Copies `count` boxes of six floats each to `to`, and writes the numbers of those that have an
-  /// end further than `margin` from the same end in `near` to `left`; returns how many these are.
-  /// It stops behind the 16 boxes with which there are more than `most`, for which and 16 more
-  /// there is room.
+  /// Copies `count` boxes of six floats to `to`. Writes the index of each box with an end further
+  /// than `margin` from the same end in `near` to `left`, and returns their number. Stops after the
+  /// group of 16 boxes with which the number exceeds `most`. `left` has room for `most` + 32
+  /// indices.
   std::uint32_t (*copy_near)(const float* boxes, const float* near, float* to, std::size_t count,
                              float margin, std::uint32_t* left, std::uint32_t most);
 
-  /// Writes the numbers of those of `count` boxes of six floats each that do not lie within a box
-  /// of six floats to `out`, which has room for all; returns how many these are.
+  /// Writes the index of each of `count` boxes (six floats) that does not lie within the box
+  /// `around` to `out`, which has room for all; returns their number.
   std::uint32_t (*beyond)(const float* boxes, const float* around, std::size_t count,
                           std::uint32_t* out);
 };

@@ -10,16 +10,17 @@
 
 namespace winnow {
 
-/// A set of object ids that changed: a bit each and a list in order of change. Past a quarter of
-/// all objects it only says "all": following single objects no longer pays then.
+/// Set of object ids that changed: a bitmap, and a list in order of change. With more than a
+/// quarter of all objects it only records "all", because tracking single objects then costs more
+/// than it saves.
 class ChangeList {
  public:
   explicit ChangeList(std::pmr::memory_resource* memory) noexcept : bits_(memory), list_(memory) {}
 
-  /// Room for ids below `slots`, so that `add` cannot fail.
+  /// Makes room for ids below `slots`, so that `add` cannot fail.
   [[nodiscard]] bool reserve(std::size_t slots) noexcept;
 
-  /// Writes to the pages that hold nothing yet.
+  /// Prefaults reserved pages.
   void touch() noexcept;
 
   void add(ObjectId id) noexcept {
@@ -36,11 +37,11 @@ class ChangeList {
   }
   void add_all() noexcept { all_ = true; }
 
-  /// How many changes the list follows before it says "all".
+  /// Returns how many ids the list can hold before it records only "all".
   [[nodiscard]] std::size_t limit() const noexcept { return limit_; }
   [[nodiscard]] bool all() const noexcept { return all_; }
   [[nodiscard]] bool empty() const noexcept { return !all_ && list_.empty(); }
-  /// The changed ids; meaningful only if not `all`.
+  /// Returns the changed ids; valid only if not `all`.
   [[nodiscard]] std::span<const ObjectId> ids() const noexcept {
     return {list_.data(), list_.size()};
   }

@@ -53,7 +53,7 @@ Status DeferredBoxes::update(Rows& rows, const EntryList& entries, const BoxView
   }
   for (const ObjectId id : left_) {
     const Key key = rows.keys().key_of(id);
-    // Of a repeated key the last box counts, which may be back within the margin.
+    // If a key is repeated its last box counts, which may be within the margin again.
     (void)rows.update(EntryList(std::span(&key, 1)), view_of(given_.data() + id, 1));
     stored_[id] = given_[id];
   }
@@ -74,12 +74,13 @@ Status DeferredBoxes::update(Rows& rows, Key key, const Aabb& box) {
   return rows.update(key, box);
 }
 
-// Leaves the ids of those that left the margin in left_. False if there are too many.
+// Collects in left_ the ids whose boxes left the margin. False if there are more than most_.
 bool DeferredBoxes::copy(const EntryList& entries, const BoxView& boxes) noexcept {
   const bool packed = BoxSource{boxes}.packed();
   left_.clear();
   for (std::size_t begin = 0; begin < entries.count;) {
-    // Boxes of ids that follow each other lie one after another on both sides.
+    // Consecutive ids have consecutive boxes in both arrays, so one kernel call handles the whole
+    // run.
     const std::size_t i = entries[begin];
     const ObjectId first = entries.keys[i].id;
     std::size_t end = begin + 1;

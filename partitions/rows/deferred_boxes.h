@@ -16,12 +16,13 @@
 
 namespace winnow {
 
-/// Boxes that objects were given and that their rows do not hold yet: while `active`, an update
-/// leaves alone the row of a box whose ends all lie within a margin of those in the row. It costs
-/// one look at both arrays in the order in which objects are given, and changes nothing that rows,
-/// structures or trees are about. Who wants the rows as they were given has them written.
+/// The skin of a Verlet list: boxes that objects were given but that their rows do not hold. While
+/// `active`, an update does not write a row if every end of the new box lies within a margin of the
+/// stored end. Such an update costs one pass over both arrays in the order of ids, and invalidates
+/// neither rows nor structures nor trees. `write` brings the rows up to date. Calm (state/calm.h)
+/// decides when to start; PartitionState calls both.
 ///
-/// Both boxes of an object are kept by its id: 48 bytes per object, once it has been active.
+/// Given and stored boxes are arrays by id: 48 bytes per object once it has been active.
 class DeferredBoxes {
  public:
   struct Box {
@@ -34,26 +35,28 @@ class DeferredBoxes {
 
   [[nodiscard]] bool active() const noexcept { return active_.load(std::memory_order_acquire); }
   [[nodiscard]] float margin() const noexcept { return margin_; }
-  /// By id: what live objects were given last.
+  /// By id: the last box that each live object was given.
   [[nodiscard]] const Box* given() const noexcept { return given_.data(); }
-  /// By id: what their rows hold, infinite ends as they were given.
+  /// By id: the box in its row, infinite ends as infinite.
   [[nodiscard]] const Box* stored() const noexcept { return stored_.data(); }
 
-  /// From now on boxes within the margin are deferred. False if memory is refused.
+  /// Starts deferring boxes within the margin. False if memory is refused.
   [[nodiscard]] bool begin(const Rows& rows, float margin) noexcept;
-  /// An update while active. Boxes that left the margin go to their rows; where these are more than
-  /// some in a hundred, all do and it ends: it is not active afterwards.
+  /// Updates boxes while active. Boxes outside the margin are written to their rows. If these are
+  /// more than about 3 % of the objects, all rows are written and deferring ends (`active` is false
+  /// then).
   Status update(Rows& rows, const EntryList& entries, const BoxView& boxes);
-  /// The same for one object. It never ends.
+  /// As above for one object; deferring never ends here.
   Status update(Rows& rows, Key key, const Aabb& box);
-  /// Takes note of objects that were inserted while active. False if memory is refused: it must end
-  /// then.
+  /// Adds objects that were inserted while active. False if memory is refused; the caller must then
+  /// end deferring.
   [[nodiscard]] bool insert(std::span<const Key> keys, const BoxView& boxes) noexcept;
-  /// Writes to the rows what they do not hold. False if nothing was given since `begin`.
+  /// Writes all given boxes to the rows. False if no box was given since `begin` or the last
+  /// `write`.
   bool write(Rows& rows) noexcept;
-  /// Ends it: the rows hold what was given, or the objects are gone.
+  /// Ends deferring without writing.
   void drop() noexcept;
-  /// Gives memory back while it is not active.
+  /// Frees memory; not active.
   void release() noexcept;
 
   [[nodiscard]] Bytes bytes() const noexcept;
@@ -65,7 +68,7 @@ class DeferredBoxes {
   Column<Box> stored_;
   Column<std::uint32_t> left_;
   float margin_ = 0.0F;
-  std::uint32_t most_ = 0;  // objects that may leave the margin in one update
+  std::uint32_t most_ = 0;  // limit of objects that leave the margin in one update
   bool pending_ = false;
   std::atomic<bool> active_{false};
 };

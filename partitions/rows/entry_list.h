@@ -8,13 +8,13 @@
 
 namespace winnow {
 
-/// The entries that an update is about, of keys and of volumes: all of them, or those of a list.
+/// The entries of keys and volumes that an update processes: all of them, or a list of indices.
 struct EntryList {
   std::span<const Key> keys;
   std::size_t count = 0;
   const std::uint32_t* number = nullptr;  ///< null: all
 
-  /// Of volumes alone.
+  /// Entries without keys.
   explicit EntryList(std::size_t all) noexcept : count(all) {}
   EntryList(std::span<const Key> all) noexcept  // NOLINT(google-explicit-constructor)
       : keys(all), count(all.size()) {}
@@ -26,11 +26,11 @@ struct EntryList {
   }
   [[nodiscard]] Key key(std::size_t j) const noexcept { return keys[(*this)[j]]; }
 
-  /// Runs shorter than this are looked at entry by entry: a call per run costs more.
+  /// Shorter runs are handled entry by entry, because a call per run costs more.
   static constexpr std::size_t kLongRun = 16;
 
-  /// The end of the longest run from the j-th entry on, up to the `end`-th, of entries that follow
-  /// each other.
+  /// Returns the end, at most `end`, of the longest run of consecutive indices that starts at the
+  /// j-th entry.
   [[nodiscard]] std::size_t run_end(std::size_t j, std::size_t end) const noexcept {
     if (number == nullptr) return end;
     std::size_t next = j + 1;

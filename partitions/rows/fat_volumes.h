@@ -1,6 +1,8 @@
 #pragma once
 
-// Volumes that are stored larger by a margin. Included by source files, not by headers.
+// Volumes that are stored larger by a margin (fat AABBs), so that small motions leave the stored
+// volume unchanged. FatSource wraps a source of volume_source.h; volume_input.cpp uses it. Included
+// by source files, not by headers.
 
 #include <winnow/core/margin.h>
 #include <winnow/core/rounding.h>
@@ -17,16 +19,16 @@
 
 namespace winnow {
 
-/// Rows whose boxes are brought together before they are looked at: a few cache lines per column.
+/// Rows whose given boxes are gathered before they are compared: a few cache lines per column.
 inline constexpr std::size_t kRowsAtOnce = 256;
 
-/// How slab volumes grow, and when a stored one still serves.
+/// Growth of boxes and k-DOPs by a margin.
 template <Volume V>
 struct FatSlabs {
   static constexpr std::size_t kColumns = column_count(V);
   static constexpr std::size_t kSlabs = slab_count(V);
 
-  /// The margin of the volume in `given`.
+  /// Returns the margin of the volume in `given`.
   static float margin_of(const float* given, const Margin& margin) noexcept {
     float edge = 0.0F;
     for (std::size_t s = 0; s < 3; ++s) {
@@ -38,7 +40,7 @@ struct FatSlabs {
     return margin.of(edge);
   }
 
-  /// True if the stored volume holds the given one and is larger by at most twice its margin.
+  /// True if the stored volume contains the given one and is larger by at most twice the margin.
   static bool serves(const float* given, float margin, const float* stored) noexcept {
     bool ok = true;
     for (std::size_t s = 0; s < kSlabs; ++s) {
@@ -63,7 +65,7 @@ struct FatSlabs {
   }
 
  private:
-  /// Of a slab's direction (see kdop_directions), rounded up.
+  /// Length of the direction of a slab (see kdop_directions), rounded up.
   static constexpr float length(std::size_t s) noexcept {
     if (s < 3) return 1.0F;
     const bool corner = V != Volume::kdop18 && s < 7;
@@ -71,7 +73,7 @@ struct FatSlabs {
   }
 };
 
-/// The same for spheres.
+/// Growth of spheres by a margin.
 struct FatSphere {
   static constexpr std::size_t kColumns = column_count(Volume::sphere);
 
@@ -86,7 +88,7 @@ struct FatSphere {
       const double d = static_cast<double>(stored[c]) - static_cast<double>(given[c]);
       square += d * d;
     }
-    // The factor is more than the rounding of both squares.
+    // The factor exceeds the rounding errors of both squares.
     return room >= 0.0 && room <= 2.0 * static_cast<double>(margin) &&
            square <= room * room * (1.0 - 1e-14);
   }
@@ -106,7 +108,8 @@ struct FatVolume : FatSlabs<V> {};
 template <>
 struct FatVolume<Volume::sphere> : FatSphere {};
 
-/// Writes what another source offers larger by a margin, and leaves alone what still serves.
+/// Writes the volumes of another source enlarged by a margin, but keeps a stored volume that
+/// serves.
 template <typename Source>
 struct FatSource {
   static constexpr Volume kVolume = Source::kVolume;
@@ -121,7 +124,7 @@ struct FatSource {
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
   }
 
-  /// False, and nothing is written, if the row's volume still serves.
+  /// Writes nothing and returns false if the stored volume still serves.
   bool write_if_left(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     Values given(source, i);
     float stored[Fat::kColumns];
@@ -129,7 +132,7 @@ struct FatSource {
     const float by = Fat::margin_of(given.value, margin);
     if (Fat::serves(given.value, by, stored)) return false;
     Fat::grow(given.value, by);
-    // Where a margin is lost in rounding a volume at rest is known by this alone.
+    // If rounding swallows the margin, `serves` is false even at rest; equality shows the rest.
     if (std::equal(stored, stored + Fat::kColumns, given.value)) return false;
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
     return true;
@@ -147,8 +150,8 @@ struct FatSource {
   };
 };
 
-/// Of boxes that go by rows: writes those of up to 256 rows from `begin` on that left their stored
-/// ones, and sets their rows' bits in `left`. Most have not: that is found for 16 at a time.
+/// For up to 256 rows from `begin` on: writes the boxes that left their stored ones and sets the
+/// bits of these rows in `left`. Tests 16 boxes at a time, because most stay within.
 inline void write_left_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& entries,
                              ColumnPointers columns, std::size_t begin, std::size_t end,
                              std::uint64_t* left) noexcept {
@@ -183,7 +186,7 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& 
   }
 }
 
-/// The same for rows [begin, end), of which `begin` is a multiple of 256, and of any volume.
+/// As above for any volume and the rows [begin, end); `begin` is a multiple of 256.
 template <typename Source>
 void write_left_rows(const FatSource<Source>& fat, const EntryOfRow& entries,
                      ColumnPointers columns, std::size_t begin, std::size_t end,

@@ -6,16 +6,16 @@
 
 namespace winnow {
 
-/// What the filters of some objects have between them. It may tell less than is true of them:
-/// `any` may hold more and `every` less. By default it is that of no objects.
+/// Conservative union and intersection of the filters of a set of objects: `any` may contain more
+/// bits and `every` fewer than the exact values. The default describes an empty set.
 struct FilterSpan {
-  std::uint32_t any_layers = 0;      ///< layers that one of them is in
-  std::uint32_t every_layers = ~0U;  ///< layers that all of them are in
-  std::uint32_t any_mask = 0;        ///< layers that one of them wants to meet
-  std::uint32_t every_mask = ~0U;    ///< layers that all of them want to meet
-  bool mute = false;                 ///< one is in no layer, or wants to meet none
-  bool apart = false;                ///< one is neither of environment 0 nor of every one
-  bool everywhere = true;            ///< all are of every environment
+  std::uint32_t any_layers = 0;      ///< layers of at least one object
+  std::uint32_t every_layers = ~0U;  ///< layers of all objects
+  std::uint32_t any_mask = 0;        ///< mask bits of at least one object
+  std::uint32_t every_mask = ~0U;    ///< mask bits of all objects
+  bool mute = false;                 ///< some object has no layer or an empty mask
+  bool apart = false;      ///< some object has an environment other than 0 and kEveryEnvironment
+  bool everywhere = true;  ///< all objects have kEveryEnvironment
 
   void add(const ObjectFilter& filter) noexcept {
     any_layers |= filter.layers;
@@ -29,17 +29,19 @@ struct FilterSpan {
   }
 };
 
-// Kernels use what follows, too: a function of which each file has its own is not merged with one
-// that was compiled for another instruction set.
+// Kernels use the functions below too. They are static so that the linker does not merge them with
+// copies that were compiled for another instruction set.
 
-/// True if each of some sets of bits, none empty, surely shares one with each of some others: all
-/// have one in common, or all of one side have every bit that any has of the other.
+/// True if every non-empty set of the one side is certain to share a bit with every non-empty set
+/// of the other: all have a bit in common, or each set of one side contains all bits of the other
+/// side.
 static inline bool surely_share(std::uint32_t any, std::uint32_t every, std::uint32_t other_any,
                                 std::uint32_t other_every) noexcept {
   return (every & other_every) != 0 || (any & ~other_every) == 0 || (other_any & ~every) == 0;
 }
 
-/// True if each object of one span surely meets each of the other. False says nothing.
+/// True if every object of one span is certain to pass the filters of every object of the other.
+/// False means unknown.
 static inline bool surely_meet(const FilterSpan& a, const FilterSpan& b) noexcept {
   return !a.mute && !b.mute && (a.everywhere || b.everywhere || !(a.apart || b.apart)) &&
          surely_share(a.any_layers, a.every_layers, b.any_mask, b.every_mask) &&

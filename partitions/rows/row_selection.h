@@ -11,8 +11,8 @@
 
 namespace winnow {
 
-/// Some of the rows, or blocks, of a partition: a list, and a bitmap whose bits are all zero but
-/// while somebody has them set.
+/// A selection of rows or blocks: a list, and a bitmap that is all zero except while a function
+/// uses it. Functions that set bits clear them again (`mark` and `unmark`).
 struct RowSelection {
   explicit RowSelection(std::pmr::memory_resource* memory) noexcept : list(memory), bits(memory) {}
 
@@ -21,9 +21,9 @@ struct RowSelection {
     list.clear();
     return list.grow(most);
   }
-  /// Adds to the list, where room was made.
+  /// Requires room for the entry.
   void add(std::size_t entry) noexcept { (void)list.push_back(static_cast<std::uint32_t>(entry)); }
-  /// Room for a bitmap of entries below `limit`. False if memory is refused.
+  /// Makes room for a bitmap of entries below `limit`. False if memory is refused.
   [[nodiscard]] bool reserve_bits(std::size_t limit) noexcept {
     const std::size_t words = bitmap_words(limit);
     if (!bits.grow(words)) return false;
@@ -32,14 +32,14 @@ struct RowSelection {
     bits.set_size(words);
     return true;
   }
-  /// Sorts the list, whose entries are below a limit for which room for a bitmap was made, and
-  /// drops repeats. O(entries + limit / 64), or O(entries log entries) where they are few.
+  /// Sorts the list and drops duplicates. Entries are below `limit`, for which `reserve_bits` was
+  /// called. O(entries + limit / 64), or O(entries log entries) for few entries.
   void sort(std::size_t limit) noexcept { list.set_size(sort_unique(entries(), limit, bits)); }
-  /// Sets the bits of the list's entries, for which room was made.
+  /// Sets the bits of the entries. Requires room.
   void mark() noexcept {
     for (const std::uint32_t entry : list) bits[entry >> 6U] |= std::uint64_t{1} << (entry & 63U);
   }
-  /// Clears what `mark` set. O(entries).
+  /// Clears these bits. O(entries).
   void unmark() noexcept {
     for (const std::uint32_t entry : list) bits[entry >> 6U] = 0;
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+// Views of rows that kernels read and the sink that they write pairs to. Plain structs: kernel
+// files are compiled once per instruction set and may not use the standard library.
+
 #include "core/memory/filter_columns.h"
 #include "partitions/rows/filter_span.h"
 
@@ -8,46 +11,45 @@
 
 namespace winnow {
 
-/// Where kernels write pairs of object ids: a plain struct, because kernel files may not use the
-/// standard library. While cursor <= limit there is room for kSinkSlack pairs; past the limit the
-/// kernel calls `grow`, and stops if that says false.
+/// Output of kernels: pairs of object ids. While cursor <= limit there is room for kSinkSlack
+/// pairs. Beyond the limit the kernel calls `grow`, and stops if it returns false.
 struct PairSink {
   std::uint32_t* cursor = nullptr;
   std::uint32_t* limit = nullptr;
   bool (*grow)(PairSink& sink) = nullptr;
   void* owner = nullptr;
-  std::uint64_t tests = 0;  ///< tests of 16 volumes, counted by the kernels
+  std::uint64_t tests = 0;  ///< tests of 16 volumes at once
 };
 
-/// One block against another, and one more full store.
+/// The pairs of one block with another, and one more full store.
 inline constexpr std::size_t kSinkSlack = 16 * 16 + 16;
 
-/// Columns that kernels test: pointers into a BoundsPool. The first six are the box; a k-DOP's
-/// further slabs follow (lower ends, then upper ends), or a sphere's centre and radius.
+/// Columns of a BoundsPool. The first six are the box. The further slabs of a k-DOP follow (lower
+/// ends, then upper ends), or the centre and radius of a sphere.
 struct RowView {
   const float* column[26] = {};
   std::uint32_t further_slabs = 0;
   bool spheres = false;
   const std::uint32_t* id = nullptr;
-  FilterColumns filter;       ///< by row; in no layer where there is no object
-  bool environments = false;  ///< or false if all share one
+  FilterColumns filter;       ///< by row; rows without an object have no layer
+  bool environments = false;  ///< false if all objects share one environment
   FilterSpan span;            ///< of all objects' filters
-  bool all_meet = false;      ///< all objects are known to meet each other
-  /// Another number than before once a row has got another object, or an object another filter.
+  bool all_meet = false;      ///< every two objects pass each other's filters
+  /// Changes whenever a row gets another object or an object another filter.
   std::uint64_t arrangement = 0;
 };
 
-/// What becomes of a hit between query q and candidate c.
+/// How a hit between query q and candidate c is reported.
 enum class HitMode : std::uint8_t {
-  unordered,     ///< report (min, max); for regions that share no object
-  query_first,   ///< report (q, c)
-  query_second,  ///< report (c, q)
-  moved,         ///< report (min, max); rows ask about their own pool: of two rows that both
-                 ///< moved only the one in front reports, and no row reports itself
+  unordered,     ///< (min, max); for regions that share no object
+  query_first,   ///< (q, c)
+  query_second,  ///< (c, q)
+  moved,         ///< (min, max); queries are rows of the same pool: of two moved rows the lower one
+                 ///< reports, and no row reports itself
 };
 
-/// Volumes to ask about: rows of columns, by list or, if `rows` is null, one after another. They
-/// are boxes (lower ends, then upper ends), or volumes of the kind that the asked rows hold.
+/// Volumes to query with: rows of columns, by list or, if `rows` is null, consecutive. They are
+/// boxes (lower ends, then upper ends) or volumes of the kind that the queried rows hold.
 struct QueryBatch {
   const float* column[26] = {};
   bool is_box = true;
@@ -57,10 +59,10 @@ struct QueryBatch {
   std::uint32_t end = 0;
   HitMode mode = HitMode::unordered;
   const std::uint64_t* moved = nullptr;  ///< bit per row, for HitMode::moved
-  FilterColumns filter;                  ///< of those who ask, by row, or in entry 0 one for all
+  FilterColumns filter;                  ///< of the queries: by row, or entry 0 for all
   bool one_filter = false;
-  bool environments = false;  ///< or false if all who ask share one
-  bool meets_all = false;     ///< whoever asks is known to meet every object that is asked about
+  bool environments = false;  ///< false if all queries share one environment
+  bool meets_all = false;     ///< every query passes the filters of every candidate
 };
 
 }  // namespace winnow

@@ -1,3 +1,6 @@
+// Storage of objects in rows: capacity, removal, filters, snapshots and reordering. Input of
+// volumes is in volume_input.cpp.
+
 #include "partitions/rows/rows.h"
 
 #include "core/memory/columns.h"
@@ -24,7 +27,7 @@ Rows::Rows(std::pmr::memory_resource* memory, const Execution& execution, const 
       selection_(memory) {}
 
 Execution Rows::execution_for(std::size_t objects) const noexcept {
-  // Below this a task costs more to hand over than to do.
+  // For fewer objects, handing over a task costs more than running it.
   constexpr std::size_t kWorthSharing = 1536;
   return objects < kWorthSharing ? Execution::serial() : execution_;
 }
@@ -37,12 +40,13 @@ bool Rows::make_room(std::size_t objects) noexcept {
   const std::size_t added = objects - keys_.size();
   const std::size_t rows = pool_.rows();
   const std::size_t holes = rows - keys_.size();
-  // Holes are closed rather than paid for in memory once they are a fifth of all rows: coming and
-  // going in turn then costs the moving of four rows per object.
+  // Once holes are a fifth of all rows they are closed instead of allocating more memory.
+  // Alternating inserts and removals then move four rows per object.
   const bool worn = rows >= 64 && 5 * holes >= rows;
   if ((rows + added > pool_.capacity() && worn) || rows + added > kNoObject) compact();
   const std::size_t needed = pool_.rows() + added;
-  // A partition that loses objects as well as gains them is not about to grow by half.
+  // A partition that also loses objects is unlikely to grow by half, so it reserves only an eighth
+  // more.
   const std::size_t room = needed + (needed > pool_.capacity() ? needed / 8 : 0);
   const bool grown =
       holes == 0 ? pool_.reserve(needed) : pool_.reserve_exact(room) || pool_.reserve(needed);
@@ -71,7 +75,7 @@ void Rows::compact() noexcept {
 void Rows::remove_row(ObjectId id) noexcept {
   const std::size_t row = keys_.row_of(id);
   pool_.blank(row);
-  // The last row of the tail is simply dropped, so that churn at the end leaves no holes.
+  // Drop the last row of the tail, so that churn at the end leaves no holes.
   const std::size_t fixed = std::max({regions_.ordered, regions_.sorted, regions_.planned});
   if (row + 1 == pool_.rows() && row >= fixed) pool_.drop_last();
   stale_.add(id);
@@ -87,8 +91,8 @@ Status Rows::remove(Key key) {
 }
 
 Status Rows::remove(std::span<const Key> keys) {
-  // A first pass marks each object by blanking its row's id: a repeated key finds the mark, and the
-  // marks are taken back.
+  // The first pass blanks the row's id of each object. A repeated key finds its row blanked; the
+  // ids are then restored.
   std::size_t marked = 0;
   for (; marked < keys.size(); ++marked) {
     if (!keys_.is_valid(keys[marked])) break;
@@ -147,7 +151,7 @@ void Rows::release_memory() noexcept {
   clear();
 }
 
-/// From here on objects may have filters. False, and unchanged, if memory is refused.
+/// Starts storing filters. False, and unchanged, if memory is refused.
 bool Rows::begin_filters() noexcept {
   if (!pool_.reserve_filters() || !filters_.begin_use()) return false;
   pool_.begin_filters();
@@ -175,7 +179,7 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
 
 namespace {
 
-/// True if a row of saved columns may be stored: finite, and no slab inverted.
+/// True if a row of saved columns is valid: all finite, no slab inverted.
 bool is_stored_volume(Volume volume, const SavedRows& saved, std::size_t i) noexcept {
   const auto at = [&](std::size_t column) { return saved.columns[column * saved.objects + i]; };
   for (std::size_t c = 0; c < column_count(volume); ++c) {

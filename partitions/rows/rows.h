@@ -1,5 +1,8 @@
 #pragma once
 
+// The objects of a partition as rows of columns. PartitionState owns the rows, SpatialIndex orders
+// them, and kernels read them through RowView.
+
 #include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/footprint.h>
@@ -24,8 +27,8 @@ struct BoxOfId;
 struct EntryOfRow;
 class Rows;
 
-/// How rows take boxes in, which become the volume that is stored. Rows reach it through a pointer:
-/// a program has the code of those volumes alone that it can ask for.
+/// How boxes are converted into the stored volume. Rows call it through pointers to members, so
+/// that a program links only the code of the volumes that it can use.
 struct VolumeInput {
   Volume volume;
   Status (Rows::*insert)(const BoxView&, std::span<const ClientData>, std::span<Key>);
@@ -33,38 +36,36 @@ struct VolumeInput {
   Status (Rows::*update_one)(Key, const BoxView&);
 };
 
-/// Objects as they were saved: slots of keys, and of the live ones, by id, what is stored.
+/// A saved set of objects: slots of keys, and per live object, by id, its volume and filter.
 struct SavedRows {
   KeyTable::Saved keys;
-  std::size_t objects = 0;                  ///< odd stamps
+  std::size_t objects = 0;                  ///< live slots, i.e. odd stamps
   std::span<const float> columns;           ///< of the volume, one after the other
   std::span<const ObjectFilter> filters{};  ///< empty if all are the default
 };
 
-/// The box of one row, with what is stored for an infinite end given back as infinite. A hole gives
-/// an empty box.
+/// Returns the box of a row with infinite ends as infinite. A hole gives an empty box.
 [[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
 
-/// How the rows of a partition lie. The *regular* ones are ordered by the structure: cells, strips,
-/// or plain rows. Behind them, from the next whole block on, every row is a leaf of a block tree:
-/// first what a build put there, then the *tail* of objects that are new, or moved out of where the
-/// build had put them.
+/// Layout of the rows. The structure orders the *regular* rows: cells, strips, or no order. From
+/// the next whole block on, every row is a leaf of a block tree: first the rows ordered by the last
+/// build, then the *tail* of objects that were inserted or moved out of their place since.
 struct RowRegions {
-  bool built = false;       ///< false: the next refresh has to order the rows
-  std::size_t regular = 0;  ///< rows [0, regular) are the structure's
-  std::size_t ordered = 0;  ///< rows from here on are the tail
+  bool built = false;       ///< false: the next refresh must order the rows
+  std::size_t regular = 0;  ///< rows [0, regular) belong to the structure
+  std::size_t ordered = 0;  ///< the tail starts here
   std::size_t sorted = 0;   ///< tail rows below this are in spatial order
-  /// An order is being planned for rows below this: none of them becomes another object's.
+  /// An order is being planned for rows below this; none of them is given to another object.
   std::size_t planned = 0;
 };
 
-/// The objects of a partition: keys, client data, filters, and bounding volumes in rows; and what
-/// changed since when. It knows nothing of how rows are pruned but how they lie.
+/// The objects of a partition: keys, client data, filters and bounding volumes, and which of them
+/// changed. Rows are independent of the structure that prunes them.
 class Rows {
  public:
-  /// The input of boxes that are stored as they are given: for rows without a margin.
+  /// Input of boxes that are stored as given, without a margin.
   [[nodiscard]] static const VolumeInput& boxes_as_given() noexcept;
-  /// That of any volume, with or without a margin; null if there is no such volume. Links all.
+  /// Input of a volume, with or without a margin; null for an invalid volume. Links all volumes.
   [[nodiscard]] static const VolumeInput* input_of(Volume volume) noexcept;
 
   /// `input` must outlive the rows.
@@ -74,35 +75,35 @@ class Rows {
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status update(const EntryList& entries, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
-  /// The same by spheres or k-DOPs; `unsupported_volume` where others are stored.
+  /// As above with spheres or k-DOPs; `unsupported_volume` if another volume is stored.
   template <typename V>
   Status insert(std::span<const V> volumes, std::span<const ClientData> data, std::span<Key> keys);
   template <typename V>
   Status update(std::span<const Key> keys, std::span<const V> volumes);
 
-  /// What an update with these boxes would answer.
+  /// Returns the status that an update with these boxes would have.
   [[nodiscard]] Status check(const EntryList& entries, const BoxView& boxes) const;
-  /// Gives every row of boxes the one that stands at its object's id, if there is one.
+  /// Gives every row the box at the index of its object's id, if there is one.
   void write_by_id(const BoxView& boxes) noexcept;
 
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
   void clear() noexcept;
-  /// Room for so many objects in all, in as many rows.
+  /// Makes room for `objects` objects, in as many rows.
   Status reserve(std::size_t objects);
-  /// Writes to the pages that hold nothing yet.
+  /// Prefaults reserved pages.
   void touch() noexcept;
-  /// Gives back what nobody's objects need; everything if there are none.
+  /// Frees scratch, and all memory if there are no objects.
   void release_memory() noexcept;
 
-  /// Of rows that never held an object: they become the saved ones, in rows by id, with the keys
-  /// that they had (see KeyTable::restore). `invalid_argument` for what no rows can have been;
-  /// nothing changed then.
+  /// Makes the saved objects the rows' objects, in rows by id, with their keys (see
+  /// KeyTable::restore). The rows must never have held an object. `invalid_argument` if the data
+  /// are inconsistent; nothing is changed then.
   Status restore(const SavedRows& saved, Rows& other);
 
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   Status bounds(Key key, Aabb& box) const noexcept;
-  /// The boxes of objects with valid keys, one for each.
+  /// Writes one box per key; the keys must be valid.
   void read_bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
@@ -112,48 +113,46 @@ class Rows {
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] const Margin& margin() const noexcept { return margin_; }
   [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
-  /// What kernels see of the rows.
+  /// Returns the pointers that kernels use.
   [[nodiscard]] RowView view() const noexcept;
-  /// How work on so many objects is best run.
+  /// Returns serial execution if there are too few objects to share the work.
   [[nodiscard]] Execution execution_for(std::size_t objects) const noexcept;
   void add_bytes(Footprint& footprint) const noexcept;
 
-  // For who brings the rows in order.
+  // For SpatialIndex, which orders the rows.
 
-  /// True from a change on until `settle`.
+  /// True from a change until `settle`.
   [[nodiscard]] bool changed() const noexcept { return changed_; }
   /// Objects that changed since the last `settle`.
   [[nodiscard]] const ChangeList& stale() const noexcept { return stale_; }
-  /// Ends a refresh: nothing is stale any more. Objects that were have moved, if anybody tracks
-  /// moves.
+  /// Ends a refresh: clears `stale`. With `track_moves` its objects are added to `moved`.
   void settle(bool track_moves) noexcept;
-  /// Objects that changed since `forget_moves`, as far as they were tracked.
+  /// Objects that changed since `forget_moves`, if moves were tracked.
   [[nodiscard]] const ChangeList& moved() const noexcept { return moved_; }
   void forget_moves() const noexcept { moved_.clear(); }
 
   [[nodiscard]] RowRegions& regions() noexcept { return regions_; }
-  /// The next refresh has to order the rows.
+  /// Requires the next refresh to order the rows.
   void disorder() noexcept;
   void pad() noexcept { pool_.pad(); }
   [[nodiscard]] bool reserve_rows(std::size_t rows) noexcept { return pool_.reserve_exact(rows); }
-  /// Closes all holes; the rows are in no order then.
+  /// Closes all holes; afterwards the rows are unordered.
   void compact() noexcept;
-  /// Row i becomes what row order[i] is. `spare` must have room for the pool's capacity and two
-  /// blocks more.
+  /// Moves row order[i] to row i. `spare` must have room for the pool's capacity plus two blocks.
   void reorder(std::span<const std::uint32_t> order, Column<float>& spare) noexcept;
-  /// The same for the rows from `begin` on alone, on the calling thread.
+  /// As above for the rows from `begin` on, on the calling thread.
   void reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,
                     Column<float>& spare) noexcept;
-  /// Puts rows behind the last one, and leaves holes. Room was made.
+  /// Moves rows behind the last one and leaves holes. Requires room.
   void move_to_end(std::span<const std::uint32_t> rows) noexcept;
-  /// The rows stand in an order that is good for as long as most objects are within `far` of where
-  /// they were; 0: for ever.
+  /// Notes that the rows were ordered. The order stays good while most objects are within `far` of
+  /// their position at the build; 0: always.
   void note_build(float far) noexcept {
     filters_.note_build({pool_.ids(), pool_.rows()});
     far_ = far;
   }
 
-  /// Scratch for who selects some of the rows; what it holds lasts until the next one does.
+  /// Shared scratch for selecting rows; overwritten by the next selection.
   [[nodiscard]] RowSelection& selection() const noexcept { return selection_; }
 
  private:
@@ -162,7 +161,7 @@ class Rows {
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 
-  // Of volumes that are stored in some way: as a source offers them, or with the margin.
+  // Source reads the given volumes; Stored is AsOffered or WithMargin.
   template <typename Source, typename Stored>
   [[nodiscard]] static const VolumeInput& input() noexcept;
   template <typename Source, typename Stored>

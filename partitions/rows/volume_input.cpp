@@ -1,4 +1,6 @@
-// How rows take volumes in: boxes, which become the volume that is stored, and volumes themselves.
+// Insert and update of rows. Boxes go through VolumeInput and are converted into the stored volume;
+// spheres and k-DOPs are stored directly. Partition and PartitionState call the public functions of
+// Rows; the sources in volume_source.h validate and write.
 
 #include "core/memory/columns.h"
 #include "partitions/rows/fat_volumes.h"
@@ -18,7 +20,7 @@ WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 
 namespace {
 
-/// Volumes are stored as a source offers them.
+/// Stores volumes as given.
 struct AsOffered {
   template <typename Source, typename Use>
   static Status use(const Source& source, const Margin&, Use&& use) {
@@ -26,7 +28,7 @@ struct AsOffered {
   }
 };
 
-/// They are stored larger, if there is a margin.
+/// Stores volumes enlarged by the margin, if there is one.
 struct WithMargin {
   template <typename Source, typename Use>
   static Status use(const Source& source, const Margin& margin, Use&& use) {
@@ -35,7 +37,6 @@ struct WithMargin {
   }
 };
 
-/// The source of volumes that are stored as they are given.
 SphereSource source_of(std::span<const Sphere> spheres) noexcept {
   return {spheres};
 }
@@ -44,13 +45,13 @@ KdopSource<K> source_of(std::span<const Kdop<K>> kdops) noexcept {
   return {kdops};
 }
 
-/// True if a row's volume may stay as it is though the source offers another.
+/// True if the source may leave a stored volume unchanged (see FatSource).
 template <typename Source>
 constexpr bool kMayStay = requires(const Source& source) {
   source.write_if_left(0, ColumnPointers{}, 0);
 };
 
-/// The least and the largest id of entries; where ids ascend, those at their ends.
+/// Returns the smallest and largest id of the entries.
 std::ranges::minmax_result<ObjectId> ends_of_ids(const EntryList& entries,
                                                  bool ascending) noexcept {
   if (ascending) return {entries.key(0).id, entries.key(entries.count - 1).id};
@@ -114,7 +115,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   });
 }
 
-/// Writes entries [begin, end) to the rows from `first` on that they have been given.
+/// Writes entries [begin, end) to the rows from `first` on, and their ids and filters.
 template <typename Source>
 void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                      std::size_t begin, std::size_t end) {
@@ -129,7 +130,7 @@ void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_
   for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
 }
 
-/// What is known of the keys of entries [begin, end), which follow each other.
+/// Checks the keys of entries [begin, end), whose indices are consecutive.
 KeyTable::RunOfKeys Rows::look_at(const EntryList& entries, std::size_t begin,
                                   std::size_t end) const noexcept {
   if (end - begin >= EntryList::kLongRun) {
@@ -143,7 +144,7 @@ KeyTable::RunOfKeys Rows::look_at(const EntryList& entries, std::size_t begin,
   return run;
 }
 
-/// Refuses an update that must be, and tells whether ids ascend, each once.
+/// Returns the status of an invalid update; sets `ascending` if ids strictly ascend.
 template <typename Source>
 Status Rows::check_update(const Source& source, std::size_t volumes, const EntryList& entries,
                           bool& ascending) const {
@@ -194,10 +195,10 @@ Status Rows::update_one(const Source& source, Key key) {
   });
 }
 
-/// Nearly every row changes: rows are written one after another then, which reads entries out of
-/// order but writes each column in order, and that is a sixth of the cache lines. Where ids leave
-/// gaps or come in another order than their entries, a table leads from one to the other. False
-/// where a key is there twice: such entries are written in their order.
+/// True if an update writes rows in row order instead of entry order, because more than half of the
+/// rows change: it reads entries in arbitrary order but writes each column in order, which touches
+/// a sixth of the cache lines. A table maps ids to entries unless they correspond one to one. False
+/// if a key occurs twice, because its entries must be written in order.
 bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of) {
   const std::size_t count = entries.count;
   if (2 * count <= pool_.rows()) return false;
@@ -265,12 +266,12 @@ Status Rows::write(const Source& source, const EntryList& entries, bool ascendin
   }
 }
 
-/// True if most of the objects go so far, each its own way, that the order of the rows is worth
-/// nothing: judged by a sample.
+/// True if most objects move far and in different directions, so that the order of the rows is
+/// worthless. Decided from a sample.
 template <typename Source>
 bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexcept {
   constexpr std::size_t kSample = 64;
-  // In few rows all orders are as good.
+  // With few rows the order does not matter.
   constexpr std::size_t kFewRows = 256;
   if (!regions_.built || !(far_ > 0.0F) || keys.size() < kFewRows) return false;
   float volume[kMaxColumns];
@@ -287,8 +288,8 @@ bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexc
     for (std::size_t a = 0; a < 3; ++a) {
       const float step = volume[a] - pool_.column(a)[row];
       const float edge = volume[3 + a] - volume[a];
-      // What all do alike keeps their order; and beside large objects others that are far smaller
-      // tell nothing about what is far.
+      // Steps are compared with the previous sample's, because a common motion keeps the order.
+      // They must also exceed both objects' edges, because far_ may stem from much smaller objects.
       far |= std::abs(step - before[a]) > std::max({far_, edge, edge_before[a]});
       before[a] = step;
       edge_before[a] = edge;
@@ -298,7 +299,7 @@ bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexc
   return 2 * apart > kSample;
 }
 
-/// Writes every object anew, in the order of the keys: rows become those of entries.
+/// Writes all objects in the order of the keys, entry i to row i.
 template <typename Source>
 void Rows::write_all(const Source& source, std::span<const Key> keys) {
   pool_.clear();
@@ -321,8 +322,8 @@ void Rows::note_stale(const EntryList& entries) noexcept {
   changed_ = true;
 }
 
-/// Notes the objects whose bits are set in the selection as changed, and clears these: bits of
-/// rows, or of entries.
+/// Adds the objects whose bits are set in the selection to `stale` and clears the bits, which are
+/// indexed by row or by entry.
 void Rows::note_left(const EntryList& entries, bool by_rows, std::size_t slots) noexcept {
   bool any = false;
   for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
@@ -340,7 +341,7 @@ template <typename Source, typename Visit>
 void Rows::for_rows(const Source& source, const EntryOfRow& entry_of, const Visit& visit) {
   for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
     if constexpr (requires { source.packed(); }) {
-      // Not visited but written in registers.
+      // Packed boxes are written 16 rows at a time and not visited.
       const std::size_t whole = end - end % kBlockRows;
       if (source.packed()) {
         source.write_rows(entry_of.of_id, entry_of.id, PoolColumns(pool_).pointers, begin, whole);
@@ -358,8 +359,8 @@ void Rows::for_rows(const Source& source, const EntryOfRow& entry_of, const Visi
   });
 }
 
-/// Calls visit(entry, its row, j) for every j-th entry. No two threads meet in 64 of them that
-/// follow each other.
+/// Calls visit(entry, its row, j) for the j-th entry. Threads never share an aligned group of 64
+/// entries, so that `visit` may set bit j of a bitmap.
 template <typename Visit>
 void Rows::for_entries(const EntryList& entries, bool ascending, const Visit& visit) {
   const std::size_t count = entries.count;
@@ -369,7 +370,8 @@ void Rows::for_entries(const EntryList& entries, bool ascending, const Visit& vi
       visit(entries[j], keys_.row_of(entries.key(j).id), j);
     }
   };
-  // Only ascending ids are known to be distinct; a repeated key must be written in order.
+  // Only ascending ids are certain to be distinct; entries of a repeated key must be written in
+  // order.
   if (ascending) {
     for_ranges(execution_, count, go);
   } else {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Where the rows of a bulk insert or update come from: each source says whether entry i is legal
-// and writes it into the columns of a row. Legal infinite ends become +-FLT_MAX (see BoundsPool).
-// Included by source files, not by headers.
+// Sources of volumes for inserts and updates: each validates entry i and writes it into the columns
+// of a row. Infinite ends become +-FLT_MAX (see BoundsPool). volume_input.cpp and overlaps.cpp use
+// them. Included by source files, not by headers.
 
 #include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
@@ -27,7 +27,6 @@ namespace winnow {
 /// Column pointers of a pool.
 using ColumnPointers = float* const*;
 
-/// The columns of a pool as sources want them.
 struct PoolColumns {
   explicit PoolColumns(BoundsPool& pool) noexcept {
     for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
@@ -43,17 +42,16 @@ inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high
 
 inline constexpr std::size_t kEntriesPerTask = 8192;
 
-// How many entries ahead of their turn what they lead to is fetched into the cache: boxes and rows
-// that are met in any order.
+// Prefetch distance, in entries, for boxes and rows that are read in arbitrary order.
 inline constexpr std::size_t kFetchAhead = 12;
 
-/// Calls work(begin, end) over ranges of [0, count).
+/// Calls work(begin, end) for ranges that cover [0, count), in parallel.
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
   for_even_stretches(execution, count, kEntriesPerTask, work);
 }
 
-/// True if all of these entries are legal.
+/// True if all entries are legal.
 template <typename Source>
 [[nodiscard]] bool all_valid(const Source& source, const EntryList& entries,
                              const Execution& execution) {
@@ -70,7 +68,7 @@ template <typename Source>
   return valid.load();
 }
 
-/// Which entry of an update the object in a row has; kNoObject if none.
+/// Maps a row to the entry of its object in an update; kNoObject if it has none.
 struct EntryOfRow {
   BoxOfId of_id;
   const ObjectId* id;  ///< by row
@@ -91,7 +89,7 @@ struct BoxSource {
   [[nodiscard]] bool valid(std::size_t i) const noexcept {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const Aabb box = boxes[i];
-    // Bitwise, not short-circuit: all of it is needed for nearly every box.
+    // Bitwise instead of short-circuit: nearly every box needs all tests.
     int ok = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const float lo = box.min[axis];
@@ -100,13 +98,13 @@ struct BoxSource {
     }
     return ok != 0;
   }
-  /// True if each box is six floats (min xyz, max xyz) and they lie one after another.
+  /// True if the boxes are consecutive groups of six floats (min xyz, max xyz).
   [[nodiscard]] bool packed() const noexcept {
     const float* const first = boxes.min[0];
     return boxes.stride == sizeof(Aabb) && boxes.min[1] == first + 1 && boxes.min[2] == first + 2 &&
            boxes.max[0] == first + 3 && boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
   }
-  /// True if entries [begin, end) are, 16 at a time where the boxes lie one after another.
+  /// True if entries [begin, end) are legal. Tests 16 packed boxes at a time.
   [[nodiscard]] bool valid_entries(const EntryList& entries, std::size_t begin,
                                    std::size_t end) const noexcept {
     if (packed()) {
@@ -120,13 +118,13 @@ struct BoxSource {
     }
     return true;
   }
-  /// Writes the rows of [begin, end), both multiples of 16, whose objects have a box. The boxes are
-  /// packed.
+  /// Writes the rows of [begin, end) whose objects have a box; `begin` and `end` are multiples
+  /// of 16. Requires packed boxes.
   void write_rows(const BoxOfId& box_of, const ObjectId* ids, ColumnPointers columns,
                   std::size_t begin, std::size_t end) const noexcept {
     box_input_kernels().write_rows(boxes.min[0], box_of, ids, columns, begin, end);
   }
-  /// Writes entries [begin, end) into the rows from `row` on. The boxes are packed.
+  /// Writes entries [begin, end) to the rows from `row` on. Requires packed boxes.
   void write_in_order(std::size_t begin, std::size_t end, ColumnPointers columns,
                       std::size_t row) const noexcept {
     box_input_kernels().write_in_order(boxes.min[0] + 6 * begin, end - begin, columns, row);

@@ -40,7 +40,7 @@ void put_rows(ByteWriter& out, const Rows& rows) {
   });
 }
 
-/// What is read of a snapshot before anything is made of it.
+/// The content of a snapshot, read before anything is changed.
 struct ReadPartition {
   explicit ReadPartition(std::pmr::memory_resource* memory) noexcept
       : keys(memory), columns(memory), filters(memory) {}

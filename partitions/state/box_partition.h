@@ -4,8 +4,8 @@
 
 namespace winnow {
 
-/// An empty partition of boxes without a margin, whatever the options say of these. Links what
-/// boxes need alone, as the public constructor with options cannot.
+/// Returns an empty partition of boxes without a margin; volume and margin of the options are
+/// ignored. Links only the code for boxes, unlike the public constructor with options.
 [[nodiscard]] Partition make_box_partition(StructureKind structure,
                                            const PartitionOptions& options) noexcept;
 

@@ -17,7 +17,7 @@ bool Calm::seems_at_rest(const Rows& rows) noexcept {
     looks_ = take_sample(rows) ? 1 : 0;
     return false;
   }
-  // Who drifts gets three times as far in three frames, who wanders at random the root of that.
+  // Over three frames a drifting object moves three steps, a random walk sqrt(3) steps.
   constexpr float kNoFurther = 1.4F;
   const float step = step_of_sample(rows);
   if (looks_ == 1) first_ = step;
@@ -49,8 +49,8 @@ bool Calm::take_sample(const Rows& rows) noexcept {
   return edge_ < FLT_MAX;
 }
 
-// How far all but some in a hundred are from where they were. Those that are gone, or reach to
-// infinity, say nothing.
+// Returns how far about 97 % of the sampled objects are from their sampled place. Skips objects
+// that were removed or have infinite boxes.
 float Calm::step_of_sample(const Rows& rows) const noexcept {
   std::array<float, kSample> steps;
   std::size_t size = 0;

@@ -13,54 +13,55 @@
 
 namespace winnow {
 
-/// When boxes are deferred (see DeferredBoxes), and the pairs that this leaves open.
+/// Detects resting scenes, in which boxes are deferred (see DeferredBoxes), and keeps the list of
+/// close pairs that this requires.
 ///
-/// Much moves and hardly a pair changes where things rest and tremble, or are told to be where they
-/// are. It is taken for that where a sample of objects, over some frames in which all pairs were
-/// asked for, moves by little of its size, and in all of them by no more than in the first. All
-/// then get a margin of somewhat more than that. Two boxes that each stay within it can change
-/// whether they overlap only if their stored ones are nearly in touch: those pairs are watched,
-/// which is a test of two boxes each in a frame, and all others stay as they are (the lists of
-/// Verlet, Phys. Rev. 159, 1967, but that the answer is exact). What leaves its margin asks like
-/// any object that moved, with a box larger by two margins, which finds all that it may meet.
+/// In a resting scene objects jitter or get the same boxes again, and pairs hardly change. Rest is
+/// detected from a sample of objects: over several frames with full pair queries, they stay within
+/// a small fraction of a typical edge from their sampled places, and hardly get farther than in the
+/// first of these frames. All objects then get a margin slightly larger than the sampled motion.
+/// While two boxes stay within their margins, their overlap can change only if the stored boxes are
+/// nearly touching. These pairs are watched, which costs one test of two boxes per frame; all other
+/// pairs stay as they are. This is a Verlet list (Verlet, Phys. Rev. 159, 1967), except that the
+/// result is exact. An object that leaves its margin is queried like any moved object, with its box
+/// enlarged by two margins.
 ///
-/// Where small objects crowd together beside large ones, whose margin they get, next to all of them
-/// are nearly in touch: such a scene is not taken for one at rest.
+/// If small objects crowd beside large ones, whose size determines the margin, nearly every pair
+/// would be watched. Such a scene does not count as resting.
 ///
-/// A scene that only seemed to rest pays for the beginning, some queries for all pairs, in vain:
-/// after each time that was not worth it, it waits twice as long.
+/// A false detection costs several full queries to start with. After each start that did not last
+/// long enough to pay, the next attempt is delayed twice as long.
 class Calm {
  public:
   struct Watched {
     ObjectId first;
     ObjectId second;
-    bool met;  ///< in the last frame
+    bool met;  ///< overlapped in the last frame
   };
 
   explicit Calm(std::pmr::memory_resource* memory) noexcept : watched(memory), sample_(memory) {}
 
-  /// Looks at the boxes after a frame in which all pairs were asked for. True if the scene seems to
-  /// rest.
+  /// Samples the boxes after a frame with a full pair query. True if the scene seems to rest.
   [[nodiscard]] bool seems_at_rest(const Rows& rows) noexcept;
-  /// For boxes that go on moving as the sample did.
+  /// Returns the margin for boxes that keep moving as the sample did.
   [[nodiscard]] float margin() const noexcept {
     return std::max(kSpare * furthest_, kLeast * edge_);
   }
 
-  /// So many of so many objects came, went, or got another filter: where that is some in a hundred,
-  /// their pairs change though they rest.
+  /// Notes that `count` of `objects` objects were inserted, removed or got another filter. If that
+  /// is more than about 3 %, pairs change although objects rest, and detection starts again.
   void disturb(std::size_t count, std::size_t objects) noexcept {
     if (kFewDisturbed * count > objects) looks_ = 0;
   }
-  /// How many pairs are worth watching: a test of two boxes takes some 3 ns, as does each pair that
-  /// is found anew, and each object that asks some 25.
+  /// Returns the largest number of watched pairs that still costs less than querying the objects
+  /// again.
   [[nodiscard]] static std::size_t most_watched(std::size_t objects, std::size_t pairs) noexcept {
     return 8 * objects + pairs;
   }
   void note_frame() noexcept { ++frames_; }
-  /// Room for the sample. False if memory is refused.
+  /// Reserves the sample. False if memory is refused.
   [[nodiscard]] bool reserve(Pages pages) noexcept { return sample_.reserve(kSample, pages); }
-  /// Boxes are deferred no longer, or memory for that was refused.
+  /// Notes that deferring ended, or could not start.
   void end() noexcept;
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
@@ -77,23 +78,25 @@ class Calm {
   [[nodiscard]] bool take_sample(const Rows& rows) noexcept;
   [[nodiscard]] float step_of_sample(const Rows& rows) const noexcept;
 
-  // Tremors that were sampled are somewhat shorter than the longest.
+  // The longest motion is longer than the longest sampled one.
   static constexpr float kSpare = 1.5F;
-  // Shares of an edge: with more, too many pairs would have to be watched; with less, no fewer.
+  // Fractions of an object's edge. A larger margin would watch too many pairs; a smaller one would
+  // not reduce them further.
   static constexpr float kMost = 1.0F / 16.0F;
   static constexpr float kLeast = 1.0F / 2048.0F;
   static constexpr std::size_t kSample = 32;
   static constexpr std::size_t kLooks = 3;
   static constexpr std::size_t kFewDisturbed = 32;
-  // Frames that a beginning has to last to be worth it, and queries to wait at most.
+  // Frames that deferring must last to pay, and the longest delay in queries before the next
+  // attempt.
   static constexpr std::size_t kWorthwhile = 16;
   static constexpr std::size_t kLongest = 4096;
 
   Column<Sampled> sample_;
-  std::size_t looks_ = 0;  // at the sample, since it was taken
-  float first_ = 0.0F;     // step of the sample in the first frame
-  float furthest_ = 0.0F;  // in any
-  float edge_ = 0.0F;      // longest one of a typical object
+  std::size_t looks_ = 0;  // frames compared with the sample
+  float first_ = 0.0F;     // motion of the sample in the first frame
+  float furthest_ = 0.0F;  // largest motion in any frame
+  float edge_ = 0.0F;      // longest edge of a typical object
   std::size_t frames_ = 0;
   std::size_t wait_ = 0;
   std::size_t waiting_ = 0;

@@ -1,3 +1,6 @@
+// Mutations, refresh and bookkeeping of a partition. Pair queries are in pairs/self_pairs.cpp and
+// pairs/calm_pairs.cpp; other queries, in queries/, call `prepare`.
+
 #include "partitions/state/partition_state.h"
 
 #include "core/hooks/log.h"
@@ -58,7 +61,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
     return false;
   }
   if (!is_first && index.structure().tests_volumes() != tested) {
-    // Pairs that one structure reports and the other does not are in the buffer that is tracked.
+    // The structures differ in the pairs that they report, so the tracked buffer is out of date.
     pairs_.calm.end();
     pairs_.tracked_serial = 0;
   }
@@ -173,8 +176,8 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
   return Status::ok;
 }
 
-// Nobody reads rows that are about to change: whoever does has come here first, or tracks pairs and
-// holds the mutex that the caller does.
+// There are no concurrent readers: mutations have exclusive access, and every query that reads rows
+// calls this first, or holds tracker_mutex_, which the calling query holds too.
 void PartitionState::end_deferring() const noexcept {
   if (!deferred_.active()) return;
   const Lock lock(refresh_mutex_);
@@ -206,14 +209,13 @@ Status PartitionState::refresh() const {
   const Lock lock(refresh_mutex_);
   if (!stale_.load(std::memory_order_relaxed)) return Status::ok;
   const StageScope stage(WorkStage::refresh);
-  // The structure is a cache of the rows: bringing it up to date is no change that a caller of a
-  // const query can see.
+  // The structure is a cache of the rows, so a const query may bring it up to date.
   const Status status = const_cast<PartitionState*>(this)->refresh_now();
   if (status == Status::ok) stale_.store(false, std::memory_order_release);
   return status;
 }
 
-// Who gets ready before the first question may ask any.
+// The kind of the first query is unknown, so the first build is made as for casts and regions.
 Status PartitionState::make_ready() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
@@ -224,7 +226,7 @@ Status PartitionState::make_ready() const {
 
 Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
-  // While a structure is being planned the choice stands.
+  // While an exchange of the structure is planned, the choice is not revised.
   const bool choosing = chooser_ != nullptr && !index.exchanging();
   const StructureKind wanted =
       choosing
@@ -287,14 +289,14 @@ void PartitionState::release_memory() noexcept {
   rows.release_memory();
   if (rows.size() == 0) {
     pairs_.tracked_serial = 0;
-    // Of an empty partition nothing is known: the choice begins where it began.
+    // An empty partition has no features, so the choice restarts from its first structure.
     if (chooser_ != nullptr) (void)index.set_structure(chooser_->first());
   }
   note_changes(0);
 }
 
 Footprint PartitionState::footprint() const noexcept {
-  // Queries that run at the same time may be bringing up to date what is counted here.
+  // Concurrent queries may be bringing the counted memory up to date.
   const Lock tracker(tracker_mutex_);
   const Lock refresher(refresh_mutex_);
   Footprint result;

@@ -1,5 +1,8 @@
 #pragma once
 
+// The implementation of Partition: PartitionState owns the rows, the index over them, the tracking
+// of pairs and the chooser of the structure. partition.cpp and queries/ call it.
+
 #include <winnow/partitions/partition.h>
 #include "core/threads/mutex.h"
 #include "partitions/choice/chooser.h"
@@ -18,13 +21,13 @@ namespace winnow {
 class EventWriter;
 class LinkedPairs;
 
-/// Which pair buffer is kept up to date by what moved, and what pair queries have done.
+/// The pair buffer that is updated incrementally, and counters of pair queries.
 struct PairTracking {
   explicit PairTracking(std::pmr::memory_resource* memory) noexcept;
 
   const std::uint64_t identity;      // of the partition
   std::uint64_t tracked_serial = 0;  // 0: no buffer is tracked
-  // Never goes back, so an old buffer cannot match.
+  // Only grows, so that an old buffer cannot match.
   std::atomic<std::uint64_t> last_serial{0};
   std::atomic<std::uint64_t> full_queries{0};
   std::atomic<std::uint64_t> incremental_queries{0};
@@ -33,8 +36,7 @@ struct PairTracking {
   Calm calm;
 };
 
-/// All that a partition consists of: objects, how they are found, which pairs are tracked, and what
-/// chooses the structure, if anything does.
+/// All data of a partition.
 class PartitionState {
  public:
   PartitionState(std::pmr::memory_resource* memory, const PartitionOptions& options,
@@ -43,7 +45,7 @@ class PartitionState {
   PartitionState(const PartitionState&) = delete;
   PartitionState& operator=(const PartitionState&) = delete;
 
-  /// With an input for the options' volume and margin. Null if memory is refused.
+  /// `input` must be the one for the volume and margin of the options. Null if memory is refused.
   [[nodiscard]] static PartitionState* make(StructureKind kind, const PartitionOptions& options,
                                             const VolumeInput& input) noexcept;
   /// False, and nothing changed, if memory is refused.
@@ -51,7 +53,7 @@ class PartitionState {
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status remove(std::span<const Key> keys);
-  /// Of a state that never held an object; see Rows::restore.
+  /// Requires a state that never held an object; see Rows::restore.
   Status restore(const SavedRows& saved, PartitionState& other);
   Status reserve(std::size_t objects, Pages pages);
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
@@ -60,24 +62,25 @@ class PartitionState {
   Status update(const EntryList& entries, const BoxView& boxes);
   Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
   Status update(Key key, const Aabb& box);
-  /// One box for each key.
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
-  /// Ends a mutation of so many objects.
+  /// Ends a mutation of `count` objects.
   void note_changes(std::size_t count) noexcept;
-  /// Brings up to date what pair queries of a tracked buffer read.
+  /// Brings the structure up to date, except that deferred boxes stay deferred. For pair queries of
+  /// a tracked buffer.
   Status refresh() const;
-  /// The same for a caller who does not say what will be asked.
+  /// Refreshes for unknown queries: `Partition::refresh`.
   Status make_ready() const;
-  /// Has the rows hold all boxes as they were given, for who reads them.
+  /// Writes deferred boxes to the rows, for functions that read them.
   void write_deferred() const;
-  /// The same, and brings up to date what pair queries read.
+  /// Calls `write_deferred` and `refresh`.
   Status settle() const;
-  /// The same for other queries, of which there are `count`; tells them how to see the rows.
+  /// Settles, brings the trees up to date that casts, regions and nearest queries use, notes
+  /// `count` queries of this kind, and returns a view of the rows and trees.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
   void note(QueryKind kind, std::size_t count) const noexcept;
 
-  /// Calls look() while no other thread can be exchanging what it looks at.
+  /// Calls look() while no other thread can reorder rows or exchange the structure.
   template <typename Look>
   auto steadily(Look&& look) const {
     Lock lock = Lock::deferred(refresh_mutex_);
@@ -87,7 +90,8 @@ class PartitionState {
 
   [[nodiscard]] Status find_self_pairs(PairBuffer& out, const PairOptions& options,
                                        PairEvents* events) const;
-  /// Pairs (object of this, object of other); asks about every object of this.
+  /// Appends the pairs (object of this, object of other). Queries `other` with every object of
+  /// this.
   Status ask(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
              PairBuffer& out) const;
 
@@ -99,7 +103,7 @@ class PartitionState {
   void release_memory() noexcept;
 
   std::pmr::memory_resource* const memory;
-  StructureKind structure;  // as it was given
+  StructureKind structure;  // as given by the caller
   Rows rows;
   SpatialIndex index;
 
@@ -148,12 +152,12 @@ class PartitionState {
   Chooser* chooser_ = nullptr;
   mutable PairTracking pairs_;
   mutable DeferredBoxes deferred_;
-  mutable PairBuffer near_;       // while it is found out which pairs to watch
+  mutable PairBuffer near_;       // scratch for finding the pairs to watch
   Column<std::uint32_t> listed_;  // entries of a mask
   mutable Mutex refresh_mutex_;
   mutable Mutex tracker_mutex_;
-  // True from a change on until a refresh is through. Only in between are rows reordered and
-  // structures exchanged, and only under the mutex.
+  // True from a change until a refresh has finished. Rows are reordered and structures exchanged
+  // only in between, under refresh_mutex_.
   mutable std::atomic<bool> stale_{true};
 };
 

@@ -2,29 +2,29 @@
 
 namespace winnow {
 
-/// What a structure is expected to cost, in nanoseconds of one thread: constants of a sum of
-/// products, each of a feature of the scene or of what a frame did, and of one of these. See
-/// PredictedCosts, which adds them up.
+/// Constants that predict the cost of a structure, in nanoseconds of one thread. PredictedCosts
+/// (choice/predicted_costs.h) multiplies each by a feature of the scene or of the frame and adds
+/// the products.
 struct StructureCosts {
-  bool has_cells = false;  ///< or strips, which objects that are fast leave in every frame
+  bool has_cells = false;  ///< cells or strips, which fast objects leave in every frame
   double frame = 0;        ///< per frame
-  double keep = 0;         ///< per object that moved: written, and its place kept up
-  double object = 0;       ///< of all pairs after much has moved, per object that asks;
-  double level = 0;        ///< the same, for each doubling of the number of objects,
-  double crowd = 0;        ///< for each doubling of how much they crowd together,
-  double square = 0;       ///< and for each other object that it is tested against
+  double keep = 0;         ///< per object that moved: writing it and updating its place
+  double object = 0;       ///< all pairs after much has moved, per object
+  double level = 0;        ///< as `object`, for each doubling of the number of objects
+  double crowd = 0;        ///< as `object`, for each doubling of the crowding
+  double square = 0;       ///< as `object`, per other object that is tested
   double pair = 0;         ///< per pair that is written
-  double moved = 0;        ///< of all pairs after little has moved, per object that asks
-  double rest = 0;         ///< the same, per object that does not
-  double build = 0;        ///< of a build, per object
-  double build_level = 0;  ///< the same, for each doubling of the number of objects
-  /// Of a refresh in which all objects are scattered, per object, in place of keeping their places
-  /// and of the build; 0: as much as both.
+  double moved = 0;        ///< all pairs after little has moved, per moved object
+  double rest = 0;         ///< as `moved`, per object that did not move
+  double build = 0;        ///< a build, per object
+  double build_level = 0;  ///< as `build`, for each doubling of the number of objects
+  /// A refresh that scatters all objects, per object, including the build; replaces `keep`. 0: the
+  /// sum of both.
   double anew = 0;
-  double ask = 0;        ///< per ray or region; one for the nearest counts four times
-  double ask_level = 0;  ///< the same, for each doubling of the number of objects
-  double scan = 0;       ///< the same, per object, where there is no tree
-  double rows = 0;       ///< per object that moved, before such a question is answered
+  double ask = 0;        ///< per ray or region; a nearest query counts four times
+  double ask_level = 0;  ///< such a query, for each doubling of the number of objects
+  double scan = 0;       ///< such a query, per object, if there is no tree
+  double rows = 0;       ///< a frame with such queries, per object that moved
 };
 
 }  // namespace winnow

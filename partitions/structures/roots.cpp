@@ -5,7 +5,8 @@
 namespace winnow {
 namespace {
 
-// Of a number in [0.5, 4), by Newton's method: the error, an eighth at most, is squared six times.
+// Cube root of a number in [0.5, 4) by Newton's method. The initial error is at most an eighth and
+// is squared six times.
 double cube_root(double value) noexcept {
   double x = 0.6 + 0.28 * value;
   for (int i = 0; i < 6; ++i) x -= (x * x * x - value) / (3.0 * x * x);
@@ -25,7 +26,7 @@ double root_of_product(unsigned degree, std::span<const double> factors) noexcep
   };
   for (const double factor : factors) product = normalise(product * normalise(factor));
   if (!std::isfinite(product) || product == 0.0) return product;
-  // What the exponent leaves when it is divided goes to the fraction.
+  // The remainder of the divided exponent moves into the fraction.
   const int divisor = static_cast<int>(degree);
   const int rest = (exponent % divisor + divisor) % divisor;
   product = std::ldexp(product, rest);

@@ -1,7 +1,8 @@
 #pragma once
 
-// What a partition asks of a structure. A structure knows rows of bounding volumes and how it put
-// them in order; objects, queries, pairs and events are the partition's.
+// The interface between a partition and its structure. A structure stores the order of rows of
+// bounding volumes; the partition handles objects, queries, pairs and events. SpatialIndex
+// (index/spatial_index.h) calls it.
 
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/footprint.h>
@@ -26,11 +27,11 @@ class Chooser;
 class Structure;
 struct StructureCosts;
 
-/// Of fewer objects the tree alone has the pairs sooner than cells are made for them.
+/// With fewer objects the tree finds all pairs sooner than cells are built.
 inline constexpr std::size_t kFewestInCells = 256;
 
-/// What a structure is made with: the rows it is about, and the tree over those of them that are
-/// regular, which the partition keeps. Both outlive it.
+/// Constructor arguments of a structure: the rows, and the tree over the regular rows, which
+/// SpatialIndex maintains. Both outlive the structure.
 struct StructureInput {
   std::pmr::memory_resource* memory;
   const Rows& rows;
@@ -38,19 +39,19 @@ struct StructureInput {
   float parameter;  ///< of the StructureKind
 };
 
-/// What is known of a structure before one is made. Each is a constant in a structure's own source.
+/// Static description of a kind of structure: a constant in the structure's source file.
 struct StructureInfo {
   std::string_view name;
-  /// Null if memory is refused.
+  /// Returns null if an allocation fails.
   Structure* (*make)(const StructureInput&) noexcept;
-  /// Ends one that `make` made with this resource.
+  /// Destroys a structure that `make` returned, with the same memory resource.
   void (*end)(Structure*, std::pmr::memory_resource*) noexcept;
-  /// Its sizeof.
+  /// The sizeof of the structure.
   std::size_t bytes;
-  /// What it costs, for the automatic choice; null: it is never chosen.
+  /// Costs for the automatic choice; null: never chosen.
   const StructureCosts* costs = nullptr;
-  /// Makes what goes on choosing the structure; null for all but the automatic one. Null is
-  /// returned if memory is refused.
+  /// Makes the chooser of the automatic structure, or returns null if an allocation fails. Null for
+  /// all other structures.
   Chooser* (*make_chooser)(std::pmr::memory_resource*) noexcept = nullptr;
 };
 
@@ -69,42 +70,42 @@ template <typename T>
           .costs = costs};
 }
 
-/// An object that was moved behind all others, and the row that it stood in before.
+/// An object that was moved behind all others, and its former row.
 struct RowMove {
   std::uint32_t row;
   ObjectId id;
 };
 
-/// Which rows a plan is about, and where it writes which go where.
+/// The rows of a plan, and its output.
 struct RowPlan {
-  /// Rows below this, of which so many held objects when the plan was begun. Further ones may come
-  /// while it is made.
+  /// The plan covers rows below `rows`, of which `objects` held objects at its start. Rows may be
+  /// added behind them meanwhile.
   std::size_t rows;
   std::size_t objects;
-  /// The regular rows in their order; has room for every row. Entries of kNoObject leave places
-  /// empty.
+  /// Output: the regular rows in their order; entries of kNoObject become holes. Has room for every
+  /// row.
   Column<std::uint32_t>& regular;
-  /// All other live rows; has room for every row.
+  /// Output: all other live rows. Has room for every row.
   Column<std::uint32_t>& rest;
-  /// Scratch for sorting, and by row. They keep what a stage leaves in them until the rows stand in
-  /// the planned order.
+  /// Scratch for sorting, and one entry per row. Both keep their contents between stages until the
+  /// rows are in the planned order.
   Column<std::uint64_t>& items;
   Column<std::uint32_t>& list;
-  /// What was moved since the plan was begun, by ascending rows.
+  /// Objects moved since the start, by ascending rows.
   std::span<const RowMove> moves;
 };
 
-/// What has to be made ready for a build, at most.
+/// The size of a build to reserve memory for, and the scratch columns to reserve.
 struct BuildRoom {
-  std::size_t objects;  ///< all of them live, in as many rows
+  std::size_t objects;  ///< all live, in as many rows
   Pages pages;
-  /// Scratch for sorting: by integers, by row, and by places.
+  /// Scratch for sort keys, for entries per row, and for positions.
   Column<std::uint64_t>& items;
   Column<std::uint32_t>& list;
   Column<float>& points;
 };
 
-/// How a stage of a plan ended.
+/// Result of a stage of a plan.
 enum class Planned : std::uint8_t { out_of_memory, goes_on, done };
 
 class Structure {
@@ -114,63 +115,64 @@ class Structure {
   Structure(const Structure&) = delete;
   Structure& operator=(const Structure&) = delete;
 
-  /// True if all rows stay in one unordered regular region.
+  /// True if all rows are one unordered regular region.
   [[nodiscard]] virtual bool is_flat() const noexcept { return false; }
-  /// True if regular rows are found by the boxes of their blocks: the tree over these is then made
-  /// by each build and kept up to date by each refresh.
+  /// True if pairs of regular rows are found by the boxes of their blocks. The tree over these
+  /// blocks is then rebuilt by each build and refitted by each refresh.
   [[nodiscard]] virtual bool prunes_rows() const noexcept { return false; }
-  /// False if it reports pairs whose volumes do not overlap.
+  /// False if the structure reports pairs without testing their volumes.
   [[nodiscard]] virtual bool tests_volumes() const noexcept { return true; }
 
   // Ordering rows.
 
-  /// Makes room for a build of so many objects, wherever they lie, so that it asks for no memory.
-  /// False if memory is refused. By default all are cut at medians.
+  /// Makes room for a build of `room.objects` objects at any positions, so that the build does not
+  /// allocate. Returns false if an allocation fails. The default implementation reserves scratch
+  /// for k-d cuts of all rows.
   [[nodiscard]] virtual bool reserve(const BuildRoom& room) noexcept {
     return room.points.reserve(kd_scratch(room.objects), room.pages);
   }
-  /// Places at most that a plan leaves empty.
+  /// The maximum number of holes that a plan leaves.
   [[nodiscard]] virtual std::size_t most_holes() const noexcept { return 0; }
 
-  /// Chooses the rows of the regular region and their order, a stage with each call: the first has
-  /// number 0, and each takes about as long as going over all rows once. By default every live row
-  /// is part of the rest.
+  /// Computes the regular rows and their order, one stage per call, starting with stage 0. Each
+  /// stage takes about as long as one pass over all rows. The default implementation makes every
+  /// live row part of the rest.
   ///
-  /// Between two stages objects may move, and rows become empty, but no row becomes another
-  /// object's. What a plan decides may be out of date when it is done: rows that no longer fit are
-  /// found then. Until `finish_build` the structure answers for the rows as the last build left
-  /// them. A plan that is left unfinished, or that memory is refused for, is forgotten.
+  /// Between two stages objects may move and rows may become empty, but no row is reused for
+  /// another object. The decisions of a plan may be out of date when it is done: rows that no
+  /// longer fit are found then. Until `finish_build` the structure answers queries in the order of
+  /// the last build. An unfinished plan is dropped.
   [[nodiscard]] virtual Planned plan(const RowPlan& plan, unsigned) noexcept {
     leave_all(plan);
     return Planned::done;
   }
   /// Makes every live row part of the rest.
   void leave_all(const RowPlan& plan) const noexcept;
-  /// Where the object stands now that stood in a row when the plan was begun; the row itself if it
-  /// is gone. O(log moves) for rows that have become empty.
+  /// Returns the current row of the object that was in `row` when the plan was started, or `row` if
+  /// the object was removed. O(log moves) for rows that have become empty.
   [[nodiscard]] std::size_t row_now(const RowPlan& plan, std::size_t row) const noexcept;
-  /// Appends rows to `order` in the order in which the tree's blocks of 16 are to hold them; no
-  /// environments are in use. It may reorder `rest`. `Order::none` leaves that to the partition,
-  /// which cuts at medians.
+  /// Appends the rows of `rest` to `order` in the order of the tree's blocks of 16. Called only if
+  /// environments are not in use; may reorder `rest`. `Ordered::none`: the caller orders them by
+  /// k-d cuts.
   enum class Ordered : std::uint8_t { none, done, out_of_memory };
   [[nodiscard]] virtual Ordered order_rest(std::span<std::uint32_t>,
                                            Column<std::uint32_t>&) noexcept {
     return Ordered::none;
   }
-  /// How the order of the rest is found by a first build, if nobody asks for rays or regions.
+  /// Precision of the rest's order in the first build if there were no queries for rays or regions.
   [[nodiscard]] virtual KdParts first_parts() const noexcept { return KdParts::tiles; }
-  /// What a build costs in tests of 16 volumes per object. The default was measured on both sides
-  /// of the decision to build anew.
+  /// The price of a build in tests of 16 volumes per object, for comparison with wear. The default
+  /// was measured.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }
-  /// About how many passes over all rows a plan takes, the order of the rest included.
+  /// The approximate number of passes over all rows in a plan, including the order of the rest.
   [[nodiscard]] virtual std::size_t plan_passes() const noexcept { return 4; }
-  /// Called when the rows stand in the planned order. `moved` says that objects may have moved
-  /// since the plan was begun.
+  /// Called when the rows are in the planned order. `moved`: objects may have moved since the plan
+  /// was started.
   virtual void finish_build(const RowPlan&, bool /*moved*/) noexcept {}
 
-  // What no longer fits.
+  // Rows that no longer fit.
 
-  /// A box, or where one is expected to be.
+  /// A box, current or predicted.
   struct Place {
     std::array<float, 3> low;
     std::array<float, 3> high;
@@ -183,12 +185,12 @@ class Structure {
     }
     return place;
   }
-  /// True if the object in this regular row would still fit where the build put it if it were at a
-  /// place.
+  /// True if the object in this regular row would still fit the row's cell if its box were the
+  /// given place.
   [[nodiscard]] virtual bool fits(std::size_t, const Place&) const noexcept { return true; }
-  /// Appends the regular rows that no longer fit; any may have changed. `room` is for as many as
-  /// there are regular rows. False, and nothing appended, where they are more than `most`, or a
-  /// sample of them promises it.
+  /// Appends the regular rows that no longer fit, after any rows may have changed. `room` has space
+  /// for all regular rows. Returns false and appends nothing if there are more than `most`, or if a
+  /// sample predicts more.
   virtual bool find_misfits(std::uint32_t* /*room*/, Column<std::uint32_t>&,
                             std::size_t /*most*/) noexcept {
     return true;
@@ -196,22 +198,23 @@ class Structure {
 
   // Pairs.
 
-  /// Pairs within the regular region, in independent tasks. False if the sink could not grow.
+  /// Pairs within the regular region are found in pair_tasks() independent tasks. run_pair_task
+  /// returns false if the sink could not grow.
   [[nodiscard]] virtual std::size_t pair_tasks() const noexcept { return 0; }
   virtual bool run_pair_task(std::size_t, PairSink&) const noexcept { return true; }
-  /// Hits of boxes in the regular region.
+  /// Passes the hits of a batch in the regular region to the sink.
   virtual bool query(const QueryBatch&, PairSink&) const noexcept { return true; }
 
-  // Looking at it.
+  // Inspection.
 
-  /// Draws cells, strips or whatever the regular region has.
+  /// Draws the cells or strips of the regular region.
   virtual void draw(DebugDraw&) const {}
-  /// Cells, strips or nodes of the regular region; 0 if leaf blocks are all there is.
+  /// The number of cells, strips or nodes of the regular region; 0 if it has only leaf blocks.
   [[nodiscard]] virtual std::size_t cells() const noexcept { return 0; }
   [[nodiscard]] virtual std::size_t levels() const noexcept { return 0; }
-  /// Gives back what only builds need.
+  /// Frees memory that only builds use.
   virtual void release_scratch() noexcept {}
-  /// Gives back what an empty structure holds.
+  /// Frees the memory of an empty structure.
   virtual void release_memory() noexcept {}
   virtual void add_bytes(Footprint&) const noexcept {}
 
@@ -223,8 +226,8 @@ class Structure {
   [[nodiscard]] std::size_t objects() const noexcept { return rows_.size(); }
   [[nodiscard]] std::size_t regular_rows() const noexcept { return rows_.regions().regular; }
   [[nodiscard]] RowView row_view() const noexcept { return rows_.view(); }
-  /// Over the regular rows: boxes where `prunes_rows`, and what filters have between them where
-  /// filters are in use.
+  /// The tree over the regular rows: with boxes if `prunes_rows`, with filters if filters are in
+  /// use.
   [[nodiscard]] TreeView regular_tree() const noexcept { return regular_tree_.view(row_view()); }
 
  private:

@@ -13,28 +13,29 @@ namespace winnow {
 
 inline constexpr std::size_t kMostTasks = 64;
 
-/// Units of work, cut into tasks that take about as many each.
+/// Divides units of work into at most `most` tasks of about equal size.
 struct TaskCut {
   std::size_t units = 0;
   std::size_t most = kMostTasks;
 
   [[nodiscard]] std::size_t tasks() const noexcept { return std::min(most, units); }
-  /// The first unit of a task; of the one behind the last, the end.
+  /// The first unit of a task; for task == tasks() the number of units.
   [[nodiscard]] std::uint32_t first(std::size_t task) const noexcept {
     return static_cast<std::uint32_t>(units * task / tasks());
   }
 };
 
-/// Appends to `out` which of so many rows tasks find, in the order of the tasks. False, and nothing
-/// is appended, where they are more than `most`: one task in eight is run first, and no other where
-/// these promise it. find(begin, end, out) goes through units, writes to `out` and returns how many
-/// it wrote; task i is given scratch + offset(first unit), where it has room for all of its rows.
+/// Appends the rows that tasks find to `out`, in the order of tasks. find(begin, end, out) visits
+/// units, writes rows to `out` and returns their number. Task i writes to scratch + offset(first
+/// unit), which has room for all of the task's rows; `rows` is the number of rows of all tasks.
+/// Returns false and appends nothing if more than `most` rows are found. One task in eight runs
+/// first; if its result predicts more than `most`, the others do not run.
 template <typename Offset, typename Find>
 [[nodiscard]] bool append_in_order(const Execution& execution, const TaskCut& cut, std::size_t rows,
                                    std::uint32_t* scratch, Offset&& offset, Find&& find,
                                    Column<std::uint32_t>& out, std::size_t most) {
   constexpr std::size_t kOneIn = 8;
-  constexpr std::size_t kFewRows = 32;  // of so many one is too small a sample
+  constexpr std::size_t kFewRows = 32;  // a sample of one row in this many is too small to decide
   const std::size_t tasks = cut.tasks();
   std::array<std::size_t, kMostTasks> found{};
   const auto room = [&](std::size_t task) { return scratch + offset(cut.first(task)); };
@@ -43,7 +44,7 @@ template <typename Offset, typename Find>
   };
   const auto sampled = [](std::size_t i) { return i * kOneIn + kOneIn / 2; };
   execution.for_each(tasks / kOneIn, [&](std::size_t i) { run(sampled(i)); });
-  // Their products may be beyond a size of 32 bits.
+  // The products may exceed 32 bits.
   std::uint64_t seen = 0;
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < tasks / kOneIn; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Pairs of rows that lie close together, found sixteen at a time.
+// Self pairs of blocks of rows in registers, for the block tree (block_tree.kernel.cpp) and the
+// kernels of cell structures (cells/cells.wide.h).
 
 #include "partitions/tree/hits.wide.h"
 #include "simd/lanes/boxes.h"
@@ -8,16 +9,16 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Pairs of a block of up to 16 rows with each other and with rows behind them. Rows of a block lie
-/// close together: one box around them asks the grid, 16 rows at a time, who may touch any of them,
-/// and only those are tested one by one, each against the whole block, which stays in registers.
+/// Finds the pairs of a block of up to 16 rows with each other and with rows behind them. The rows
+/// of a block are close together: the box around them first selects candidate rows, 16 at a time,
+/// and then each candidate is tested against the whole block, which stays in registers.
 template <bool Filtered>
 class BlockPairs {
  public:
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
-  /// Begins with rows [begin, end), which may meet each other unless `apart`. False if they are all
-  /// holes. `filtered`: filters are not known to let them all meet each other.
+  /// Starts with rows [begin, end). Pairs within the block are found unless `apart`. Returns false
+  /// if all rows are holes. `filtered`: filters must be tested on hits.
   bool start(std::uint32_t begin, std::uint32_t end, bool apart = false, bool filtered = true) {
     at_ = begin;
     behind_ = end;
@@ -41,8 +42,8 @@ class BlockPairs {
   [[nodiscard]] const float* low() const { return low_; }
   [[nodiscard]] const float* high() const { return high_; }
 
-  /// Adds rows [begin, end) as partners, those behind the block. Runs must ascend, but may share a
-  /// block of rows.
+  /// Adds rows [begin, end) behind the block as candidates. Ranges must ascend, but successive
+  /// ranges may share a block of rows.
   bool add_run(std::uint32_t begin, std::uint32_t end) {
     std::uint32_t first = begin / kLanes > next_ ? begin / kLanes : next_;
     const std::uint32_t last = (end + kLanes - 1) / kLanes;
@@ -55,25 +56,25 @@ class BlockPairs {
     return true;
   }
 
-  /// Adds those of the 16 blocks of rows from `first` on that the mask names. They lie behind the
-  /// block, and are not added otherwise.
+  /// Adds the blocks of rows first + i for each bit i of the mask as candidates. They must be
+  /// behind the block and must not be added otherwise.
   bool add_blocks(std::uint32_t first, Mask16 mask) {
     if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
     blocks_ += compress_store(mask, count_from(first), block_ + blocks_);
     return true;
   }
 
-  /// Tests the block. False if the sink is full.
+  /// Tests the candidates. Returns false if the sink is full.
   bool finish() { return test_blocks() && test_rows(); }
 
  private:
   static constexpr unsigned kBlockRoom = 512;
   static constexpr unsigned kRowRoom = 1024;
-  // Blocks of neighbouring lines lie in six columns each, anywhere: they are fetched so many tests
-  // before their turn.
+  // Candidate blocks are in six columns each, at unpredictable addresses, so they are prefetched
+  // this many tests ahead.
   static constexpr unsigned kAhead = 6;
 
-  /// Of two rows of the block the one in front asks.
+  /// Tests each row against the later rows of the block.
   void test_self() {
     const Box16 rows = own_rows();
     for (unsigned i = 0; i + 1 < kLanes; ++i) {
@@ -83,15 +84,14 @@ class BlockPairs {
     sink_.tests += kLanes - 1;
   }
 
-  /// Whether a test hits is a coin toss to the branch predictor: no branch here. The count is the
-  /// caller's, in a register.
+  /// Branchless, because hits are unpredictable. The caller keeps the count in a register.
   void add_hits(std::uint32_t row, Mask16 mask, unsigned& count) {
     hit_row_[count] = row;
     hit_mask_[count] = mask;
     count += mask != 0 ? 1U : 0U;
   }
 
-  /// Lists the rows of the listed blocks that may touch any row of the own one.
+  /// Lists the rows of candidate blocks that overlap the box around the block.
   bool test_blocks() {
     const float low[3] = {low_[0], low_[1], low_[2]};
     const float high[3] = {high_[0], high_[1], high_[2]};
@@ -117,7 +117,7 @@ class BlockPairs {
     return true;
   }
 
-  /// Tests the listed rows against the own block, which stays in registers.
+  /// Tests the listed rows against the block, which stays in registers.
   bool test_rows() {
     const Box16 rows = own_rows();
     unsigned hits = hits_;
@@ -154,12 +154,12 @@ class BlockPairs {
     });
   }
 
-  /// Writes those of the own rows that passing(hits, partner) gives back.
+  /// Writes the hits that passing(hits, partner row) returns.
   template <typename Passing>
   [[gnu::always_inline]] bool write_hits(Passing&& passing) {
     const Uints ids = Uints::load_unaligned(rows_.id + at_);
     const std::uint32_t* const row_id = rows_.id;
-    // Not the sink's own, which each pair that is written might be.
+    // A local copy: stores of pairs could alias the member.
     std::uint32_t* cursor = sink_.cursor;
     for (unsigned k = 0; k < hits_; ++k) {
       if (__builtin_expect(cursor > sink_.limit, 0) != 0) {
@@ -176,7 +176,7 @@ class BlockPairs {
     return true;
   }
 
-  /// Keeps the hits of the volumes in the boxes.
+  /// Drops hits of boxes whose volumes do not overlap.
   void drop_boxes() {
     for (unsigned k = 0; k < hits_; ++k) hit_at_[k] = at_;
     hits_ = keep_volume_hits(rows_, rows_.column, hit_row_, hit_at_, hit_mask_, hits_);
@@ -198,7 +198,7 @@ class BlockPairs {
   bool filtered_ = false;
   std::uint32_t at_ = 0;
   std::uint32_t behind_ = 0;
-  std::uint32_t next_ = 0;  // block of rows that is not listed yet
+  std::uint32_t next_ = 0;  // first block of rows that is not listed yet
   float low_[3];
   float high_[3];
   unsigned blocks_ = 0;
@@ -207,7 +207,7 @@ class BlockPairs {
   std::uint32_t block_[kBlockRoom + kLanes] = {};
   std::uint32_t row_[kRowRoom + kLanes];
   std::uint32_t hit_row_[kRowRoom + 2 * kLanes];
-  std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // of volumes other than boxes
+  std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // for volumes other than boxes
   std::uint32_t hit_mask_[kRowRoom + 2 * kLanes];
 };
 

@@ -1,3 +1,6 @@
+// BlockTree: memory layout, refit and sampling of the nodes. The kernels are in
+// block_tree.kernel.cpp, the nodes' filters in node_filters.cpp.
+
 #include "partitions/tree/block_tree.h"
 
 #include "core/memory/columns.h"
@@ -14,7 +17,7 @@ namespace {
 
 constexpr std::size_t kLeavesPerTask = 1024;
 
-// Levels of nodes over so many blocks.
+// Levels of nodes over `blocks` blocks.
 TreeShape levels_over(std::size_t blocks) noexcept {
   TreeShape shape;
   if (blocks == 0) return shape;
@@ -26,7 +29,7 @@ TreeShape levels_over(std::size_t blocks) noexcept {
   }
 }
 
-// Floats of the boxes of all nodes.
+// The number of floats in the boxes of all nodes.
 std::size_t floats_of(const TreeShape& shape) noexcept {
   std::size_t total = 0;
   for (std::uint32_t level = 0; level < shape.levels; ++level) {
@@ -35,14 +38,14 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
   return total;
 }
 
-// A tree has room for a tail of new blocks, up to what takes another level. Over fewer blocks there
-// is never more room.
+// A tree has room for additional blocks, up to the size that needs another level. Monotonic in
+// `blocks`.
 std::size_t blocks_with_room(std::size_t blocks) noexcept {
   const std::size_t most = std::size_t{1} << (4 * levels_over(blocks).levels);
   return std::min(blocks + blocks / 16, most);
 }
 
-// Empties nodes [begin, end) of a level.
+// Makes nodes [begin, end) of a level empty.
 void empty_boxes(const TreeShape& shape, std::uint32_t level, std::uint32_t begin,
                  std::uint32_t end) noexcept {
   constexpr float inf = std::numeric_limits<float>::infinity();
@@ -64,7 +67,7 @@ bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) 
   TreeShape shape = levels_over(laid_out_);
   shape.first_block = static_cast<std::uint32_t>(first_block);
   shape_.clear();
-  // Node values are recomputed: nothing to carry over into larger memory.
+  // Node values are recomputed, so no values have to be copied into larger memory.
   nodes_.clear();
   filters_.clear();
   if (first_block == 0 && blocks == 0) return true;
@@ -92,7 +95,7 @@ bool BlockTree::stretch(std::size_t blocks) noexcept {
 bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {
   const std::size_t floats = floats_of(levels_over(blocks_with_room(blocks)));
   if (!shape_.reserve(1) || !nodes_.reserve(floats, pages)) return false;
-  // Nodes that there are may have moved.
+  // Existing nodes may have moved.
   if (!nodes_.empty() && !shape_.empty()) aim_boxes(shape_[0]);
   return true;
 }
@@ -105,7 +108,7 @@ bool BlockTree::lay_boxes(TreeShape& shape) noexcept {
   return true;
 }
 
-// Tells the shape where its nodes are, and empties the room behind them.
+// Sets the pointers of the shape to its nodes, and empties the nodes behind them.
 void BlockTree::aim_boxes(TreeShape& shape) noexcept {
   const TreeShape room = levels_over(laid_out_);
   float* at = nodes_.data();

@@ -12,46 +12,46 @@
 
 namespace winnow {
 
-/// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. It owns no order:
-/// rows that lie near each other in space must lie near each other in the pool for it to prune. Any
-/// order gives right answers.
+/// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. The tree does not
+/// order the rows: it prunes well if rows that are close in space are close in the pool. Results
+/// are correct for any order.
 class BlockTree {
  public:
   explicit BlockTree(std::pmr::memory_resource* memory) noexcept
       : nodes_(memory), filters_(memory), shape_(memory) {}
 
-  /// What nodes hold.
+  /// Contents of nodes.
   enum class Nodes : std::uint8_t {
-    boxes,          ///< of the rows below them
-    boxes_filters,  ///< and what the rows' filters have between them
-    filters,        ///< that alone: of rows in no spatial order
+    boxes,          ///< bounds of the rows below
+    boxes_filters,  ///< also a summary of the filters of the rows
+    filters,        ///< only filters, for rows in no spatial order
   };
 
-  /// Sets which blocks the tree covers; nodes are then undefined until `refit_all`. False, and then
-  /// it covers none, if memory is refused.
+  /// Sets the blocks that the tree covers; nodes are undefined until `refit_all`. Returns false if
+  /// an allocation fails; the tree then covers no blocks.
   [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
                            Nodes nodes = Nodes::boxes) noexcept;
 
-  /// Covers another number of blocks, not 0, from the same one on, if their nodes have room where
-  /// those of now are: a sixteenth more than `cover` was told of mostly have. Nodes above the
-  /// blocks that come, or above the last one, are then to be refitted. False, and unchanged, if
-  /// they have not.
+  /// Changes the number of covered blocks (not 0) if there is room for their nodes, usually up to a
+  /// sixteenth more than in `cover`. The nodes above added blocks, or above the last block, have to
+  /// be refitted afterwards. Returns false and changes nothing if there is no room.
   [[nodiscard]] bool stretch(std::size_t blocks) noexcept;
 
-  /// Makes room for the boxes of a tree over so many blocks. False, and unchanged, if memory is
-  /// refused.
+  /// Makes room for the boxes of a tree over `blocks` blocks. Returns false and changes nothing if
+  /// an allocation fails.
   [[nodiscard]] bool reserve(std::size_t blocks, Pages pages) noexcept;
 
-  /// Recomputes every node, but what nodes know of filters only where rows were rearranged since
-  /// that was done last. O(blocks).
+  /// Recomputes every node. Recomputes filters only if rows or filters changed since the last call
+  /// (RowView::arrangement). O(blocks).
   void refit_all(const RowView& rows, const Execution& execution) noexcept;
 
-  /// Recomputes the nodes above the given leaves (ascending, without repeats; overwritten), which
-  /// are all whose rows changed since the last time; of filters again what was rearranged.
+  /// Recomputes the nodes above the given leaves (ascending, unique; overwritten), which must be
+  /// all leaves whose rows changed since the last refit. Recomputes their filters only if rows or
+  /// filters changed.
   void refit(const RowView& rows, std::span<std::uint32_t> leaves) noexcept;
 
   [[nodiscard]] TreeView view(const RowView& rows) const noexcept;
-  /// Stays where it is until `cover` is called.
+  /// Remains valid until `cover` is called.
   [[nodiscard]] const TreeShape& shape() const noexcept {
     static constexpr TreeShape kNone;
     return shape_.empty() ? kNone : shape_[0];
@@ -60,10 +60,10 @@ class BlockTree {
   [[nodiscard]] std::size_t blocks() const noexcept { return shape().count[0]; }
   [[nodiscard]] std::size_t levels() const noexcept { return shape().levels; }
   [[nodiscard]] bool has_filters() const noexcept { return shape().filters[0].layers != nullptr; }
-  /// Nodes one level above the blocks: the units in which pair finding is split.
+  /// Nodes one level above the blocks: the units of work of pair finding.
   [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
 
-  /// The mean edge of a block in the middle of a sample; 0 if there are none.
+  /// Returns the median, over a sample of blocks, of a block's mean edge; 0 if there are no blocks.
   [[nodiscard]] float typical_edge() const noexcept;
 
   /// True if the mean edge of a block is longer than `edge`.
@@ -73,7 +73,7 @@ class BlockTree {
     for (std::size_t c = 0; c < 3; ++c) sum += leaf[3 + c][block] - leaf[c][block];
     return sum > 3.0F * edge;
   }
-  /// How many of the first blocks are. O(count).
+  /// Returns how many of the first `count` blocks are wide. O(count).
   [[nodiscard]] std::size_t count_wide(std::size_t count, float edge) const noexcept {
     std::size_t wide = 0;
     for (std::size_t block = 0; block < count; ++block) wide += is_wide(block, edge) ? 1U : 0U;
@@ -89,9 +89,9 @@ class BlockTree {
 
   Column<float> nodes_;
   Column<std::uint32_t> filters_;
-  Column<TreeShape> shape_;       // one; none while the tree covers nothing
+  Column<TreeShape> shape_;       // one entry, or none while the tree covers nothing
   std::uint32_t laid_out_ = 0;    // blocks that nodes have room for
-  std::uint64_t filters_of_ = 0;  // the arrangement of rows that all filters are right for
+  std::uint64_t filters_of_ = 0;  // the arrangement of rows for which all filters are correct
 };
 
 }  // namespace winnow

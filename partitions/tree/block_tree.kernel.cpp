@@ -1,3 +1,6 @@
+// Kernels of BlockTree: refit, self pairs and batch queries. Self pairs run leaf by leaf
+// (NearGroups, BlockPairs), or group by group (LeafPairs) if more than one environment is in use.
+
 #include "partitions/tree/block_tree.kernel.h"
 #include "partitions/tree/block_pairs.wide.h"
 #include "partitions/tree/hits.wide.h"
@@ -10,7 +13,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Nodes [begin, end) of `to` from 16 boxes each of `from`.
+/// Computes nodes [begin, end) of `to`, each from 16 boxes of `from`.
 void reduce(const float* const* from, std::uint32_t begin, std::uint32_t end, float* const* to) {
   std::size_t i = begin;
   for (; i + kLanes <= end; i += kLanes) {
@@ -40,23 +43,23 @@ void refit_nodes(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
   reduce(tree.node[level - 1], begin, end, tree.node[level]);
 }
 
-/// Of the boxes `nodes`, which are nodes from `first_node` on, those that box q overlaps and whose
-/// filters `range` may meet.
+/// Returns the nodes among the 16 from `first_node` on, with boxes `nodes`, that box q overlaps and
+/// whose filters may match `range`.
 Mask16 open_nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                   const Box16& nodes, const QueryBox& q, const FilterRange& range) {
   return passing_nodes(tree, level, first_node, overlap(nodes, q.low, q.high), range);
 }
 
-/// Finds pairs between leaves in three long loops instead of many short nested ones, whose lengths
-/// no branch predictor can guess: pairs of leaves whose boxes overlap; of each, the rows of the
-/// first leaf that reach into the second's box; of each such row, its hits among the second leaf's
-/// rows. Each loop passes on what the filters let meet.
+/// Finds pairs between leaves in three long loops, instead of short nested loops whose lengths are
+/// unpredictable: pairs of leaves whose boxes overlap; for each, the rows of the first leaf that
+/// overlap the second's box; for each such row, its hits among the second leaf's rows. Each loop
+/// drops what the filters exclude.
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
       : tree_(tree), sink_(sink), hits_(tree.rows, sink), sure_(tree.rows, sink) {}
 
-  /// Adds all pairs of leaf i with leaves base + js.
+  /// Adds all pairs of leaf i with leaves base + j for each bit j of `js`.
   bool add(std::uint32_t i, std::uint32_t base, Mask16 js) {
     if (leaves_ > kLeafRoom - kLanes && !find_rows()) return false;
     Uints(i).store_unaligned(first_ + leaves_);
@@ -93,7 +96,8 @@ class LeafPairs {
       const QueryBox b(tree_.node[0], second_[k]);
       const Box16 a = load_slabs<3>(tree_.rows.column, row_of(first_[k]));
       Mask16 rows = overlap(a, b.low, b.high);
-      // Rows of one environment are told apart by their hits: looking at each costs more.
+      // If the leaf has one environment, filters are tested only on hits: testing each row first
+      // costs more.
       const FilterRange own = range_of(tree_.filters[0], first_[k]);
       if (own.first_environment != own.last_environment) {
         const auto first_row = static_cast<std::uint32_t>(row_of(first_[k]));
@@ -113,12 +117,12 @@ class LeafPairs {
       const std::size_t at = base + std::size_t{leaf_[k]} * kLanes;
       const Box16 b = load_slabs<3>(tree_.rows.column, at);
       const QueryBox q(tree_.rows.column, r);
-      // Within a leaf only rows behind r: the pair with an earlier one is that one's.
+      // Within a leaf tests only rows behind r, so that each pair is found once.
       const bool self = row_[k] / kLanes == leaf_[k];
       const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
       if (!hits_.make_room() || !sure_.make_room()) return false;
       const Mask16 met = overlap(b, q.low, q.high) & lanes;
-      // Leaves that may meet and whose rows are alike leave nothing to be looked up.
+      // If all rows of each leaf have the same filter, the test of the leaves decides for all hits.
       const bool sure = is_alike(row_[k] / kLanes) && is_alike(leaf_[k]);
       const auto at_row = static_cast<std::uint32_t>(at);
       sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? met : 0);
@@ -141,11 +145,11 @@ class LeafPairs {
   unsigned rows_ = 0;
   std::uint32_t first_[kLeafRoom + kLanes];
   std::uint32_t second_[kLeafRoom + kLanes];
-  std::uint32_t row_[kRowRoom + kLanes];  // counted from the tree's first row
+  std::uint32_t row_[kRowRoom + kLanes];  // relative to the tree's first row
   std::uint32_t leaf_[kRowRoom + kLanes];
 };
 
-/// All pairs of the leaves `is` of group g with those of group h >= g.
+/// Adds all pairs of leaves `is` of group g with leaves of group h >= g.
 bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 is, LeafPairs& pairs,
                 PairSink& sink) {
   const Box16 h_leaves = load_slabs<3>(tree.node[0], std::size_t{h} * kLanes);
@@ -160,7 +164,8 @@ bool group_pair(const TreeView& tree, std::uint32_t g, std::uint32_t h, Mask16 i
   return true;
 }
 
-/// Pairs of rows of many environments, group by group: what filters keep apart is not entered.
+/// Finds pairs of rows of several environments, group by group, and skips nodes that filters
+/// exclude.
 bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
                                 PairSink& sink) {
   LeafPairs pairs(tree, sink);
@@ -192,7 +197,7 @@ bool find_pairs_of_environments(const TreeView& tree, std::uint32_t begin, std::
   return pairs.finish();
 }
 
-/// What filters say of a leaf in a tree of one environment and the nodes that it meets.
+/// Filter tests between a leaf and nodes that it overlaps, in a tree of one environment.
 template <bool Filtered>
 class LeafFilter {
  public:
@@ -202,15 +207,15 @@ class LeafFilter {
     meets_all_ = surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
   }
 
-  /// No row of the leaf may meet another of it.
+  /// True if no row of the leaf matches another row of it.
   [[nodiscard]] bool apart() const { return decides() && !may_meet(own_, own_); }
 
-  /// Hits of the rows of the leaf have to be looked at. Which of them need not is harder to foresee
-  /// than looking at them takes.
+  /// True if filters must be tested on hits of the leaf's rows. Testing all is cheaper than
+  /// predicting which can be skipped.
   [[nodiscard]] bool decides() const { return Filtered && !meets_all_; }
 
-  /// Those of the 16 nodes `met` that may hold something to meet; their layers and masks stand from
-  /// `at` on.
+  /// Returns the nodes of `met` whose filters may match the leaf; their layers and masks are at
+  /// `at`.
   [[nodiscard]] Mask16 let_through(const std::uint32_t* layers, const std::uint32_t* mask,
                                    std::uint32_t at, Mask16 met) const {
     return decides() ? met & matching_lanes(layers, mask, at, own_) : met;
@@ -221,8 +226,8 @@ class LeafFilter {
   bool meets_all_ = false;
 };
 
-/// Those of the 16 nodes from `first_node` on that a box touches. By force: a call would pass the
-/// box through memory.
+/// Returns the 16 nodes from `first_node` on that a box overlaps. Force-inlined, because a call
+/// would pass the box through memory.
 [[gnu::always_inline]] inline Mask16 touched_nodes(const TreeView& tree, PairSink& sink,
                                                    std::uint32_t level, std::uint32_t first_node,
                                                    const float* low, const float* high) {
@@ -230,15 +235,15 @@ class LeafFilter {
   return overlap(load_slabs<3>(tree.node[level], first_node), low, high);
 }
 
-/// The groups of leaves that the leaves of one group may meet, with their boxes and filters side by
-/// side: each leaf asks these instead of going down the tree by itself, where each step waits for
-/// the one before.
+/// The groups of leaves that the leaves of one group may overlap, with copies of their boxes and
+/// filters in contiguous memory. Each leaf tests these instead of traversing the tree, whose steps
+/// depend on each other.
 template <bool Filtered>
 class NearGroups {
  public:
   NearGroups(const TreeView& tree, PairSink& sink) : tree_(tree), sink_(sink) {}
 
-  /// Finds those of a group from itself on.
+  /// Finds the groups, from the group itself on.
   void find(std::uint32_t group) {
     count_ = 0;
     first_ = group;
@@ -255,8 +260,8 @@ class NearGroups {
     }
   }
 
-  /// Calls visit(group) for those that may meet something in a box of the group's, in order. False
-  /// as soon as visit says false.
+  /// Calls visit(group), in order, for groups that overlap a box of the current group and may match
+  /// the filter. Stops and returns false if visit returns false.
   template <typename Visit>
   bool for_each(const float* low, const float* high, const LeafFilter<Filtered>& filter,
                 Visit&& visit) {
@@ -274,7 +279,7 @@ class NearGroups {
   }
 
  private:
-  // A group that meets more is among very large ones: the tree prunes better then.
+  // Groups of very large objects overlap more groups; the tree prunes better then.
   static constexpr unsigned kRoom = 128;
 
   bool add(std::uint32_t node) {
@@ -293,7 +298,7 @@ class NearGroups {
                 Visit& visit) {
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       const Mask16 touched = touched_nodes(tree_, sink_, level, first_node, low, high);
-      // What lies above is told apart by place: looking at each costs more.
+      // Nodes on higher levels are pruned only by position: testing their filters costs more.
       const NodeFilters& nodes = tree_.filters[1];
       return level > 1 ? touched
                        : filter.let_through(nodes.layers, nodes.mask, first_node, touched);
@@ -307,12 +312,12 @@ class NearGroups {
   std::uint32_t first_ = 0;
   unsigned count_ = 0;
   std::uint32_t group_[kRoom];
-  std::uint32_t layers_[kRoom];  // where filters are in use
+  std::uint32_t layers_[kRoom];  // if filters are in use
   std::uint32_t mask_[kRoom];
   alignas(64) float box_[6][kRoom];
 };
 
-/// Pairs of rows without filters, or of one environment, leaf by leaf.
+/// Finds pairs of rows without filters, or of one environment, leaf by leaf.
 template <bool Filtered>
 bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32_t end,
                           PairSink& sink) {
@@ -343,7 +348,7 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
                                 : find_pairs_of_leaves<true>(tree, begin, end, sink);
 }
 
-/// The boxes of a batch on their way down the tree together.
+/// Runs the boxes of a batch down the tree together.
 template <bool Filtered>
 class BoxQuestions {
  public:
@@ -370,7 +375,7 @@ class BoxQuestions {
     return {};
   }
 
-  /// Those of the 16 nodes from `first_node` on that box `row` overlaps and may meet.
+  /// Returns the nodes among the 16 from `first_node` on that box `row` overlaps and may match.
   Mask16 test(Nothing, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
@@ -397,7 +402,8 @@ class BoxQuestions {
   const QueryBatch& batch_;
   PairSink& sink_;
   const AskingFilters filters_;
-  // Worlds lie on each other; of one, what lies above groups of leaves is told apart by place.
+  // True if there are several environments, which may overlap in space: then filters are tested on
+  // all levels. Otherwise higher levels are pruned only by position.
   const bool apart_;
   HitList<Filtered> hits_;
   JointTraversal<BoxQuestions> traversal_{*this};

@@ -11,15 +11,15 @@ namespace winnow {
 /// Levels of a 16-ary tree over at most 2^28 blocks.
 inline constexpr std::uint32_t kMaxTreeLevels = 8;
 
-/// What the objects below the nodes of one level have in their filters; all null if no filter was
-/// ever set. An object of every environment counts as first 0, last ~0.
+/// Summaries of the filters of objects below the nodes of one level; all null if no filter was ever
+/// set. An object of every environment counts as first 0, last ~0.
 struct NodeFilters {
-  std::uint32_t* layers = nullptr;  ///< or of all
-  std::uint32_t* mask = nullptr;    ///< or of all
+  std::uint32_t* layers = nullptr;  ///< union
+  std::uint32_t* mask = nullptr;    ///< union
   std::uint32_t* first_environment = nullptr;
   std::uint32_t* last_environment = nullptr;
   std::uint32_t* alike = nullptr;  ///< 1 if all objects have the same filter
-  // What all have, none of which is in no layer or wants to meet none; else 0.
+  // Intersections; 0 if an object is in no layer or has an empty mask.
   std::uint32_t* every_layers = nullptr;
   std::uint32_t* every_mask = nullptr;
 };
@@ -30,13 +30,13 @@ struct NodeFilters {
 struct TreeShape {
   std::uint32_t first_block = 0;
   std::uint16_t levels = 0;   ///< 0 if there are no blocks
-  bool environments = false;  ///< in filters; or false if all objects share one
+  bool environments = false;  ///< more than one environment is in use
   std::uint32_t count[kMaxTreeLevels] = {};
   float* node[kMaxTreeLevels][6] = {};
   NodeFilters filters[kMaxTreeLevels];
 };
 
-/// A tree with the rows that it stands over.
+/// A tree and the rows below it.
 struct TreeView : TreeShape {
   RowView rows;
 };
@@ -46,9 +46,10 @@ struct BlockTreeKernels {
   void (*refit_leaves)(const TreeView&, std::uint32_t begin, std::uint32_t end);
   /// Recomputes nodes [begin, end) of `level` > 0 from the level below.
   void (*refit_nodes)(const TreeView&, std::uint32_t level, std::uint32_t begin, std::uint32_t end);
-  /// All pairs within and between blocks, for the first block in groups [begin, end) of 16.
+  /// Finds all pairs whose first row is in groups [begin, end) of 16 blocks, with rows in the same
+  /// and later blocks. Returns false if the sink could not grow.
   bool (*self_pairs)(const TreeView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// All hits of the batch's boxes.
+  /// Finds all hits of the batch's boxes. Returns false if the sink could not grow.
   bool (*query)(const TreeView&, const QueryBatch&, PairSink&);
 };
 

@@ -1,3 +1,6 @@
+// Divides a large set of points into cells by counting (kernels in coarse_cut.kernel.cpp); the
+// first step of KdCuts with KdParts::cells.
+
 #include "partitions/tree/coarse_cut.h"
 
 #include "core/sort/stretches.h"
@@ -12,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostStretches = 64;
 
-/// Stretches of the points, each of which a task reads and writes.
+/// Ranges of the points; each is read and written by one task.
 struct CoarseStretches {
   static constexpr std::size_t kLeast = 16384;
 
@@ -23,7 +26,7 @@ struct CoarseStretches {
   CoarseStretches(std::size_t points, const Execution& e)
       : count(points), length(even_stretch(points, kLeast, kMostStretches)), execution(e) {}
 
-  /// Calls body(stretch, begin, end).
+  /// Calls body(range index, begin, end).
   template <typename Body>
   void for_each(Body&& body) const {
     for_stretches(execution, count, length,
@@ -55,7 +58,7 @@ bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseStretches& str
 
 using CoarsePlaces = std::array<std::array<std::uint32_t, kMostCoarseCells>, kMostStretches>;
 
-// Turns the sizes that cells have in stretches into where these write to.
+// Turns the sizes of cells within ranges into the ranges' output positions.
 void place_stretches(CoarsePlaces& places, std::size_t stretches, CoarseSizes& sizes) {
   std::uint32_t next = 0;
   for (std::size_t c = 0; c < sizes.size(); ++c) {
@@ -91,7 +94,7 @@ bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution, Co
       set.row_room[to] = set.row[i];
     }
   });
-  // The first axis has left its column.
+  // The first axis was copied out of its column, which now receives the third.
   stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     auto next = places[s];
     for (std::size_t i = begin; i < end; ++i) set.at[0][next[cell[i]]++] = set.at[2][i];

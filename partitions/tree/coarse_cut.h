@@ -10,16 +10,16 @@
 
 namespace winnow {
 
-/// How many points each cell has.
+/// The number of points in each cell.
 using CoarseSizes = std::array<std::uint32_t, kMostCoarseCells>;
 
-/// Puts a set of some ten thousand points in about `wanted` cells (at most kMostCoarseCells), one
-/// behind the other, in two passes over the points, where cuts in two would take one for each time
-/// that the number of cells doubles: slabs, lines and cells of equal numbers, by a sample (compare
-/// Leutenegger, Lopez and Edgington, "STR: a simple and efficient algorithm for R-tree packing",
-/// ICDE 1997). Points and the room for them change places in the set; its rows do not. The same on
-/// any number of threads and any instruction set. False, and nothing changed, where the points lie
-/// in heaps.
+/// Sorts a set of at least some ten thousand points into about `wanted` cells (at most
+/// kMostCoarseCells), one after another: slabs, lines and cells with equal numbers of points,
+/// estimated from a sample (compare Leutenegger, Lopez and Edgington, "STR: a simple and efficient
+/// algorithm for R-tree packing", ICDE 1997). Takes two passes over the points; binary cuts would
+/// take one pass for each doubling of the number of cells. Swaps point columns of the set with its
+/// room; its rows stay in their column. The result is the same for any number of threads and any
+/// instruction set. Returns false and changes nothing if the points are concentrated in few places.
 [[nodiscard]] bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution,
                                 CoarseSizes& sizes);
 

@@ -1,3 +1,5 @@
+// Kernels of coarse_cut.cpp: plan cells from a sample and assign points to them.
+
 #include "partitions/tree/coarse_cut.kernel.h"
 #include "partitions/tree/equal_parts.wide.h"
 #include "partitions/tree/reach.wide.h"
@@ -8,7 +10,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-static_assert(CoarseCells::kPlaces == kPlaces);
+static_assert(CoarseCells::kPlaces == kPlacesPerAxis);
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
 constexpr std::size_t kSample = 4096;
@@ -19,13 +21,13 @@ void reach(const float* x, std::size_t count, float& least, float& greatest) {
   greatest = of.high;
 }
 
-/// How many parts each axis is cut into, so that cells are about as long as they are wide.
+/// The number of parts of each axis, for approximately cubic cells.
 struct CoarseParts {
   std::uint32_t slabs = 0;
   std::uint32_t lines = 0;
   std::uint32_t cells = 0;
 
-  /// Of lengths, the longest first.
+  /// Lengths of the axes, longest first.
   CoarseParts(const float* length, std::uint32_t wanted) {
     const float longest = length[0];
     const auto all = static_cast<float>(wanted);
@@ -46,7 +48,7 @@ struct CoarseParts {
   }
 };
 
-/// Places of a sample of the points.
+/// Places (see equal_parts.wide.h) of a sample of the points.
 struct CoarseSample {
   std::uint8_t place[3][kSample];
   std::size_t count = 0;
@@ -70,11 +72,11 @@ struct CoarseSample {
   }
 };
 
-/// Cuts `rows` sets of the sample along an axis, into `parts` each.
+/// Cuts each of `rows` sets of the sample into `parts` parts along axis k.
 template <typename RowOf>
 void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32_t parts,
-              const RowOf& row_of, std::uint8_t (*part)[kPlaces]) {
-  std::uint32_t points[kMostCoarseCells][kPlaces];
+              const RowOf& row_of, std::uint8_t (*part)[kPlacesPerAxis]) {
+  std::uint32_t points[kMostCoarseCells][kPlacesPerAxis];
   std::uint32_t all[kMostCoarseCells] = {};
   __builtin_memset(points, 0, rows * sizeof points[0]);
   for (std::size_t i = 0; i < sample.count; ++i) {
@@ -84,8 +86,8 @@ void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32
   }
   for (std::uint32_t r = 0; r < rows; ++r) {
     cut_equally(points[r], all[r], parts, part[r]);
-    // Every second row runs back.
-    for (std::uint32_t p = 0; p < kPlaces; ++p) {
+    // Odd rows run backwards.
+    for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) {
       const std::uint32_t own = (r & 1U) != 0 ? parts - 1 - part[r][p] : part[r][p];
       part[r][p] = static_cast<std::uint8_t>(r * parts + own);
     }
@@ -93,7 +95,7 @@ void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32
 }
 
 bool is_heaped(const CoarseSample& sample, int k) {
-  std::uint32_t points[kPlaces] = {};
+  std::uint32_t points[kPlacesPerAxis] = {};
   for (std::size_t i = 0; i < sample.count; ++i) ++points[sample.place[k][i]];
   return most_at_a_place(points) > sample.count / 32 + kStep;
 }

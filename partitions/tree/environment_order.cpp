@@ -23,7 +23,7 @@ bool sort_by_environment(const BoundsPool& pool, const ObjectFilter* filters,
 
 namespace {
 
-/// Calls visit(begin, end) for each run of rows of one environment, until it says false.
+/// Calls visit(begin, end) for each range of rows of one environment until visit returns false.
 template <typename Visit>
 bool for_environments(const BoundsPool& pool, const ObjectFilter* filters,
                       std::span<const std::uint32_t> rows, Visit&& visit) {
@@ -49,7 +49,7 @@ bool sort_by_environment_and_place(const BoundsPool& pool, const ObjectFilter* f
                                    const Execution& execution) {
   if (!sort_by_environment(pool, filters, rows, scratch, execution)) return false;
   return for_environments(pool, filters, rows, [&](std::size_t begin, std::size_t end) {
-    // What fits in a block needs no order.
+    // Rows that fit in one block need no order.
     return end - begin <= kBlockRows ||
            sort_by_kd_cuts(pool, rows.subspan(begin, end - begin), room, points, execution);
   });

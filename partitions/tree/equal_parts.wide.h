@@ -8,30 +8,31 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Places along an axis in which points are counted, to cut them into parts of about as many each.
+/// Points are counted at this many places along an axis, to cut the axis into parts with equal
+/// numbers of points.
 inline constexpr std::uint32_t kPlaceBits = 7;
-inline constexpr std::uint32_t kPlaces = 1U << kPlaceBits;
+inline constexpr std::uint32_t kPlacesPerAxis = 1U << kPlaceBits;
 
-/// Places per length of half of an axis' reach.
+/// The number of places per length, for half of an axis' range.
 inline float places_per(float half_reach) {
-  return half_reach > kLeastReach ? static_cast<float>(kPlaces) / half_reach : 0.0F;
+  return half_reach > kLeastReach ? static_cast<float>(kPlacesPerAxis) / half_reach : 0.0F;
 }
 
-/// The places of points of an axis: what lies beyond its reach is at the end that is nearer.
+/// The places of points on an axis, clamped to its range.
 inline Uints places_of(const Floats& x, float half_low, float scale) {
   const Floats at = (0.5F * x - Floats(half_low)) * scale;
-  return truncated(min(max(at, Floats(0.0F)), Floats(static_cast<float>(kPlaces - 1))));
+  return truncated(min(max(at, Floats(0.0F)), Floats(static_cast<float>(kPlacesPerAxis - 1))));
 }
 
-/// Gives every place a part of [0, parts), of about as many of `all` points each.
+/// Assigns to every place a part of [0, parts), each with about equally many of `all` points.
 template <typename Part>
 void cut_equally(const std::uint32_t* points, std::uint32_t all, std::uint32_t parts, Part* part) {
   std::uint32_t own = 0;
-  std::uint32_t end = 2 * all;  // of the part, as many times as there are parts
-  std::uint32_t twice = 0;      // the points before the place, as many times
-  for (std::uint32_t p = 0; p < kPlaces; ++p) {
+  std::uint32_t end = 2 * all;  // of the part, times 2 * parts
+  std::uint32_t twice = 0;      // points before the place, times 2 * parts
+  for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) {
     const std::uint32_t here = points[p] * parts;
-    // No branch: it would be a coin toss.
+    // Branchless, because the end of a part is unpredictable.
     const std::uint32_t next = static_cast<std::uint32_t>(twice + here >= end) &
                                static_cast<std::uint32_t>(own + 1 < parts);
     own += next;
@@ -41,14 +42,15 @@ void cut_equally(const std::uint32_t* points, std::uint32_t all, std::uint32_t p
   }
 }
 
-/// Where many are, places do not tell them apart.
+/// Returns the largest number of points at one place. If it is large, places do not separate the
+/// points.
 inline std::uint32_t most_at_a_place(const std::uint32_t* points) {
   std::uint32_t most = 0;
-  for (std::uint32_t p = 0; p < kPlaces; ++p) most = points[p] > most ? points[p] : most;
+  for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) most = points[p] > most ? points[p] : most;
   return most;
 }
 
-/// The axes in `order`, the longest first.
+/// Sorts the axes by descending length.
 inline void order_by_length(const float* length, int* order) {
   const auto swap_if_longer = [&](int a, int b) {
     if (!(length[order[b]] > length[order[a]])) return;

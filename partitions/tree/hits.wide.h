@@ -1,8 +1,8 @@
 #pragma once
 
-// What kernels do with a mask of hits: which rows the filters let pass, which volumes meet inside
-// of boxes that do, and how pairs get to the sink. What is small is inlined by force: compilers
-// stop to do so in files that instantiate a kernel many times.
+// Processing of masks of hits in kernels: filter tests, tests of volumes inside overlapping boxes,
+// and output of pairs to the sink. Small functions are force-inlined, because compilers stop
+// inlining in files that instantiate a kernel many times.
 
 #include "partitions/rows/row_view.h"
 #include "partitions/tree/block_tree.kernel.h"
@@ -12,8 +12,8 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// A filter, or what the filters below a node have between them. An object of every environment
-/// spans them all, so that one test of intervals serves objects and nodes.
+/// A filter, or the union of the filters below a node. An object of every environment spans all
+/// environments, so one interval test serves objects and nodes.
 struct FilterRange {
   std::uint32_t layers;
   std::uint32_t mask;
@@ -26,22 +26,23 @@ struct FilterRange {
   return {f.layers, f.mask, first, f.environment};
 }
 
-/// The range of node i; that of the default filter if no filters are kept.
+/// The range of node i; the range of the default filter if no filters are stored.
 [[gnu::always_inline]] inline FilterRange range_of(const NodeFilters& nodes, std::uint32_t i) {
   if (nodes.layers == nullptr) return range_of(ObjectFilter{});
   return {nodes.layers[i], nodes.mask[i], nodes.first_environment[i], nodes.last_environment[i]};
 }
 
-/// True if something in one range may meet something in the other; exact for two objects.
+/// True if an object of one range may pass the filter of an object of the other; exact for two
+/// objects.
 [[gnu::always_inline]] inline bool may_meet(const FilterRange& a, const FilterRange& b) {
-  // Without branches: layers are coin tosses.
+  // Branchless, because layers are unpredictable.
   return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
                            static_cast<unsigned>((b.layers & a.mask) != 0) &
                            static_cast<unsigned>(a.first_environment <= b.last_environment) &
                            static_cast<unsigned>(b.first_environment <= a.last_environment));
 }
 
-/// What is below node i of a level of a tree without environments, as a span.
+/// The filters below node i of a level as a span. Only for trees without environments.
 static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   FilterSpan span;
   span.any_layers = nodes.layers[i];
@@ -53,7 +54,7 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   return span;
 }
 
-/// The lanes below or above a number.
+/// The lanes whose value is below, or above, a number.
 [[gnu::always_inline]] inline Mask16 below(const Uints& v, std::uint32_t number) {
   return sharing(Uints(number) - min(v, Uints(number)), ~0U);
 }
@@ -61,7 +62,7 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   return sharing(v - min(v, Uints(number)), ~0U);
 }
 
-/// The lanes from `at` on of columns of filters whose layers and masks let them meet `q`.
+/// The lanes from `at` on whose layers and mask match `q`.
 [[gnu::always_inline]] inline Mask16 matching_lanes(const std::uint32_t* layers,
                                                     const std::uint32_t* mask, std::size_t at,
                                                     const FilterRange& q) {
@@ -69,14 +70,14 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
          sharing(Uints::load_unaligned(mask + at), q.layers);
 }
 
-/// Those of the candidate rows from `first_row` on, none of them empty, that `q` may meet, by
-/// their filters; `environments` is false if all share one.
+/// Returns the candidate rows from `first_row` on, none of them empty, whose filters match `q`.
+/// `environments`: more than one environment is in use.
 [[gnu::always_inline]] inline Mask16 passing_rows(const FilterColumns& own, bool environments,
                                                   std::uint32_t first_row, Mask16 candidates,
                                                   const FilterRange& q) {
   if (own.layers == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
-  // Without environments of their own objects are of the first one, or of all.
+  // Without environments all objects are in environment 0 or in every environment.
   if (!environments && q.first_environment == 0) return met;
   const Uints last = Uints::load_unaligned(own.environment + first_row);
   const Mask16 of_one = sharing(Uints(kEveryEnvironment) - last, ~0U);
@@ -88,8 +89,8 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   return passing_rows(rows.filter, rows.environments, first_row, candidates, q);
 }
 
-/// Those of the candidates among 16 nodes from `first_node` of a level on that may hold something
-/// that `q` may meet.
+/// Returns the candidates among 16 nodes from `first_node` on of a level whose filters may match
+/// `q`.
 [[gnu::always_inline]] inline Mask16 passing_nodes(const TreeShape& tree, std::uint32_t level,
                                                    std::uint32_t first_node, Mask16 candidates,
                                                    const FilterRange& q) {
@@ -98,7 +99,7 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
     return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   }
   const Mask16 met = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
-  // Without environments of their own objects are of the first one, or of all.
+  // Without environments all objects are in environment 0 or in every environment.
   if (!tree.environments && q.first_environment == 0) return met;
   const Uints begin = Uints::load_unaligned(nodes.first_environment + first_node);
   const Uints last = Uints::load_unaligned(nodes.last_environment + first_node);
@@ -109,9 +110,9 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
 inline constexpr int kBallCenter = 6;
 inline constexpr int kBallRadius = 9;
 
-/// Balls against one other. The right side of |distance|^2 <= (r1 + r2)^2 is enlarged by more than
-/// the rounding of both sides (a few ulp of each), so that touching balls are never missed; where a
-/// square would overflow or underflow the comparison still errs to the side of a hit.
+/// Tests spheres against one sphere. The right side of |distance|^2 <= (r1 + r2)^2 is enlarged by
+/// more than the rounding of both sides (a few ulp each), so touching spheres are never missed. If
+/// a square overflows or underflows the test still errs towards a hit.
 [[gnu::always_inline]] inline Mask16 balls_meet(const Floats* center, const Floats& radius,
                                                 const float* other, float other_radius) {
   constexpr float kSlack = 1.000002F;
@@ -123,13 +124,14 @@ inline constexpr int kBallRadius = 9;
   }
   const Floats sum = radius + other_radius;
   const Floats limit = sum * sum * kSlack;
-  // An empty row's centre is infinite, and so is its square: infinity <= infinity must not count.
+  // An empty row has an infinite centre, whose square is infinite: infinity <= infinity must not be
+  // a hit.
   const Mask16 real = bits(center[0] <= kLargest<float>);
   return bits(square <= limit) & real;
 }
 
-/// Of the lanes `mask` of the rows from `at` on, whose boxes overlap that of row r of the columns
-/// `query`, those whose further slabs do so too.
+/// Returns the lanes of `mask`, whose boxes overlap the box of row r of `query`, whose further
+/// slabs overlap, too. Lanes are rows from `at` on.
 inline Mask16 further_slabs_overlap(const RowView& rows, std::uint32_t at,
                                     const float* const* query, std::uint32_t r, Mask16 mask) {
   const std::uint32_t slabs = rows.further_slabs;
@@ -141,7 +143,7 @@ inline Mask16 further_slabs_overlap(const RowView& rows, std::uint32_t at,
   return mask;
 }
 
-/// The same for spheres.
+/// As above, for spheres.
 inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float* const* query,
                               std::uint32_t r, Mask16 mask) {
   Floats center[3];
@@ -154,7 +156,7 @@ inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float
   return mask & balls_meet(center, radius, other, query[kBallRadius][r]);
 }
 
-/// True if rows that ask about each other have to be told apart by their filters.
+/// True if pairs of these rows must be tested by their filters.
 inline bool are_filtered(const RowView& rows) {
   return rows.filter.layers != nullptr && !rows.all_meet;
 }
@@ -164,7 +166,7 @@ inline bool has_room(PairSink& sink) {
   return sink.cursor <= sink.limit || sink.grow(sink);
 }
 
-/// The box that row r of six columns holds.
+/// The box in row r of six columns.
 struct QueryBox {
   float low[3];
   float high[3];
@@ -173,8 +175,8 @@ struct QueryBox {
         high{column[3][r], column[4][r], column[5][r]} {}
 };
 
-/// The lanes of the rows from `at` on that row r reports in HitMode::moved: those that did not
-/// move, and those that did and stand behind r. `moved` is readable for 32 bits from any row on.
+/// Returns the lanes, of rows from `at` on, that row r reports in HitMode::moved: rows that did not
+/// move, and moved rows behind r. `moved` is readable for 32 bits from any row on.
 inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::uint32_t at) {
   std::uint32_t bits;
   __builtin_memcpy(&bits, reinterpret_cast<const unsigned char*>(moved) + (at >> 3U), sizeof bits);
@@ -183,10 +185,10 @@ inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::u
   return ~(bits & up_to_r);
 }
 
-/// Filters of those who ask, by their row.
+/// Filters of querying rows, by row.
 struct AskingFilters {
   FilterColumns filter;
-  std::uint32_t step = 1;  // 0: one for all
+  std::uint32_t step = 1;  // 0: one filter for all
 
   explicit AskingFilters(const RowView& rows) : filter(rows.filter) {}
   explicit AskingFilters(const QueryBatch& batch)
@@ -199,7 +201,7 @@ struct AskingFilters {
   }
 };
 
-/// Reports the hits `mask` among the ids at `ids` for query q; there must be room.
+/// Writes the hits `mask` among the ids at `ids` for query q; there must be room.
 inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uint32_t q,
                    PairSink& sink) {
   if (mode == HitMode::query_first) {
@@ -215,14 +217,14 @@ inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uin
   }
 }
 
-/// The lanes whose sets of bits, if they are not empty, surely share one with each of some others
+/// The lanes with non-empty sets of bits that certainly share a bit with each of some other sets
 /// (see surely_share).
 inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t every) {
   const Mask16 lack_one = sharing(Uints(any) - (sets & Uints(any)), ~0U);
   return sharing(sets, every) | ((~lack_one | ~sharing(sets, ~every)) & sharing(sets, ~0U));
 }
 
-/// Those of a batch's rows that ask, apart by whether they surely meet everything.
+/// Divides the rows of a batch into rows that certainly match all objects and other rows.
 class SplitBatch {
  public:
   SplitBatch(const RowView& asked, const QueryBatch& batch, std::uint32_t begin) {
@@ -242,7 +244,7 @@ class SplitBatch {
     }
   }
 
-  /// The rows that meet all, or those that do not.
+  /// The rows that certainly match all objects, or the others.
   [[nodiscard]] QueryBatch part(const QueryBatch& batch, bool meets_all) const {
     QueryBatch part = batch;
     part.rows = row_[meets_all ? 1 : 0];
@@ -254,7 +256,7 @@ class SplitBatch {
   static constexpr std::uint32_t kRoom = 256;
 
  private:
-  /// Sixteen that ask.
+  /// Filters of sixteen querying rows.
   struct SomeFilters {
     Uints rows;
     Uints layers;
@@ -288,7 +290,7 @@ class SplitBatch {
       masks = Uints::load_unaligned(mask);
     }
 
-    /// Those of every environment, or of the first one if no object is `apart` in another.
+    /// The lanes of every environment, and of environment 0 unless objects are `apart` in others.
     [[nodiscard]] Mask16 everywhere(bool apart) const {
       Mask16 found = 0;
       for (Mask16 left = lanes; left != 0; left &= left - 1) {
@@ -308,14 +310,14 @@ class SplitBatch {
   std::uint32_t count_[2] = {0, 0};
 };
 
-/// Kernel::run<Filtered>(view, batch, sink), not inlined: it is called for whole batches and for
-/// parts of them.
+/// Calls Kernel::run<Filtered>(view, batch, sink). Not inlined, because it is called for whole
+/// batches and for parts of them.
 template <typename Kernel, bool Filtered, typename View>
 [[gnu::noinline]] bool run_kernel(const View& view, const QueryBatch& batch, PairSink& sink) {
   return Kernel::template run<Filtered>(view, batch, sink);
 }
 
-/// Runs a kernel with what every test asks as a constant: whether filters are in use.
+/// Runs a kernel with the use of filters as a template parameter, for each part of a SplitBatch.
 template <typename Kernel, typename View>
 inline bool with_filters(const View& view, const QueryBatch& batch, PairSink& sink) {
   const bool filtered = view.rows.filter.layers != nullptr || batch.filter.layers != nullptr;
@@ -331,14 +333,14 @@ inline bool with_filters(const View& view, const QueryBatch& batch, PairSink& si
   return true;
 }
 
-/// True if hits of boxes are not yet hits of the rows' volumes.
+/// True if hits of boxes still have to be tested by the rows' volumes.
 inline bool has_more_to_test(const RowView& rows) {
   return rows.further_slabs != 0 || rows.spheres;
 }
 
-/// Hits of boxes, kept in lists: lanes mask[i] of the rows from at[i] on for row[i] of the columns
-/// `query`. Keeps those of the volumes in the boxes, and returns how many entries are left. One for
-/// all kernels of a file: what boxes alone never call must not bloat them.
+/// Keeps the hits whose volumes overlap, in lists of box hits: lanes mask[i] of the rows from at[i]
+/// on for row[i] of the columns `query`. Returns the number of entries left. Not inlined, because
+/// kernels for boxes never call it.
 [[gnu::noinline, maybe_unused]] static unsigned keep_volume_hits(
     const RowView& rows, const float* const* query, std::uint32_t* row, std::uint32_t* at,
     std::uint32_t* mask, unsigned size) {
@@ -354,8 +356,8 @@ inline bool has_more_to_test(const RowView& rows) {
   return kept;
 }
 
-/// Hits in such lists, without the lanes that are not reported in HitMode::moved. Returns how many
-/// entries are left.
+/// Keeps the lanes that are reported in HitMode::moved, in such lists. Returns the number of
+/// entries left.
 [[gnu::noinline, maybe_unused]] static unsigned keep_reported(const std::uint64_t* moved,
                                                               std::uint32_t* row, std::uint32_t* at,
                                                               std::uint32_t* mask, unsigned size) {
@@ -370,8 +372,8 @@ inline bool has_more_to_test(const RowView& rows) {
   return kept;
 }
 
-/// Hits on their way to the sink. Whether a test hits is a coin toss to the branch predictor: tests
-/// append without a branch, and filters are looked up and pairs written in one long loop.
+/// Buffers hits before output. Hits are unpredictable, so tests append without a branch; filters
+/// are tested and pairs are written in one long loop.
 template <bool Filtered>
 class HitList {
  public:
@@ -384,7 +386,7 @@ class HitList {
         moved_(batch.mode == HitMode::moved ? batch.moved : nullptr),
         filters_(batch),
         sink_(sink) {}
-  /// For rows that ask about each other.
+  /// For rows that query each other.
   HitList(const RowView& rows, PairSink& sink)
       : rows_(rows),
         query_(rows.column),
@@ -395,8 +397,8 @@ class HitList {
         filters_(rows),
         sink_(sink) {}
 
-  /// Notes that row `r` hits the lanes `mask` of the rows from `at` on; does nothing for no lanes.
-  /// There must be room.
+  /// Adds the hits of row `r` in lanes `mask` of the rows from `at` on; adds nothing if the mask is
+  /// empty. There must be room.
   void add(std::uint32_t r, std::uint32_t at, Mask16 mask) {
     row_[size_] = r;
     at_[size_] = at;
@@ -404,10 +406,10 @@ class HitList {
     size_ += mask != 0 ? 1U : 0U;
   }
 
-  /// Makes room for one more entry. False if the sink is full.
+  /// Makes room for one more entry. Returns false if the sink is full.
   bool make_room() { return __builtin_expect(size_ < kRoom, 1) != 0 || flush(); }
 
-  /// Writes everything to the sink.
+  /// Writes all entries to the sink. Returns false if the sink is full.
   [[gnu::noinline]] bool flush() {
     if (moved_ != nullptr) size_ = keep_reported(moved_, row_, at_, mask_, size_);
     if (more_to_test_) size_ = keep_volume_hits(rows_, query_, row_, at_, mask_, size_);
@@ -441,23 +443,24 @@ class HitList {
   std::uint32_t mask_[kRoom];
 };
 
-/// A run of rows is tested to its end.
+/// For ranges of rows that are tested to their end.
 struct ToTheEnd {
   bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
-/// Runs of rows to be tested, each against one box. How long a run is is as unpredictable as a hit:
-/// one step of 16 rows of every run is made in a long loop, and runs that go on are kept for the
-/// next round. `GoesOn(q, at)` says whether box q needs the rows from `at` on.
+/// Ranges of rows to be tested, each against one box. Their lengths are unpredictable, so one long
+/// loop tests 16 rows of every range, and unfinished ranges are kept for the next round. `GoesOn(q,
+/// at)` returns whether box q needs the rows from `at` on.
 template <bool Filtered, typename GoesOn>
 class RunList {
  public:
-  /// `query` holds the columns of the boxes that ask.
+  /// `query` has the columns of the querying boxes.
   RunList(const RowView& rows, const float* const* query, HitList<Filtered>& hits,
           const GoesOn& goes_on, PairSink& sink)
       : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
 
-  /// Adds rows [at, end) for the box of row r of the query columns. False if the sink is full.
+  /// Adds rows [at, end) for the box of row r of the query columns. Returns false if the sink is
+  /// full.
   bool add(std::uint32_t r, std::uint32_t at, std::uint32_t end) {
     if (size_ == kRoom && !finish()) return false;
     row_[size_] = r;
@@ -467,7 +470,7 @@ class RunList {
     return true;
   }
 
-  /// Tests everything. False if the sink is full.
+  /// Tests all ranges. Returns false if the sink is full.
   bool finish() {
     while (size_ != 0) {
       unsigned next = 0;

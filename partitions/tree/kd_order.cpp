@@ -1,3 +1,6 @@
+// Orders rows for a block tree by k-d cuts. OrderPlan (index/order_plan.h) runs KdCuts in steps;
+// the kernels are in kd_order.kernel.cpp, tile_order.kernel.cpp and coarse_cut.kernel.cpp.
+
 #include "partitions/tree/kd_order.h"
 
 #include "core/sort/stretches.h"
@@ -18,17 +21,17 @@ WINNOW_DEFINE_KERNELS(TileOrderKernels, tile_order_kernels)
 
 namespace {
 
-// Parts up to this size are put in tiles.
+// Sets up to this size are sorted in tiles.
 constexpr std::size_t kTiledPart = 4096;
-// Tiles take about as long as so many cuts of each row.
+// Tiling a set takes about as long as this many cuts of each row.
 constexpr std::size_t kCutsOfTiles = 2;
 constexpr std::size_t kPointsPerTask = 16384;
 
-// Points of a coarse cell: its parts fill tiles, also where some cells get more than others.
+// Points per coarse cell: small enough for tiles, even if cells are unequal.
 constexpr std::size_t kCoarsePart = 3072;
 
-// The tiles of a set, which is large enough for them. False if they would not tell its points
-// apart.
+// Sorts a set, which must be large enough, in tiles. Returns false if tiles would not separate its
+// points.
 bool sort_in_tiles(const KdSet& set) {
   TileSet tiles;
   std::copy_n(set.at, 3, tiles.at);
@@ -39,7 +42,7 @@ bool sort_in_tiles(const KdSet& set) {
   return tile_order_kernels().sort(tiles);
 }
 
-// Cuts a set until tiles, or blocks, are left.
+// Cuts a set until tiles or blocks are left.
 void finish_part(KdSet set, KdParts parts) {
   while (parts != KdParts::blocks && set.count >= kFewestInTiles) {
     if (set.count <= kTiledPart && sort_in_tiles(set)) return;
@@ -48,7 +51,7 @@ void finish_part(KdSet set, KdParts parts) {
   kd_order_kernels().finish(set);
 }
 
-// How many cuts of each row that takes.
+// The cost of finish_part, in cuts of each row.
 std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
   return parts != KdParts::blocks ? kCutsOfTiles
                                   : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
@@ -80,7 +83,7 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   }
   open_ = 0;
   parts_ = parts;
-  // Smaller sets are parts.
+  // Smaller sets are tiled as parts.
   whole_ = parts != KdParts::blocks && count > kTiledPart && count <= kMostInTiles;
   coarse_ = parts == KdParts::cells && count > kMostInTiles;
   if (count <= kBlockRows) return true;
@@ -92,7 +95,7 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   return true;
 }
 
-// True if all rows could be put in tiles at once.
+// True if all rows were sorted in tiles at once.
 bool KdCuts::tile_whole(std::size_t& work) {
   if (!std::exchange(whole_, false)) return false;
   work -= std::min(work, kCutsOfTiles * rows_.size());
@@ -101,7 +104,8 @@ bool KdCuts::tile_whole(std::size_t& work) {
   return true;
 }
 
-// Leaves the cells of all rows as sets, unless they have to be told apart by other means.
+// Replaces the set of all rows by its coarse cells, unless its points are concentrated in few
+// places.
 void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
   if (!std::exchange(coarse_, false)) return;
   work -= std::min(work, kCutsOfTiles * rows_.size());
@@ -118,7 +122,8 @@ void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
   }
 }
 
-// Cuts every set that is too large for tiles in two; false if there is none, or no room for more.
+// Cuts every set that is too large for tiles in two. Returns false if there is none, or no room for
+// more sets.
 bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
   const std::size_t before = open_;
   if (2 * before > kMostSets) return false;
@@ -145,7 +150,7 @@ bool KdCuts::advance(std::size_t work, const Execution& execution) {
   cut_coarsely(work, execution);
   while (work != 0 && open_ != 0 && cut_widest(work, execution)) {
   }
-  // What is left are sets that a thread each finishes.
+  // One thread finishes each of the remaining sets.
   std::size_t taken = 0;
   for (; taken < open_ && work != 0; ++taken) {
     const std::size_t count = sets_[open_ - 1 - taken].count;

@@ -12,47 +12,47 @@
 
 namespace winnow {
 
-/// Floats of scratch that it takes to cut so many rows.
+/// The number of floats of scratch for cutting `rows` rows.
 [[nodiscard]] constexpr std::size_t kd_scratch(std::size_t rows) noexcept {
   return 6 * rows;
 }
 
-/// How rows are cut. To blocks of 16; or to parts of some thousand, which are put in tiles (see
-/// tile_order.kernel.h): a quarter of the time, and some percent more tests. Or first to cells by
-/// counting, where rows lie about evenly (see coarse_cut.h), which suits many threads: some percent
-/// less time again, and as many more tests.
+/// Precision of the cuts. `blocks`: down to blocks of 16. `tiles`: to sets of some thousand rows,
+/// which are sorted in tiles (tile_order.kernel.h); this is faster and costs some percent more
+/// tests. `cells`: evenly spread rows are first divided into cells by counting (coarse_cut.h),
+/// which parallelizes better and costs some percent more tests again.
 enum class KdParts : std::uint8_t { blocks, tiles, cells };
 
-/// Puts rows in order for a block tree over them: sets of rows are cut in two from the top down, at
-/// the middle of the axis along which their centres reach farthest, and only where the first side
-/// fills its subtrees of 16^k blocks, so that every node of the implicit tree is one such set
-/// (overlap minimizing top-down bulk loading: Lee and Lee, "OMT: overlap minimizing top-down bulk
-/// loading algorithm for R-tree", CAiSE 2003). Boxes of all sizes mix well: a cut follows where
-/// they lie, and a large box widens no more than the one block that it is in. Rows that lie in
-/// heaps are cut to blocks in any case.
+/// Sorts rows for a block tree over them by k-d cuts: sets of rows are cut in two from the top
+/// down, near the median of the axis along which their centres have the largest range. A cut always
+/// fills the subtrees of 16^k blocks on its first side, so every node of the implicit tree is one
+/// set (Lee and Lee, "OMT: overlap minimizing top-down bulk loading algorithm for R-tree", CAiSE
+/// 2003). Boxes of mixed sizes are handled well: cuts follow the centres, and a large box widens
+/// only its own block. Rows that are concentrated in few places are cut to blocks in any case.
 ///
-/// Rows are live, their boxes in the pool's first six columns; `room` is for as many. O(n log n);
-/// the same result on any number of threads and any instruction set. False, and `rows` unchanged,
-/// if memory is refused.
+/// Rows must be live; their boxes are the pool's first six columns. `room` has space for as many
+/// rows. O(n log n). The result is the same for any number of threads and any instruction set.
+/// Returns false and leaves `rows` unchanged if an allocation fails.
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                                    std::uint32_t* room, Column<float>& scratch,
                                    const Execution& execution, KdParts parts = KdParts::tiles);
 
-/// The same in parts, between which the boxes may change: it goes by where they were at the start.
+/// As sort_by_kd_cuts, in steps between which boxes may change: the order uses the boxes at the
+/// start.
 class KdCuts {
  public:
-  /// Begins. Rows and scratch stay where they are until the end, and are nobody else's. False if
-  /// memory is refused.
+  /// Starts. `rows`, `room` and `scratch` must stay in place and unused by others until the end.
+  /// Returns false if an allocation fails.
   [[nodiscard]] bool start(const BoundsPool& pool, std::span<std::uint32_t> rows,
                            std::uint32_t* room, Column<float>& scratch, const Execution& execution,
                            KdParts parts = KdParts::tiles);
-  /// Goes on with about `work` cuts of a row each; true when the rows are sorted.
+  /// Continues with about `work` cuts of one row each; returns true when the rows are sorted.
   bool advance(std::size_t work, const Execution& execution);
 
  private:
   static constexpr std::size_t kMostSets = 64;
 
-  /// A part of the rows that is still to be cut.
+  /// A range of rows that is still to be cut.
   struct Set {
     std::uint32_t begin;
     std::uint32_t count;
@@ -69,7 +69,7 @@ class KdCuts {
   std::array<Set, kMostSets> sets_;
   std::size_t open_ = 0;
   KdParts parts_ = KdParts::tiles;
-  // All rows may be put in tiles at once; or, of more, in cells that are then cut further.
+  // Pending first steps: tile all rows at once; or, if there are more, divide them into cells.
   bool whole_ = false;
   bool coarse_ = false;
 };

@@ -1,3 +1,6 @@
+// Kernels of k-d cuts: a set is cut by counting its points in bins and comparing only the points of
+// the bin that contains the cut.
+
 #include "partitions/tree/kd_order.kernel.h"
 #include "partitions/tree/reach.wide.h"
 #include "simd/lanes/compress.h"
@@ -16,7 +19,7 @@ Mask16 lanes_of(std::size_t left) {
   return left < kStep ? lanes_below(static_cast<unsigned>(left)) : kAllRows;
 }
 
-/// A set of points on one axis, in equal bins.
+/// Equal bins over a set of points on one axis.
 struct Bins {
   float half_low;
   float scale;
@@ -26,13 +29,14 @@ struct Bins {
     while (4 * count > points && count > kStep) count /= 2;
     scale = reach.half() > kLeastReach ? static_cast<float>(count) / reach.half() : 0.0F;
   }
-  /// Within [0, count]; the bin is the whole part, and the last one has its upper end.
+  /// Returns a number in [0, count]; its integer part is the bin, and the last bin includes its
+  /// upper end.
   [[nodiscard]] Floats place(const Floats& x) const { return (0.5F * x - half_low) * scale; }
 };
 
-/// How many points of a set lie in each bin.
+/// The number of points of a set in each bin.
 struct BinSizes {
-  std::uint32_t size[2][kMostBins];  // of even and of odd lanes, which need not wait for each other
+  std::uint32_t size[2][kMostBins];  // of even and odd lanes, so that increments are independent
 
   BinSizes(const Bins& bins, const float* x, std::size_t count) {
     for (std::uint32_t b = 0; b < bins.count; ++b) size[0][b] = size[1][b] = 0;
@@ -51,15 +55,15 @@ struct BinSizes {
   }
 };
 
-/// The columns of a set, or its room, where points are written one behind the other.
-struct Places {
+/// Columns of a set, or its room, to which points are appended.
+struct SplitColumns {
   float* at[3];
   std::uint32_t* row;
   std::size_t next;
   std::size_t end;
 };
 
-/// Sixteen points of a set, or as many as are left.
+/// Sixteen points of a set, or those that are left.
 struct Points16 {
   Floats at[3];
   Uints row;
@@ -67,8 +71,8 @@ struct Points16 {
   Points16(const KdSet& set, std::size_t i, std::size_t left) : row(load_some(set.row + i, left)) {
     for (int a = 0; a < 3; ++a) at[a] = load_some(set.at[a] + i, left);
   }
-  /// Writes those of a mask. Whole registers are written, but never behind the places' end.
-  void write(Mask16 mask, Places& to) const {
+  /// Appends the points of a mask. Writes whole registers, but never beyond `to.end`.
+  void write(Mask16 mask, SplitColumns& to) const {
     if (to.next + kStep <= to.end) {
       for (int a = 0; a < 3; ++a) compress_store(mask, at[a], to.at[a] + to.next);
       to.next += compress_store(mask, row, to.row + to.next);
@@ -94,17 +98,17 @@ void copy_back(const KdSet& set, std::size_t begin, std::size_t end) {
   __builtin_memcpy(set.row + begin, set.row_room + begin, points * sizeof(std::uint32_t));
 }
 
-/// Moves the points of [begin, end) below a bin to the front, those of the bin to `first` on and
-/// those above it to `last` on, each in the order in which they are.
+/// Moves the points of [begin, end) below a bin to the front, points of the bin to `first`, and
+/// points above it to `last`, stably.
 void part(const KdSet& set, int axis, const Bins& bins, std::uint32_t bin, std::size_t begin,
           std::size_t first, std::size_t last, std::size_t end) {
   const Floats from = Floats(static_cast<float>(bin));
-  // The last bin has no end.
+  // The last bin is unbounded.
   const Floats to = Floats(bin + 1 < bins.count ? static_cast<float>(bin + 1) : __builtin_inff());
-  // Points are read before their places are written.
-  Places below{{set.at[0], set.at[1], set.at[2]}, set.row, begin, end};
-  Places within{{set.at_room[0], set.at_room[1], set.at_room[2]}, set.row_room, first, last};
-  Places above = within;
+  // Points are read before their places are overwritten.
+  SplitColumns below{{set.at[0], set.at[1], set.at[2]}, set.row, begin, end};
+  SplitColumns within{{set.at_room[0], set.at_room[1], set.at_room[2]}, set.row_room, first, last};
+  SplitColumns above = within;
   above.next = last;
   above.end = end;
   for (std::size_t i = begin; i < end; i += kStep) {
@@ -120,8 +124,8 @@ void part(const KdSet& set, int axis, const Bins& bins, std::uint32_t bin, std::
   copy_back(set, first, end);
 }
 
-/// Sorts up to 32 points on an axis: each counts how many come before it, which is loops without
-/// branches. Points at one place stay as they are.
+/// Sorts up to 32 points on an axis, stably: counts for each point how many precede it, in
+/// branchless loops.
 void rank(const KdSet& set, int axis, std::size_t begin, std::size_t end) {
   const std::size_t points = end - begin;
   alignas(64) float key[kFewToRank];
@@ -141,8 +145,8 @@ void rank(const KdSet& set, int axis, std::size_t begin, std::size_t end) {
   copy_back(set, begin, end);
 }
 
-/// Moves the `cut` points that come first on an axis to the front, by counting in bins: only those
-/// of one bin have to be told apart, in finer bins.
+/// Moves the first `cut` points on an axis to the front. Counts points in bins, and repeats with
+/// finer bins only for the bin that contains the cut.
 void select(const KdSet& set, int axis, Reach reach, std::size_t cut) {
   std::size_t begin = 0;
   std::size_t end = set.count;
@@ -164,7 +168,7 @@ void select(const KdSet& set, int axis, Reach reach, std::size_t cut) {
   rank(set, axis, begin, end);
 }
 
-/// How many points the first side takes: half of the subtrees, all of them full.
+/// The number of points on the first side: half of the subtrees, all full.
 std::size_t cut_of(std::size_t count) {
   std::size_t places = kStep;
   while (16 * places < count) places *= 16;
@@ -205,7 +209,7 @@ void centres(const float* const* boxes, const std::uint32_t* rows, std::size_t b
     const std::uint32_t row = rows[i];
     std::uint32_t apart = 0;
     for (std::uint32_t k = 0; k < kLanes; ++k) apart |= rows[i + k] ^ (row + k);
-    // Mostly they are rows that follow each other.
+    // The rows are usually consecutive.
     if (apart == 0) {
       for (int a = 0; a < 3; ++a) {
         const Floats low = Floats::load_unaligned(boxes[a] + row);

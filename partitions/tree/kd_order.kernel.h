@@ -7,8 +7,8 @@
 
 namespace winnow {
 
-/// Points, each with the row that it belongs to, and room for as many. A set is cut in place:
-/// its parts are further sets of the same columns.
+/// Points with their rows, and room for as many. Sets are cut in place: the parts are sets in the
+/// same columns.
 struct KdSet {
   float* at[3] = {};
   std::uint32_t* row = nullptr;
@@ -20,11 +20,12 @@ struct KdSet {
 };
 
 struct KdOrderKernels {
-  /// Writes the centres of the boxes of rows[begin, end) to the same places of the columns `at`.
+  /// Writes the centres of the boxes of rows[begin, end) to entries [begin, end) of the columns
+  /// `at`.
   void (*centres)(const float* const* boxes, const std::uint32_t* rows, std::size_t begin,
                   std::size_t end, float* const* at);
-  /// Cuts a set of more than 16 points at the middle of the axis along which it reaches farthest:
-  /// leaves the first side to `set` and returns the other.
+  /// Cuts a set of more than 16 points near the median of the axis with the largest range: the
+  /// first side remains in `set`, the second is returned.
   KdSet (*split)(KdSet& set);
   /// Cuts a set until no part has more than 16 points.
   void (*finish)(KdSet set);

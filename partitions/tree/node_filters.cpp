@@ -1,3 +1,6 @@
+// Summaries of filters in the nodes of a BlockTree, from which traversals skip subtrees. BlockTree
+// calls the refit functions.
+
 #include "partitions/tree/node_filters.h"
 
 #include <winnow/core/key.h>
@@ -11,7 +14,7 @@ constexpr std::uint32_t kChildren = 16;
 constexpr std::uint32_t kLast = 0xFFFFFFFFU;
 constexpr std::size_t kColumns = 7;  // of NodeFilters
 
-/// What some filters have between them; at first of none, which nothing meets.
+/// The summary of some filters; initially of none, which matches no filter.
 struct Joined {
   std::uint32_t layers = 0;
   std::uint32_t mask = 0;
@@ -46,7 +49,7 @@ struct Joined {
   }
 };
 
-/// Of a block of rows. Without branches, so that compilers take many rows at once.
+/// Summarizes a block of rows. Branchless, so that compilers vectorize the loop.
 Joined join_rows(const RowView& rows, std::size_t begin) noexcept {
   const std::uint32_t* const id = rows.id + begin;
   const std::uint32_t* const layers = rows.filter.layers + begin;

@@ -13,14 +13,14 @@ namespace winnow {
   return (nodes + 15) / 16 * 16;
 }
 
-/// Gives every level of a tree its NodeFilters in `memory`, padded with nodes that nothing meets.
-/// False if memory is refused.
+/// Allocates the NodeFilters of every level of a tree in `memory`, padded with nodes that match no
+/// filter. Returns false if an allocation fails.
 [[nodiscard]] bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept;
 
-/// Makes nodes [begin, end) such that nothing meets them.
+/// Makes nodes [begin, end) match no filter.
 void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t end) noexcept;
 
-/// Recomputes the filters of nodes [begin, end) of level 0 from those of the rows.
+/// Recomputes the filters of nodes [begin, end) of level 0 from the rows.
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept;
 
 /// Recomputes the filters of nodes [begin, end) of `level` > 0 from the level below.

@@ -6,14 +6,14 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-inline constexpr float kLeastReach = 1e-30F;  // what is closer is at one place
+inline constexpr float kLeastReach = 1e-30F;  // a shorter range counts as one position
 
-/// Where numbers lie.
+/// The range of some numbers.
 struct Reach {
   float low;
   float high;
 
-  /// Of `count` numbers, at least one.
+  /// The range of `count` numbers, at least one.
   static Reach of(const float* x, std::size_t count) {
     constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
     if (count < kStep) {
@@ -27,14 +27,14 @@ struct Reach {
     Floats low = Floats::load_unaligned(x);
     Floats high = low;
     for (std::size_t i = kStep; i < count; i += kStep) {
-      // The last step looks at some numbers again.
+      // The last step may read some numbers again.
       const Floats v = Floats::load_unaligned(x + (i + kStep <= count ? i : count - kStep));
       low = min(low, v);
       high = max(high, v);
     }
     return {reduce_min(low), reduce_max(high)};
   }
-  // Half of it: that of what is spread over all floats is finite.
+  // Half of the length, because the length of arbitrary floats could overflow.
   [[nodiscard]] float half() const { return 0.5F * high - 0.5F * low; }
 };
 

@@ -1,3 +1,6 @@
+// The order of rows for StaticBvh: cuts sets of boxes in two by the surface-area heuristic, with
+// bins. StaticBvh (structures/bvh/bvh.cpp) calls append_in_sah_order.
+
 #include "partitions/tree/sah_order.h"
 
 #include "core/sort/split_jobs.h"
@@ -19,9 +22,9 @@ constexpr std::size_t kAxes = 4;  // the fourth is size
 constexpr std::uint32_t kBins = 64;
 constexpr std::uint32_t kSahWorthSharing = 4096;
 constexpr std::size_t kBoxesPerStretch = 8192;
-constexpr std::size_t kFewToSample = 4096;  // of more boxes one in some says where they lie
+constexpr std::size_t kFewToSample = 4096;  // of more boxes a sample determines the range of keys
 constexpr std::size_t kSampleStep = 8;
-constexpr float kLeastRange = 1e-30F;  // keys closer than this are at one place
+constexpr float kLeastRange = 1e-30F;  // keys within this range count as equal
 
 /// Four floats in a register.
 using Quad [[gnu::vector_size(16)]] = float;
@@ -39,13 +42,13 @@ Quad most(Quad a, Quad b) noexcept {
   return a > b ? a : b;
 }
 
-/// What a split compares boxes by: the centre on each axis, and of four axes a number that falls
-/// with the logarithm of the longest edge.
+/// The keys by which a split compares boxes: the centre on each axis, and with four axes a number
+/// that falls with the logarithm of the longest edge.
 template <std::size_t Axes>
 Quad keys_of(const SahBox& box) noexcept {
   const Quad low = load_quad(box.low);
   Quad high = load_quad(box.high);
-  high[3] = low[3];  // no number
+  high[3] = low[3];  // not a coordinate
   Quad keys = 0.5F * low + 0.5F * high;
   if constexpr (Axes == 3) return keys;
   const Quad edge = high - low;
@@ -58,8 +61,8 @@ float key_on(const SahBox& box, std::size_t axis) noexcept {
   return axis < 3 ? 0.5F * box.low[axis] + 0.5F * box.high[axis] : keys_of<4>(box)[3];
 }
 
-/// A box on its way from one place to another, in parts that do not overlap: what was just stored
-/// in one part is loaded without waiting for memory.
+/// A copy of a box in non-overlapping loads, each of which matches one earlier store, so that store
+/// forwarding works.
 class CarriedBox {
  public:
   explicit CarriedBox(const SahBox& box) noexcept {
@@ -82,7 +85,7 @@ class CarriedBox {
   std::uint32_t end_;
 };
 
-/// The box around boxes. In the fourth floats is nothing.
+/// The box around boxes; the fourth floats are unused.
 struct SahExtent {
   Quad low;
   Quad high;
@@ -99,8 +102,8 @@ struct SahExtent {
     constexpr double kMost = 1e38;
     return std::min(kMost, static_cast<double>(high[a]) - static_cast<double>(low[a]));
   }
-  /// Half of the surface, and as much of the edges as a question of size `margin` sees of them: in
-  /// flat and thin sets the surface alone does not tell.
+  /// Half of the surface plus `margin` times the edges, for queries of that size: in flat and thin
+  /// sets the surface does not suffice.
   [[nodiscard]] double cost(double margin) const {
     if (!(low[0] <= high[0])) return 0.0;
     const double x = edge(0);
@@ -114,11 +117,11 @@ SahExtent extent_of(const SahBox& box) noexcept {
   return {load_quad(box.low), load_quad(box.high)};
 }
 
-/// Equal bins along each axis over where the keys of a set lie; of a large set, those of a sample:
-/// what lies outside is in the first or the last bin.
+/// Equal bins along each axis over the range of a set's keys; of a large set, over the range of a
+/// sample, with other keys in the first or last bin.
 struct SahBins {
   std::uint32_t count = 0;
-  std::size_t axes = 3;  ///< the fourth counts where sizes differ
+  std::size_t axes = 3;  ///< the fourth is used if sizes differ
   Quad half_low{};
   Quad scale{};
 
@@ -132,7 +135,7 @@ struct SahBins {
       low = least(low, keys);
       high = most(high, keys);
     }
-    // Halves: the range of what is spread over all floats is finite.
+    // Halved values, because the range of arbitrary floats could overflow.
     half_low = 0.5F * low;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       const float range = 0.5F * high[axis] - half_low[axis];
@@ -140,7 +143,7 @@ struct SahBins {
     }
     if (scale[3] != 0.0F) axes = kAxes;
   }
-  /// On every axis.
+  /// Returns the bin on every axis.
   template <std::size_t Axes>
   [[nodiscard]] QuadInts of(const SahBox& box) const noexcept {
     const Quad place = (0.5F * keys_of<Axes>(box) - half_low) * scale;
@@ -148,21 +151,21 @@ struct SahBins {
     const Quad within = least(most(place, Quad{}), Quad{last, last, last, last});
     return __builtin_convertvector(within, QuadInts);
   }
-  /// True if a box lies in the first `bins` on an axis.
+  /// True if a box lies in the first `bins` bins on an axis.
   [[nodiscard]] bool is_within(const SahBox& box, std::size_t axis, std::uint32_t bins) const {
     const float place = (0.5F * key_on(box, axis) - half_low[axis]) * scale[axis];
     return (bins == count) | ((bins != 0) & (place < static_cast<float>(bins)));
   }
 };
 
-/// Boxes [begin, end), to be put into subtrees of 16^level blocks; all but the last one full.
+/// Boxes [begin, end) to be divided into subtrees of 16^level blocks, all full but the last.
 struct SahJob {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
   std::uint32_t level = 0;
 
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
-  /// Boxes in a subtree.
+  /// Boxes per subtree.
   [[nodiscard]] std::uint32_t places() const {
     return static_cast<std::uint32_t>(kBlockRows) << (4 * level);
   }
@@ -171,8 +174,8 @@ struct SahJob {
   [[nodiscard]] std::uint32_t middle() const { return (subtrees() + 1) / 2 * places(); }
 };
 
-/// The first `count` boxes by their keys on `axis` go to the first side; the cut goes through
-/// `bin`, or before it.
+/// The first `count` boxes by their keys on `axis` go to the first side; the cut is within `bin` or
+/// before it.
 struct Cut {
   std::size_t axis = 0;
   std::uint32_t count = 0;
@@ -209,7 +212,7 @@ class Builder {
     while (job.size() > kBlockRows) finish(split(job));
   }
 
-  /// Leaves the first side to `job` and returns the other.
+  /// The first side remains in `job`; returns the second.
   SahJob split(SahJob& job) const {
     while (job.subtrees() == 1) --job.level;
     const std::span<SahBox> boxes = boxes_.subspan(job.begin, job.size());
@@ -221,8 +224,8 @@ class Builder {
     return second;
   }
 
-  /// Moves the boxes before the cut to the front. Only those of the bin that it goes through have
-  /// to be compared.
+  /// Moves the boxes before the cut to the front. Compares only the boxes of the bin that contains
+  /// the cut.
   static void move_to_front(std::span<SahBox> boxes, const SahBins& bins, const Cut& cut) {
     const auto first_of = [&](std::span<SahBox> some, std::uint32_t first_bins) {
       return part(some,
@@ -240,8 +243,9 @@ class Builder {
     });
   }
 
-  /// Moves the boxes that belong first to the front; returns how many they are. Which do no branch
-  /// predictor can guess: each is exchanged with the first that does not, if only with itself.
+  /// Moves the boxes for which first(box) is true to the front and returns their number.
+  /// Branchless, because the result is unpredictable: each box is swapped with the first box behind
+  /// the front, or with itself.
   template <typename First>
   static std::size_t part(std::span<SahBox> boxes, First&& first) {
     std::size_t found = 0;
@@ -255,7 +259,7 @@ class Builder {
     return found;
   }
 
-  /// What bins hold.
+  /// Contents of the bins.
   struct BinContents {
     std::array<std::array<SahExtent, kBins>, kAxes> extent;
     std::array<std::array<std::uint32_t, kBins>, kAxes> count;
@@ -294,8 +298,8 @@ class Builder {
     return best;
   }
 
-  /// Keeps in `best` the best cut on an axis if it is better. Most cuts go through a bin: then both
-  /// sides are taken to reach through all of it.
+  /// Replaces `best` by the best cut on an axis if that is better. If a cut is within a bin, both
+  /// sides are assumed to extend through the whole bin.
   void consider_axis(const SahJob& job, const BinContents& in, std::uint32_t bins, std::size_t axis,
                      Cut& best) const {
     std::array<SahExtent, kBins + 1> from;  // around the bins from each one on
@@ -312,7 +316,7 @@ class Builder {
       before += in.count[axis][b];
       for (; cut <= before && cut < job.size(); cut += job.places()) {
         const std::uint32_t behind = cut == before ? b + 1 : b;
-        // A side is looked at itself, and then some of what it holds.
+        // The cost of a side counts the test of the side itself and of its subtrees.
         const auto weight = [&](std::uint32_t boxes) {
           return 1.0 + static_cast<double>(boxes) / job.places();
         };
@@ -350,7 +354,7 @@ bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> 
   Builder({scratch.data(), count}, execution).run();
   for_stretches(execution, count, kBoxesPerStretch, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) order[at + i] = scratch[i].row;
-    // Within a block in the order of rows, however they came there.
+    // Sorts the rows of a block, so that their order does not depend on the partitioning.
     for (std::size_t i = begin; i < end; i += kBlockRows) {
       std::sort(order.data() + at + i, order.data() + at + std::min(end, i + kBlockRows));
     }

@@ -1,3 +1,5 @@
+// Sorts rows into tiles by counting; kd_order.cpp calls it for sets of some thousand rows.
+
 #include "partitions/tree/tile_order.kernel.h"
 #include "partitions/tree/equal_parts.wide.h"
 #include "partitions/tree/reach.wide.h"
@@ -18,7 +20,7 @@ struct TileAxis {
 
   TileAxis(const float* points, std::size_t count) : x(points), reach(Reach::of(points, count)) {}
 
-  /// Writes the place of each point.
+  /// Writes the place of each point (see equal_parts.wide.h).
   void find_places(std::size_t count, std::uint8_t* place) const {
     const float scale = places_per(reach.half());
     alignas(64) std::uint32_t whole[kLanes];
@@ -30,8 +32,8 @@ struct TileAxis {
   }
 };
 
-/// How many parts each of the axes but the longest is cut into, so that the lines that this leaves
-/// are about as wide as cubes of 16 points are, were all spread evenly.
+/// The number of parts of the middle and the shortest axis, so that lines are about as wide as
+/// cubes of 16 points would be if the points were evenly spread.
 struct TileCuts {
   std::uint32_t slow = 0;
   std::uint32_t mid = 0;
@@ -43,7 +45,7 @@ struct TileCuts {
       const float m = mid_axis.reach.half() / longest;
       const float s = slow_axis.reach.half() / longest;
       const float tiles = static_cast<float>(count) / static_cast<float>(kLanes);
-      // Rounded roots of tiles s^2 / m, and of what a slab has times m.
+      // Rounded roots of tiles s^2 / m, and of the tiles per slab times m.
       const auto half = [](std::uint32_t n) { return static_cast<float>(n) + 0.5F; };
       while (slow < kMostParts && half(slow) * half(slow) * half(slow) * m < tiles * s * s) ++slow;
       const float slabs = slow == 0 ? 1.0F : static_cast<float>(slow);
@@ -82,10 +84,10 @@ class Tiles {
   }
 
  private:
-  /// Of many points one in four tells where cuts lie.
+  /// If there are many points, one in four is sampled.
   [[nodiscard]] std::uint32_t step() const { return count_ < 512 ? 1 : 4; }
 
-  /// Which one of the four changes: objects of two kinds that come by turns would be in step.
+  /// The sampled one of four varies: with a fixed one, objects of alternating kinds would alias.
   template <typename Look>
   void for_sample(const Look& look) const {
     const std::uint32_t rest = step() - 1;
@@ -95,35 +97,35 @@ class Tiles {
     }
   }
 
-  /// True if so many points are at one place that they have to be told apart by other means. Of an
-  /// axis that is cut into parts one may be twice as large: the other axes cut that further.
+  /// True if too many points are at one place for tiles to separate them. One part of an axis may
+  /// be twice as large as intended, since the other axes cut it further.
   [[nodiscard]] bool is_heaped(const std::uint8_t* place, std::uint32_t parts) const {
-    std::uint32_t points[kPlaces] = {};
+    std::uint32_t points[kPlacesPerAxis] = {};
     for_sample([&](std::size_t i) { ++points[place[i]]; });
     return most_at_a_place(points) * step() > 2 * count_ / parts + kStep;
   }
 
-  /// Lines are numbered like a snake.
+  /// Odd lines run backwards, so that successive lines are neighbours.
   void find_lines(const TileCuts& cuts) {
-    std::uint32_t points[kMostParts + 1][kPlaces];
+    std::uint32_t points[kMostParts + 1][kPlacesPerAxis];
     std::uint32_t* const slow_points = points[kMostParts];
-    for (std::uint32_t p = 0; p < kPlaces; ++p) slow_points[p] = 0;
+    for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) slow_points[p] = 0;
     std::uint32_t all = 0;
     for_sample([&](std::size_t i) {
       ++slow_points[place_[2][i]];
       ++all;
     });
-    std::uint32_t slab[kPlaces];
+    std::uint32_t slab[kPlacesPerAxis];
     cut_equally(slow_points, all, cuts.slow, slab);
     std::uint32_t in_slab[kMostParts] = {};
-    for (std::uint32_t p = 0; p < kPlaces; ++p) in_slab[slab[p]] += slow_points[p];
+    for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) in_slab[slab[p]] += slow_points[p];
     __builtin_memset(points, 0, cuts.slow * sizeof points[0]);
     for_sample([&](std::size_t i) { ++points[slab[place_[2][i]]][place_[1][i]]; });
-    std::uint32_t part[kPlaces];
-    std::uint32_t line[kMostParts][kPlaces];
+    std::uint32_t part[kPlacesPerAxis];
+    std::uint32_t line[kMostParts][kPlacesPerAxis];
     for (std::uint32_t s = 0; s < cuts.slow; ++s) {
       cut_equally(points[s], in_slab[s], cuts.mid, part);
-      for (std::uint32_t p = 0; p < kPlaces; ++p) {
+      for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) {
         line[s][p] = s * cuts.mid + ((s & 1U) != 0 ? cuts.mid - 1 - part[p] : part[p]);
       }
     }
@@ -139,7 +141,7 @@ class Tiles {
   }
 
   void place_rows(std::uint32_t lines) {
-    std::uint16_t next[kMostLines * kPlaces];
+    std::uint16_t next[kMostLines * kPlacesPerAxis];
     const std::uint32_t keys = lines << step_bits_;
     __builtin_memset(next, 0, keys * sizeof next[0]);
     for (std::size_t i = 0; i < count_; ++i) ++next[key_[i]];

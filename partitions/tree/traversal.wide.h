@@ -1,22 +1,22 @@
 #pragma once
 
-// The ways down an implicit 16-ary tree, of blocks of rows or of triangles of a mesh: the children
-// of node i of level l + 1 are the nodes [16 i, 16 i + 16) of level l, whose boxes are tested at
-// once; those of the top level are the only ones without a node above. A traversal visits in the
-// order of rows, a joint traversal takes many questions down together, and a descent goes to the
-// nearest first.
+// Traversals of implicit 16-ary trees, over blocks of rows or over triangles of a mesh. The
+// children of node i of level l + 1 are the nodes [16 i, 16 i + 16) of level l, whose boxes are
+// tested at once; the nodes of the top level have no parent. `traverse` visits nodes in the order
+// of rows, `JointTraversal` runs many queries together, and `descend` visits the nearest nodes
+// first.
 
 #include "partitions/tree/block_tree.kernel.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// How a traversal goes on after a visit: with the node's children, past them, or not at all.
+/// How a traversal continues after a visit: with the node's children, past them, or not at all.
 enum class Next : std::uint8_t { below, past, stop };
 
-/// Calls visit(level, node) for every node that test(level, first of 16 nodes) lets through, a node
-/// before its children. One mask per level is all the state that it needs: depth is bounded by the
-/// number of objects, not by a stack. False if a visit stopped it.
+/// Calls visit(level, node) for every node that passes test(level, first of 16 nodes), parents
+/// before children. Its only state is one mask per level, so its depth is bounded by the number of
+/// objects, not by a stack. Returns false if a visit stopped it.
 template <std::uint32_t MaxLevels, typename Test, typename Visit>
 [[gnu::always_inline]] inline bool traverse(std::uint32_t levels, Test&& test, Visit&& visit) {
   Mask16 open[MaxLevels];
@@ -39,8 +39,8 @@ template <std::uint32_t MaxLevels, typename Test, typename Visit>
   }
 }
 
-/// Calls visit(node) for every node of level `bottom` that is let through on its own level and all
-/// above, from node `from` on. False as soon as visit says false.
+/// Calls visit(node) for every node of level `bottom`, from node `from` on, that passes the test on
+/// its own level and all levels above. Stops and returns false if visit returns false.
 template <typename Test, typename Visit>
 bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t from, Test&& test,
                    Visit&& visit) {
@@ -48,7 +48,7 @@ bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t fr
       tree.levels,
       [&](std::uint32_t level, std::uint32_t first_node) {
         Mask16 hits = test(level, first_node);
-        // Nodes that end before `from` hold nothing to visit.
+        // Skips nodes that end before `from`.
         const std::uint32_t first_wanted = from >> (4 * (level - bottom));
         if (first_wanted > first_node) {
           const std::uint32_t skip = first_wanted - first_node;
@@ -62,7 +62,7 @@ bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t fr
       });
 }
 
-/// Pairs of a question and a node, or a row, that wait for each other.
+/// Pairs of a query and a node (or row) that are still to be processed.
 struct OpenList {
   static constexpr unsigned kRoom = 256;
 
@@ -70,7 +70,7 @@ struct OpenList {
   std::uint32_t question[kRoom + kLanes];
   std::uint32_t at[kRoom + kLanes];
 
-  /// True if another 16 may not fit.
+  /// True if there may be no room for 16 more.
   [[nodiscard]] bool full() const { return size > kRoom - kLanes; }
   void add(std::uint32_t q, std::uint32_t first_at, Mask16 mask) {
     Uints(q).store_unaligned(question + size);
@@ -78,21 +78,20 @@ struct OpenList {
   }
 };
 
-/// Takes many questions down a tree together, one level at a time: what is open on a level waits in
-/// that level's list, and a list is worked off, in one long loop, when the next nodes might not fit
-/// or nothing is left above. How many children a node passes on is as hard to foresee as a coin,
-/// and each test takes long from its first load to its last bit; here neither is waited for.
-/// Nothing is visited in order.
+/// Runs many queries down a tree together, level by level. Nodes to open on a level are listed per
+/// level, and a list is processed in one long loop when the next nodes might not fit or when no
+/// higher level has nodes left. The number of children that pass is unpredictable and each test has
+/// a long latency; long loops hide both. The order of visits is unspecified.
 ///
-/// `Questions` brings `auto prepare(tree, level, first question)`, what a loop settles once;
-/// `Mask16 test(prepared, question, level, first of 16 nodes)`; and `bool visit(blocks)`, which
-/// takes a list of blocks that were reached and returns false to end the traversal.
+/// `Questions` provides `auto prepare(tree, level, first query)`, which computes constants of a
+/// loop; `Mask16 test(prepared, query, level, first of 16 nodes)`; and `bool visit(blocks)`, which
+/// processes a list of reached blocks and returns false to stop the traversal.
 template <typename Questions>
 class JointTraversal {
  public:
   explicit JointTraversal(Questions& questions) : questions_(questions) {}
 
-  /// Asks question_of(0), ..., question_of(count - 1). False if a visit ended it.
+  /// Runs queries question_of(0), ..., question_of(count - 1). Returns false if a visit stopped it.
   template <typename QuestionOf>
   bool run(const TreeShape& tree, std::uint32_t count, QuestionOf&& question_of) {
     if (count == 0) return true;
@@ -109,7 +108,7 @@ class JointTraversal {
   }
 
  private:
-  /// Opens those of the 16 nodes from `first_node` on that the question wants.
+  /// Adds the nodes among the 16 from `first_node` on that pass the query's test.
   template <typename Prepared>
   bool test(const Prepared& prepared, std::uint32_t q, std::uint32_t level,
             std::uint32_t first_node) {
@@ -138,13 +137,14 @@ class JointTraversal {
   OpenList open_[kMaxTreeLevels];
 };
 
-/// Visits nodes of level 0 about in the order of a measure, the nearest child first. `Waiting`
-/// keeps what is open: `bool open(level, first of 16 nodes, node)` gives the child to go on with
-/// and lets the others wait, or says that there is none; `bool take(level, node)` gives the next
-/// one that waits, or says that there is none. `visit(node)` returns false to end the descent.
+/// Visits nodes of level 0 approximately in the order of a measure, the nearest child first.
+/// `Waiting` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes, returns
+/// the one to continue with in `node` and stores the others, or returns false if none passes; `bool
+/// take(level, node)` removes the next stored node, or returns false if there is none. visit(node)
+/// returns false to stop the descent.
 template <typename Waiting, typename Visit>
 [[gnu::always_inline]] inline bool descend(std::uint32_t levels, Waiting& waiting, Visit&& visit) {
-  // The children of this node of this level are opened next; a node of level 0 is visited.
+  // The children of this node are opened next; a node of level 0 is visited.
   std::uint32_t level = levels;
   std::uint32_t node = 0;
   do {

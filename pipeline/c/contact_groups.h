@@ -1,7 +1,7 @@
 #pragma once
 
-/// Contacts in groups, for solvers: islands and colours. What each call does stands at the same
-/// name of <winnow/pipeline/scene.h> and contact_groups.h.
+/// Groups of contacts for solvers: islands and colours. The C++ functions of the same names
+/// document each call; see <winnow/pipeline/scene.h> and contact_groups.h.
 
 #include <winnow/c/core.h>
 #include <winnow/c/scene.h>
@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/// The last colour, of pairs that found none and are to be solved one after the other.
+/// The last colour: pairs that fit no other colour and must be solved one after the other.
 #define WINNOW_REST_COLOUR 63U
 
 typedef struct winnow_contact_groups winnow_contact_groups;
@@ -30,10 +30,10 @@ WINNOW_C_API winnow_status winnow_scene_colours(const winnow_scene* scene,
 
 WINNOW_C_API winnow_status winnow_contact_groups_size(const winnow_contact_groups* groups,
                                                       size_t* size);
-/// The group of each pair, where they lie.
+/// Returns the group of each pair. The array is not copied.
 WINNOW_C_API winnow_status winnow_contact_groups_group(const winnow_contact_groups* groups,
                                                        const uint32_t** group, size_t* pairs);
-/// The pairs of a group, ascending.
+/// Returns the pairs of a group, ascending.
 WINNOW_C_API winnow_status winnow_contact_groups_pairs(const winnow_contact_groups* groups,
                                                        size_t group, const uint32_t** pairs,
                                                        size_t* count);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What all calls are about: status, version, memory, threads, keys and filters.
+/// Types shared by all C headers: status, version, memory, threads, keys and filters.
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,20 +16,20 @@
 extern "C" {
 #endif
 
-/// Of the library that this header came with.
+/// Version of winnow that this header belongs to.
 #define WINNOW_VERSION_MAJOR 0
 #define WINNOW_VERSION_MINOR 1
 #define WINNOW_VERSION_PATCH 0
-/// The number of the binary interface, and of the shared library's name; see README.md beside this.
+/// Number of the binary interface, also part of the shared library's name; see README.md here.
 #define WINNOW_ABI 1
 
-/// What became of a call. One that is not WINNOW_OK has changed nothing.
+/// Result of a call. A call that does not return WINNOW_OK has changed nothing.
 typedef int32_t winnow_status;
 enum {
   WINNOW_OK = 0,
   WINNOW_INVALID_BOUNDS = 1,
   WINNOW_INVALID_KEY = 2,
-  /// Also: a pointer is null that must not be, a kind or a choice is none, a `size` is wrong.
+  /// Also for a null pointer that is not allowed, an invalid kind or choice, or a wrong `size`.
   WINNOW_INVALID_ARGUMENT = 3,
   WINNOW_SIZE_MISMATCH = 4,
   WINNOW_OUT_OF_MEMORY = 5,
@@ -41,37 +41,39 @@ enum {
   WINNOW_COMMUNICATION_FAILED = 11
 };
 
-/// For messages: "ok", "invalid_bounds", ... Never null.
+/// Returns the name of a status: "ok", "invalid_bounds", ... Never null.
 WINNOW_C_API const char* winnow_status_name(winnow_status status);
 
-/// Of the library that runs: major << 16 | minor << 8 | patch, and the same as text.
+/// Return the version of the loaded library: major << 16 | minor << 8 | patch, and as text.
 WINNOW_C_API uint32_t winnow_version(void);
 WINNOW_C_API const char* winnow_version_name(void);
-/// WINNOW_ABI of the library that runs: another than that of the header cannot be used with it.
+/// Returns WINNOW_ABI of the loaded library. If it differs from the header's WINNOW_ABI, the
+/// library cannot be used with this header.
 WINNOW_C_API uint32_t winnow_abi(void);
 
-/// The instruction set in use: "sse42", "avx2", "avx512", "neon64".
+/// Returns the name of the instruction set in use: "sse42", "avx2", "avx512" or "neon64".
 WINNOW_C_API const char* winnow_isa_name(void);
-/// Those that this machine can run, narrowest first; null for any other number.
+/// Returns the name of instruction set i that this machine can run, narrowest first; null if i is
+/// out of range.
 WINNOW_C_API const char* winnow_available_isa(size_t i);
-/// For the whole process.
+/// Selects the instruction set for the whole process.
 WINNOW_C_API winnow_status winnow_set_isa(const char* name);
 
-/// Where memory comes from. `allocate` answers null if it refuses; `deallocate` gets the bytes and
-/// the alignment (a power of two) that the block was asked with. Calls that take a null pointer in
-/// place of one use pages of 2 MB for large blocks, where the system has them, and `new` for
-/// others. The struct is copied; the context must outlive what is made with it.
+/// Source of memory. `allocate` returns null on failure; `deallocate` is called with the bytes and
+/// the alignment (a power of two) of the allocation. If a call is given a null pointer to this
+/// struct, large blocks use pages of 2 MB where the system has them, and other blocks use `new`.
+/// The struct is copied; the context must outlive everything created with it.
 typedef struct winnow_memory {
   void* (*allocate)(void* context, size_t bytes, size_t alignment);
   void (*deallocate)(void* context, void* block, size_t bytes, size_t alignment);
   void* context;
 } winnow_memory;
 
-/// Whether memory that is made ready is written to as well.
+/// Whether reserved memory is also written to, so that its pages are present before first use.
 typedef int32_t winnow_pages;
 enum { WINNOW_PAGES_UNTOUCHED = 0, WINNOW_PAGES_TOUCHED = 1 };
 
-/// A host's own way to run tasks side by side; see JobSystem for what it must hold.
+/// Job system of the host program; see JobSystem in <winnow/core/execution.h> for the requirements.
 typedef struct winnow_job_system {
   void (*parallel_for)(void* context, size_t count, void (*task)(void* tasks, size_t i),
                        void* tasks);
@@ -81,35 +83,35 @@ typedef struct winnow_job_system {
 
 typedef struct winnow_execution {
   int32_t kind;
-  winnow_job_system jobs;  ///< of WINNOW_EXECUTION_ON
+  winnow_job_system jobs;  ///< used if `kind` is WINNOW_EXECUTION_ON
 } winnow_execution;
 enum {
-  WINNOW_EXECUTION_DEFAULT = 0,  ///< as C++ has it: parallel, but of pairs and impacts serial
+  WINNOW_EXECUTION_DEFAULT = 0,  ///< C++ default: parallel (narrow phase, impacts: serial)
   WINNOW_EXECUTION_SERIAL = 1,
-  WINNOW_EXECUTION_ON = 2,       ///< on the host's own job system
-  WINNOW_EXECUTION_PARALLEL = 3  ///< on all processors, by oneTBB
+  WINNOW_EXECUTION_ON = 2,       ///< the host's job system `jobs`
+  WINNOW_EXECUTION_PARALLEL = 3  ///< all processors, with oneTBB
 };
 
-/// So many threads of oneTBB, the one that calls counted in; they are started by the first call
-/// that uses them and shared by all that is made with them. From 1 to 4096.
+/// A number of oneTBB threads from 1 to 4096, including the calling thread. They are started by the
+/// first call that uses them, and shared by everything created with them.
 typedef struct winnow_threads winnow_threads;
-/// WINNOW_UNSUPPORTED for more than one where the library was built without oneTBB.
+/// WINNOW_UNSUPPORTED if count > 1 and the library was built without oneTBB.
 WINNOW_C_API winnow_status winnow_threads_create(size_t count, winnow_threads** threads);
-/// After all that was made with them.
+/// Destroy everything that was created with the threads first.
 WINNOW_C_API void winnow_threads_destroy(winnow_threads* threads);
 WINNOW_C_API winnow_status winnow_threads_execution(const winnow_threads* threads,
                                                     winnow_execution* execution);
 
-/// Bytes of one purpose: live content, and what the memory gave.
+/// Bytes of one purpose: in use, and allocated.
 typedef struct winnow_bytes {
   size_t used;
   size_t reserved;
 } winnow_bytes;
 
-/// Bytes by purpose. The sum of `reserved` equals, to the byte, what is outstanding at the memory;
-/// what a pointer like winnow_partition* leads to is under `structure`.
+/// Bytes by purpose. The sum of `reserved` equals the bytes allocated from the memory. The object
+/// behind a handle such as winnow_partition* counts as `structure`.
 typedef struct winnow_footprint {
-  size_t size;  ///< sizeof(winnow_footprint), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_footprint)
   winnow_bytes bounds;
   winnow_bytes keys;
   winnow_bytes client_data;
@@ -118,8 +120,8 @@ typedef struct winnow_footprint {
   winnow_bytes results;
 } winnow_footprint;
 
-/// An object of a partition, or a body of a scene. One that was removed, or that another partition
-/// or scene gave out, is WINNOW_INVALID_KEY.
+/// Key of an object of a partition, or of a body of a scene. The key of a removed object, or of
+/// another partition or scene, is WINNOW_INVALID_KEY.
 typedef struct winnow_key {
   uint32_t id;
   uint32_t stamp;
@@ -130,7 +132,7 @@ typedef struct winnow_key {
 
 #define WINNOW_EVERY_ENVIRONMENT 0xFFFFFFFFU
 
-/// What an object lets itself be paired with.
+/// Filter that restricts which other objects an object pairs with.
 typedef struct winnow_object_filter {
   uint32_t layers;
   uint32_t mask;
@@ -139,8 +141,9 @@ typedef struct winnow_object_filter {
 #define WINNOW_OBJECT_FILTER \
   { 1U, 0xFFFFFFFFU, 0U }
 
-/// What a query asks for; null in its place asks for all. `accept` is null or a last word on each
-/// object: any thread calls it, several at once, in any order, and it answers the same each time.
+/// Filter of a query; null accepts all objects. `accept` is null, or is called last for each
+/// object. It may be called from any thread, from several at once and in any order, and must return
+/// the same value each time for an object.
 typedef struct winnow_filter {
   uint32_t layers;
   uint32_t mask;
@@ -151,7 +154,7 @@ typedef struct winnow_filter {
 #define WINNOW_FILTER \
   { 0xFFFFFFFFU, 0xFFFFFFFFU, WINNOW_EVERY_ENVIRONMENT, NULL, NULL }
 
-/// The order of results; the same on any thread count and any instruction set either way.
+/// Order of results. Both orders are the same for any number of threads and any instruction set.
 typedef int32_t winnow_order;
 enum { WINNOW_ORDER_FAST = 0, WINNOW_ORDER_CANONICAL = 1 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What profilers and logs are told, of all that runs in a process. What each call does stands at
-/// the same name of <winnow/core/hooks.h>.
+/// Callbacks for profilers and logs, one of each for the whole process. <winnow/core/hooks.h>
+/// documents each call under the same name.
 
 #include <winnow/c/core.h>
 
@@ -18,17 +18,17 @@ enum {
   WINNOW_STAGE_NARROW_PHASE = 4,
   WINNOW_STAGE_CONTACTS = 5
 };
-/// Never null: "unknown" for a number that is none.
+/// Returns the name of a stage; "unknown" for an invalid number. Never null.
 WINNOW_C_API const char* winnow_work_stage_name(winnow_work_stage stage);
 
 typedef void (*winnow_stage_hook)(winnow_work_stage stage, bool begins);
-/// Gives back the one before, null if there was none that was set here.
+/// Sets the hook and returns the previous one; null if this call had set none before.
 WINNOW_C_API winnow_stage_hook winnow_set_stage_hook(winnow_stage_hook hook);
 
 typedef int32_t winnow_log_kind;
 enum { WINNOW_LOG_CHOICE = 0, WINNOW_LOG_REFUSAL = 1 };
 
-/// Characters that no zero ends.
+/// Text that is not null-terminated.
 typedef struct winnow_text {
   const char* first;
   size_t count;
@@ -44,7 +44,7 @@ typedef struct winnow_log_entry {
 } winnow_log_entry;
 
 typedef void (*winnow_log_hook)(const winnow_log_entry* entry);
-/// Gives back the one before, null if there was none that was set here.
+/// Sets the hook and returns the previous one; null if this call had set none before.
 WINNOW_C_API winnow_log_hook winnow_set_log_hook(winnow_log_hook hook);
 
 #ifdef __cplusplus

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Pairs of convex shapes to overlaps, distances and contacts. What is asked and answered stands at
-/// the same names of <winnow/pipeline/narrow_phase.h> and narrow_result.h.
+/// Overlaps, distances and contacts of pairs of convex shapes. <winnow/pipeline/narrow_phase.h> and
+/// narrow_result.h document each call under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/shapes.h>
@@ -11,26 +11,26 @@
 extern "C" {
 #endif
 
-/// How much is asked about pairs.
+/// How much is computed for each pair.
 typedef int32_t winnow_contact_level;
 enum {
-  WINNOW_LEVEL_PAIRS = 0,  ///< of scenes alone
+  WINNOW_LEVEL_PAIRS = 0,  ///< only for scenes
   WINNOW_LEVEL_BOOLEAN = 1,
   WINNOW_LEVEL_DISTANCE = 2,
   WINNOW_LEVEL_MANIFOLD = 3
 };
 
-/// How exact an answer must be.
+/// Required accuracy of the results.
 typedef int32_t winnow_narrow_tier;
 enum { WINNOW_TIER_ROBUST = 0, WINNOW_TIER_REFERENCE = 1 };
 
-/// Two bodies that may touch.
+/// Indices of two bodies that may touch.
 typedef struct winnow_body_pair {
   uint32_t a;
   uint32_t b;
 } winnow_body_pair;
 
-/// Pairs of the same two kinds of shapes, next to each other in an answer.
+/// Consecutive results whose shapes have the same two kinds.
 typedef struct winnow_run {
   uint8_t kind_a;  ///< a winnow_shape_kind
   uint8_t kind_b;
@@ -43,22 +43,23 @@ WINNOW_C_API winnow_status winnow_narrow_result_create(const winnow_memory* memo
                                                        winnow_narrow_result** result);
 WINNOW_C_API void winnow_narrow_result_destroy(winnow_narrow_result* result);
 
-/// Answers where they lie, valid until the result is used again or destroyed. Columns that the
-/// level has not are null, and so may be those that are empty.
+/// Results as columns, not copied, valid until the result is used again or destroyed. A column that
+/// its level does not have is null. An empty column may be null.
 typedef struct winnow_narrow_columns {
-  size_t size;  ///< sizeof(winnow_narrow_columns), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_narrow_columns)
   winnow_contact_level level;
   size_t answers;
-  const uint32_t* pair_of;  ///< which pair of the input answer i is about
+  const uint32_t* pair_of;  ///< index of the input pair of result i
   const winnow_run* runs;
   size_t run_count;
-  /// Level boolean: not 0 where they share a point; at higher levels that is distance <= 0.
+  /// Level boolean: not 0 if the shapes share a point. At higher levels, test distance <= 0.
   const uint8_t* overlap;
   const double* distance;
   const double* error_bound;
   const double* normal[3];
-  const double* point[3];  ///< level distance
-  /// Level manifold: points of answer i are [contact_first[i], + contact_count[i]).
+  const double* point[3];  ///< only at level distance
+  /// Level manifold: the points of result i are [contact_first[i], contact_first[i] +
+  /// contact_count[i]).
   const uint32_t* contact_first;
   const uint32_t* contact_count;
   size_t contacts;
@@ -78,9 +79,9 @@ typedef struct winnow_bodies {
   winnow_pose_view poses;
 } winnow_bodies;
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_narrow_options {
-  size_t size;                 ///< sizeof(winnow_narrow_options), of the caller
+  size_t size;                 ///< set by the caller to sizeof(winnow_narrow_options)
   winnow_contact_level level;  ///< 0: manifold
   winnow_narrow_tier tier;
   double margin;
@@ -95,25 +96,24 @@ typedef struct winnow_narrow_options {
     }                                                                                \
   }
 
-/// Keeps scratch memory from call to call: one for each thread of the caller.
+/// Scratch memory that is reused between calls. Use one per thread.
 typedef struct winnow_narrow_phase winnow_narrow_phase;
 WINNOW_C_API winnow_status winnow_narrow_phase_create(const winnow_memory* memory,
                                                       winnow_narrow_phase** narrow);
 WINNOW_C_API void winnow_narrow_phase_destroy(winnow_narrow_phase* narrow);
-/// `options` may be null. A call that is refused for what bodies or pairs are leaves `result`
-/// empty.
+/// `options` may be null. If a call fails because of invalid bodies or pairs, `result` is empty.
 WINNOW_C_API winnow_status winnow_narrow_phase_collide(winnow_narrow_phase* narrow,
                                                        const winnow_shape_pool* shapes,
                                                        const winnow_bodies* bodies,
                                                        const winnow_body_pair* pairs, size_t count,
                                                        const winnow_narrow_options* options,
                                                        winnow_narrow_result* result);
-/// The body that the last call was refused for.
+/// Returns the index of the body that made the last call fail.
 WINNOW_C_API winnow_status winnow_narrow_phase_bad_body(const winnow_narrow_phase* narrow,
                                                         uint32_t* body);
 
 typedef struct winnow_narrow_statistics {
-  size_t size;  ///< sizeof(winnow_narrow_statistics), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_narrow_statistics)
   uint64_t pairs;
   uint64_t recomputed;
   uint64_t without_lanes;
@@ -125,15 +125,15 @@ WINNOW_C_API winnow_status winnow_narrow_phase_statistics(const winnow_narrow_ph
 WINNOW_C_API winnow_status winnow_narrow_phase_footprint(const winnow_narrow_phase* narrow,
                                                          winnow_footprint* footprint);
 
-/// One contact of a pair.
+/// One contact point of a pair.
 typedef struct winnow_contact_point {
   float position[3];
   float depth;
   uint64_t feature;
 } winnow_contact_point;
 
-/// What is known about one pair. Level boolean tells `overlap` alone, distance all but contacts,
-/// manifold all but the point.
+/// Result for one pair. Level boolean sets only `overlap`; level distance sets all but the
+/// contacts; level manifold sets all but `point`.
 typedef struct winnow_pair_answer {
   double distance;
   double error_bound;
@@ -144,8 +144,8 @@ typedef struct winnow_pair_answer {
   winnow_contact_point contacts[4];
 } winnow_pair_answer;
 
-/// One pair, for who has no more than one: needs no narrow phase and no memory, and any number of
-/// threads may ask. `options` may be null.
+/// Computes one pair without a narrow phase object and without allocating. May be called from any
+/// number of threads. `options` may be null.
 WINNOW_C_API winnow_status winnow_collide(const winnow_shape_pool* shapes, winnow_shape_id a,
                                           const winnow_pose* pose_a, winnow_shape_id b,
                                           const winnow_pose* pose_b,

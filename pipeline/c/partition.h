@@ -1,7 +1,7 @@
 #pragma once
 
-/// Partitions of bounding volumes, and the buffers that they answer in. What each call does, what
-/// it refuses and what it costs stands at the same name of <winnow/partitions/partition.h>.
+/// Partitions of bounding volumes, and their result buffers. <winnow/partitions/partition.h>
+/// documents each call, its errors and its cost under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/volumes.h>
@@ -15,10 +15,11 @@ extern "C" {
 typedef struct winnow_partition winnow_partition;
 
 // --- buffers of results ---------------------------------------------------------------------
-// The caller's, reused from frame to frame, each for one thread at a time. What they lead to is
-// read where it lies and valid until the buffer is used again or destroyed.
+// Result buffers belong to the caller, are reused from frame to frame, and are used by one thread
+// at a time. Returned arrays are not copied: they are valid until the buffer is used again or
+// destroyed.
 
-/// Two objects that may touch, by id.
+/// Ids of two objects that may touch.
 typedef struct winnow_pair {
   uint32_t first;
   uint32_t second;
@@ -39,13 +40,13 @@ WINNOW_C_API winnow_status winnow_pair_buffer_release(winnow_pair_buffer* buffer
 WINNOW_C_API winnow_status winnow_pair_buffer_footprint(const winnow_pair_buffer* buffer,
                                                         winnow_footprint* footprint);
 
-/// Two objects by key.
+/// Keys of two objects.
 typedef struct winnow_key_pair {
   winnow_key first;
   winnow_key second;
 } winnow_key_pair;
 
-/// The client data of two objects, as they were inserted with.
+/// Client data of two objects, as given when they were inserted.
 typedef struct winnow_client_data_pair {
   uint64_t first;
   uint64_t second;
@@ -54,7 +55,7 @@ typedef struct winnow_client_data_pair {
 typedef struct winnow_pair_events winnow_pair_events;
 WINNOW_C_API winnow_status winnow_pair_events_create(const winnow_memory* memory,
                                                      winnow_pair_events** events);
-/// Those that give client data with the pairs, as PairEventsOptions::client_data says.
+/// Creates events that also report client data; see PairEventsOptions::client_data.
 WINNOW_C_API winnow_status winnow_pair_events_create_with_client_data(const winnow_memory* memory,
                                                                       winnow_pair_events** events);
 WINNOW_C_API void winnow_pair_events_destroy(winnow_pair_events* events);
@@ -62,7 +63,8 @@ WINNOW_C_API winnow_status winnow_pair_events_begun(const winnow_pair_events* ev
                                                     const winnow_key_pair** pairs, size_t* count);
 WINNOW_C_API winnow_status winnow_pair_events_ended(const winnow_pair_events* events,
                                                     const winnow_key_pair** pairs, size_t* count);
-/// Of the pairs that begun and ended give, in their order; none of events without client data.
+/// Return the client data of the pairs that `begun` and `ended` return, in the same order. Empty if
+/// the events were created without client data.
 WINNOW_C_API winnow_status winnow_pair_events_begun_data(const winnow_pair_events* events,
                                                          const winnow_client_data_pair** data,
                                                          size_t* count);
@@ -75,8 +77,8 @@ WINNOW_C_API winnow_status winnow_pair_events_clear(winnow_pair_events* events);
 WINNOW_C_API winnow_status winnow_pair_events_footprint(const winnow_pair_events* events,
                                                         winnow_footprint* footprint);
 
-/// An object that a ray, a cast or a nearest query found; where none was, the null key, 0 and
-/// infinity.
+/// Object found by a ray, a cast or a nearest query; the null key, 0 and infinity if none was
+/// found.
 typedef struct winnow_hit {
   winnow_key key;
   uint64_t data;
@@ -91,7 +93,7 @@ WINNOW_C_API winnow_status winnow_hit_buffer_hits(const winnow_hit_buffer* buffe
                                                   const winnow_hit** hits, size_t* count);
 WINNOW_C_API winnow_status winnow_hit_buffer_questions(const winnow_hit_buffer* buffer,
                                                        size_t* count);
-/// The hits of one question of a batch.
+/// Returns the hits of one query of a batch.
 WINNOW_C_API winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t question,
                                                 const winnow_hit** hits, size_t* count);
 WINNOW_C_API winnow_status winnow_hit_buffer_reserve(winnow_hit_buffer* buffer, size_t count);
@@ -103,7 +105,8 @@ typedef struct winnow_overlap_buffer winnow_overlap_buffer;
 WINNOW_C_API winnow_status winnow_overlap_buffer_create(const winnow_memory* memory,
                                                         winnow_overlap_buffer** buffer);
 WINNOW_C_API void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer);
-/// The first `inside` of them lie wholly in the region, the others cross its border.
+/// Returns the ids of the overlapping objects: first `inside` objects that lie wholly in the
+/// region, then those that cross its border.
 WINNOW_C_API winnow_status winnow_overlap_buffer_ids(const winnow_overlap_buffer* buffer,
                                                      const uint32_t** ids, size_t* count,
                                                      size_t* inside);
@@ -115,10 +118,10 @@ WINNOW_C_API winnow_status winnow_overlap_buffer_footprint(const winnow_overlap_
 
 // --- a partition ----------------------------------------------------------------------------
 
-/// What prunes the objects: zeros are linear_bvh.
+/// Data structure of a partition. A struct of zeros means linear_bvh.
 typedef struct winnow_structure_kind {
   int32_t structure;
-  float parameter;  ///< 0: as the structure has it by default; `loose` of the loose trees
+  float parameter;  ///< `loose` of the loose trees; 0 means the default of the structure
 } winnow_structure_kind;
 enum {
   WINNOW_LINEAR_BVH = 0,
@@ -132,7 +135,7 @@ enum {
   WINNOW_BOUNDS_N_SQUARED = 8,
   WINNOW_N_SQUARED = 9
 };
-/// "LinearBvh", ...; empty if it is none.
+/// Returns the name of a structure, such as "LinearBvh"; empty if it is invalid.
 WINNOW_C_API const char* winnow_structure_name(winnow_structure_kind structure);
 WINNOW_C_API winnow_status winnow_structure_named(const char* name,
                                                   winnow_structure_kind* structure);
@@ -146,15 +149,15 @@ enum {
   WINNOW_VOLUME_KDOP26 = 4
 };
 
-/// By how much stored volumes are larger than given, on every side.
+/// How much stored volumes are enlarged on every side (fat AABBs).
 typedef struct winnow_margin {
   float distance;
   float share;
 } winnow_margin;
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_partition_options {
-  size_t size;  ///< sizeof(winnow_partition_options), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_partition_options)
   const winnow_memory* memory;
   winnow_execution execution;
   winnow_volume volume;
@@ -177,11 +180,11 @@ WINNOW_C_API winnow_status winnow_partition_structure(const winnow_partition* pa
 WINNOW_C_API winnow_status winnow_partition_set_structure(winnow_partition* partition,
                                                           winnow_structure_kind structure);
 
-/// What the automatic choice holds, why, and what it knows of the scene.
+/// The structure that `automatic` has chosen, the reason, and the measured features of the scene.
 typedef struct winnow_structure_choice {
-  size_t size;  ///< sizeof(winnow_structure_choice), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_structure_choice)
   winnow_structure_kind structure;
-  const char* reason;  ///< in a few words; a constant
+  const char* reason;  ///< a few words; a constant string
   uint64_t changes;
   size_t objects;
   double room[3];
@@ -199,21 +202,21 @@ WINNOW_C_API winnow_status winnow_partition_volume(const winnow_partition* parti
 WINNOW_C_API winnow_status winnow_partition_margin(const winnow_partition* partition,
                                                    winnow_margin* margin);
 
-/// One object for each box. `data` is null (all zero) or a value for each, `keys` has room for a
-/// key of each.
+/// Inserts one object per box and writes its key to `keys`. `data` is null (all zero) or has one
+/// value per box.
 WINNOW_C_API winnow_status winnow_partition_insert(winnow_partition* partition,
                                                    const winnow_box_view* boxes,
                                                    const uint64_t* data, winnow_key* keys);
 
-/// Some entries of keys and boxes of which a caller keeps all: by number, or, where `words` is not
-/// null, by the bits of one word for each 64 entries.
+/// A subset of the entries of the caller's `keys` and `boxes`: a list of indices, or, if `words` is
+/// not null, a bit mask with 64 entries per word.
 typedef struct winnow_entries {
   const uint32_t* numbers;
   const uint64_t* words;
-  size_t count;  ///< of numbers or of words
+  size_t count;  ///< number of indices or of words
 } winnow_entries;
 
-/// New boxes, of those entries, or of all if `entries` is null.
+/// Gives new boxes to the listed entries, or to all if `entries` is null.
 WINNOW_C_API winnow_status winnow_partition_update(winnow_partition* partition,
                                                    const winnow_key* keys, size_t count,
                                                    const winnow_box_view* boxes,
@@ -226,7 +229,7 @@ WINNOW_C_API winnow_status winnow_partition_update_spheres(winnow_partition* par
                                                            const winnow_key* keys,
                                                            const winnow_sphere* spheres,
                                                            size_t count);
-/// Each k-DOP is k floats: the lower ends of its slabs, then the upper ones.
+/// Each k-DOP is k floats: the k/2 lower bounds of its slabs, then the k/2 upper bounds.
 WINNOW_C_API winnow_status winnow_partition_insert_kdops(winnow_partition* partition, uint32_t k,
                                                          const float* kdops, size_t count,
                                                          const uint64_t* data, winnow_key* keys);
@@ -242,7 +245,7 @@ WINNOW_C_API winnow_status winnow_partition_reserve(winnow_partition* partition,
 WINNOW_C_API winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
                                                           winnow_pair_buffer* out, size_t pairs,
                                                           winnow_pages pages);
-/// `alone`: for questions for events without a buffer.
+/// Set `alone` if the events are queried without a pair buffer: it reserves the pairs too.
 WINNOW_C_API winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
                                                            winnow_pair_events* out, size_t pairs,
                                                            bool alone, winnow_pages pages);
@@ -252,13 +255,13 @@ WINNOW_C_API winnow_status winnow_partition_contains(const winnow_partition* par
                                                      winnow_key key, bool* contains);
 WINNOW_C_API winnow_status winnow_partition_bounds(const winnow_partition* partition,
                                                    winnow_key key, winnow_aabb* box);
-/// Of many objects: one box for each key. A stale key leaves all of them alone.
+/// Writes one box per key. If any key is stale, writes nothing.
 WINNOW_C_API winnow_status winnow_partition_bounds_of(const winnow_partition* partition,
                                                       const winnow_key* keys, winnow_aabb* boxes,
                                                       size_t count);
 WINNOW_C_API winnow_status winnow_partition_client_data(const winnow_partition* partition,
                                                         winnow_key key, uint64_t* data);
-/// The null key for an id that no object has.
+/// Returns the null key for an id that no object has.
 WINNOW_C_API winnow_status winnow_partition_key_of(const winnow_partition* partition, uint32_t id,
                                                    winnow_key* key);
 WINNOW_C_API winnow_status winnow_partition_set_filter(winnow_partition* partition,
@@ -270,19 +273,20 @@ WINNOW_C_API winnow_status winnow_partition_filter(const winnow_partition* parti
 
 WINNOW_C_API winnow_status winnow_partition_refresh(const winnow_partition* partition);
 
-/// Null, and zeros behind `size`, ask for all pairs in the fast order, incrementally.
+/// A null pointer, or zero members after `size`, mean all pairs in the fast order, found
+/// incrementally.
 typedef struct winnow_pair_options {
-  size_t size;  ///< sizeof(winnow_pair_options), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_pair_options)
   winnow_order order;
-  uint8_t anew;  ///< 0 or 1: every pair is asked for anew, not by what moved
-  /// A last word on each pair, or null; see winnow_filter.
+  uint8_t anew;  ///< 0 or 1: finds all pairs again instead of updating from the objects that moved
+  /// Null, or a callback that accepts or rejects each pair; see winnow_filter for its rules.
   bool (*accept)(void* context, uint32_t first, uint32_t second);
   void* context;
 } winnow_pair_options;
 #define WINNOW_PAIR_OPTIONS \
   { sizeof(winnow_pair_options), WINNOW_ORDER_FAST, 0, NULL, NULL }
 
-/// All pairs in `out`, what has changed in `events`: one of them may be null.
+/// Writes all pairs to `out` and the changes to `events`. Either may be null.
 WINNOW_C_API winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
                                                        winnow_pair_buffer* out,
                                                        winnow_pair_events* events,
@@ -292,11 +296,11 @@ WINNOW_C_API winnow_status winnow_partition_pairs_with(const winnow_partition* p
                                                        winnow_pair_buffer* out,
                                                        const winnow_pair_options* options);
 
-/// What moves by t * direction for t in [min_t, max_t].
+/// A ray or a volume that moves by t * direction for t in [min_t, max_t].
 typedef struct winnow_cast {
   int32_t kind;
   union {
-    float origin[3];  ///< of a ray
+    float origin[3];  ///< used by WINNOW_CAST_RAY
     winnow_aabb box;
     winnow_sphere sphere;
     winnow_capsule capsule;
@@ -306,11 +310,11 @@ typedef struct winnow_cast {
   float max_t;
 } winnow_cast;
 enum { WINNOW_CAST_RAY = 0, WINNOW_CAST_BOX = 1, WINNOW_CAST_SPHERE = 2, WINNOW_CAST_CAPSULE = 3 };
-/// A ray that has no end, of which origin and direction are still to be said.
+/// A ray of infinite length. Set its origin and direction.
 #define WINNOW_CAST \
   { WINNOW_CAST_RAY, {{0.0F, 0.0F, 0.0F}}, {0.0F, 0.0F, 0.0F}, 0.0F, INFINITY }
 
-/// The null key where there is none.
+/// Writes a hit with the null key if there is none.
 WINNOW_C_API winnow_status winnow_partition_closest(const winnow_partition* partition,
                                                     const winnow_cast* cast,
                                                     const winnow_filter* filter, winnow_hit* hit);
@@ -322,7 +326,7 @@ WINNOW_C_API winnow_status winnow_partition_all(const winnow_partition* partitio
                                                 const winnow_filter* filter,
                                                 winnow_hit_buffer* hits);
 
-/// Columns of rays; `min_t` and `max_t` are null for 0 and infinity.
+/// Columns of rays. Null `min_t` and `max_t` mean 0 and infinity.
 typedef struct winnow_ray_batch {
   const float* origin[3];
   const float* direction[3];
@@ -332,7 +336,7 @@ typedef struct winnow_ray_batch {
   size_t stride;
 } winnow_ray_batch;
 
-/// Columns to be written to, each null if not wanted.
+/// Columns to write; each may be null.
 typedef struct winnow_hit_columns {
   winnow_key* key;
   uint64_t* data;
@@ -352,7 +356,7 @@ WINNOW_C_API winnow_status winnow_partition_all_rays(const winnow_partition* par
                                                      const winnow_filter* filter,
                                                      winnow_hit_buffer* hits);
 
-/// A closed part of space.
+/// A closed region of space.
 typedef struct winnow_region {
   int32_t kind;
   union {
@@ -365,7 +369,7 @@ typedef struct winnow_region {
     struct {
       const winnow_plane* planes;
       size_t count;
-    } planes;  ///< the points inside all of them
+    } planes;  ///< the points inside all planes
   } of;
 } winnow_region;
 enum {
@@ -382,7 +386,7 @@ WINNOW_C_API winnow_status winnow_partition_overlap(const winnow_partition* part
                                                     const winnow_region* region,
                                                     const winnow_filter* filter, winnow_order order,
                                                     winnow_overlap_buffer* objects);
-/// All pairs (number of the box, object).
+/// Finds all overlapping pairs (index of the box, object).
 WINNOW_C_API winnow_status winnow_partition_overlap_boxes(const winnow_partition* partition,
                                                           const winnow_box_view* boxes,
                                                           const winnow_filter* filter,
@@ -401,9 +405,9 @@ WINNOW_C_API winnow_status winnow_partition_debug_draw(const winnow_partition* p
 WINNOW_C_API winnow_status winnow_partition_footprint(const winnow_partition* partition,
                                                       winnow_footprint* footprint);
 
-/// Counters, never timings.
+/// Counters, not timings.
 typedef struct winnow_statistics {
-  size_t size;  ///< sizeof(winnow_statistics), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_statistics)
   size_t objects;
   size_t regular;
   size_t irregular;

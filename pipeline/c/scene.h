@@ -1,7 +1,7 @@
 #pragma once
 
-/// Bodies with shapes and poses, and what touches what. What each call does stands at the same name
-/// of <winnow/pipeline/scene.h> and contacts.h.
+/// Bodies with shapes and poses, and their contacts. <winnow/pipeline/scene.h> and contacts.h
+/// document each call under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/narrow_phase.h>
@@ -13,13 +13,13 @@
 extern "C" {
 #endif
 
-/// Which set of a scene a body is in.
+/// The set of a scene that a body belongs to.
 enum { WINNOW_MOTION_FIXED = 0, WINNOW_MOTION_DYNAMIC = 1, WINNOW_MOTION_SLEEPING = 2 };
 #define WINNOW_MOTIONS 3
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_scene_options {
-  size_t size;  ///< sizeof(winnow_scene_options), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_scene_options)
   const winnow_memory* memory;
   winnow_execution execution;
   winnow_structure_kind structures[WINNOW_MOTIONS];
@@ -28,7 +28,7 @@ typedef struct winnow_scene_options {
   uint8_t contact_reduction;  ///< 0 or 1
   double carry_over;
   size_t build_budget;
-  /// What holds meshes, compounds and height fields, or null. Must outlive the scene.
+  /// Pool of the meshes, compounds and height fields, or null. Must outlive the scene.
   const winnow_composite_pool* composites;
 } winnow_scene_options;
 #define WINNOW_SCENE_OPTIONS                                                                    \
@@ -39,19 +39,20 @@ typedef struct winnow_scene_options {
   }
 
 typedef struct winnow_scene winnow_scene;
-/// `shapes` must outlive it.
+/// `shapes` must outlive the scene.
 WINNOW_C_API winnow_status winnow_scene_create(const winnow_shape_pool* shapes,
                                                const winnow_scene_options* options,
                                                winnow_scene** scene);
 WINNOW_C_API void winnow_scene_destroy(winnow_scene* scene);
 
-/// Where contacts of a body begin, and where it rests: lengths. `contact` >= 0 and >= `rest`.
+/// Distances from the surface of a body at which its contacts begin (`contact`) and at which it
+/// rests (`rest`). `contact` >= 0 and >= `rest`.
 typedef struct winnow_contact_offsets {
   double contact;
   double rest;
 } winnow_contact_offsets;
 
-/// A body as it is added.
+/// A body to add.
 typedef struct winnow_body_definition {
   winnow_shape_id shape;
   winnow_pose pose;
@@ -82,7 +83,7 @@ WINNOW_C_API winnow_status winnow_scene_set_shape(winnow_scene* scene, winnow_ke
 WINNOW_C_API winnow_status winnow_scene_set_filter(winnow_scene* scene, winnow_key key,
                                                    const winnow_object_filter* filter);
 
-/// Pairs of bodies that never meet, or meet again.
+/// Makes pairs of bodies ignore each other, or collide again.
 WINNOW_C_API winnow_status winnow_scene_set_ignored(winnow_scene* scene,
                                                     const winnow_key_pair* pairs, size_t count,
                                                     bool ignored);
@@ -96,15 +97,15 @@ WINNOW_C_API winnow_status winnow_scene_contains(const winnow_scene* scene, winn
                                                  bool* contains);
 WINNOW_C_API winnow_status winnow_scene_body(const winnow_scene* scene, winnow_key key,
                                              winnow_body_definition* body);
-/// The null key for an id that no body has.
+/// Returns the null key for an id that no body has.
 WINNOW_C_API winnow_status winnow_scene_key_of(const winnow_scene* scene, uint32_t id,
                                                winnow_key* key);
 
 WINNOW_C_API winnow_status winnow_scene_refresh(winnow_scene* scene);
-/// A point of the world from which the boxes of the partitions are measured.
+/// Returns the point of the world to which the boxes of the partitions are relative.
 WINNOW_C_API winnow_status winnow_scene_origin(const winnow_scene* scene, double origin[3]);
-/// The partition of a set, to be asked, not changed; null while it has none. Valid as long as the
-/// scene. Its client data are bodies' ids.
+/// Returns the read-only partition of a set, valid as long as the scene; null while the set has
+/// none. Its client data are body ids.
 WINNOW_C_API winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t motion,
                                                   const winnow_partition** partition);
 /// `options` may be null.
@@ -114,7 +115,7 @@ WINNOW_C_API winnow_status winnow_scene_debug_draw(const winnow_scene* scene,
 
 // --- contacts -------------------------------------------------------------------------------
 
-/// What `winnow_scene_collide` found. Remembers it, so that events can be told.
+/// Results of `winnow_scene_collide`. They also keep the previous results, to report events.
 typedef struct winnow_contacts winnow_contacts;
 WINNOW_C_API winnow_status winnow_contacts_create(const winnow_memory* memory,
                                                   winnow_contacts** contacts);
@@ -123,7 +124,7 @@ WINNOW_C_API winnow_status winnow_contacts_clear(winnow_contacts* contacts);
 WINNOW_C_API winnow_status winnow_contacts_footprint(const winnow_contacts* contacts,
                                                      winnow_footprint* footprint);
 
-/// What became of a pair since the contacts were last filled.
+/// State of a pair relative to the previous call that filled the contacts.
 enum { WINNOW_EVENT_BEGUN = 0, WINNOW_EVENT_PERSISTED = 1 };
 
 typedef struct winnow_ended_contact {
@@ -135,12 +136,12 @@ typedef struct winnow_ended_contact {
 
 #define WINNOW_WHOLE_SHAPE 0xFFFFFFFFU
 
-/// Contacts where they lie, valid until they are filled again, cleared or destroyed. Columns that
-/// the level has not are null, and so may be those that are empty.
+/// Contacts as columns, not copied, valid until the contacts are filled again, cleared or
+/// destroyed. A column that its level does not have is null. An empty column may be null.
 typedef struct winnow_contact_columns {
-  size_t size;  ///< sizeof(winnow_contact_columns), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_contact_columns)
   winnow_contact_level level;
-  /// Pairs of bodies, by the kinds of their shapes.
+  /// Pairs of bodies, grouped by the kinds of their shapes.
   size_t pairs;
   const winnow_key* a;
   const winnow_key* b;
@@ -151,9 +152,9 @@ typedef struct winnow_contact_columns {
   size_t run_count;
   const winnow_ended_contact* ended;
   size_t ended_count;
-  /// How many pairs kept the manifolds they had.
+  /// Number of pairs that kept their previous manifolds.
   size_t carried;
-  /// Manifolds of pair i: [manifold_first[i], manifold_first[i + 1]).
+  /// The manifolds of pair i are [manifold_first[i], manifold_first[i + 1]).
   const uint32_t* manifold_first;
   size_t manifolds;
   const uint32_t* part_a;
@@ -161,9 +162,9 @@ typedef struct winnow_contact_columns {
   const double* distance;
   const double* error_bound;
   const double* normal[3];
-  const double* point[3];  ///< level distance
-  /// Level manifold: points of manifold m are [point_first[m], point_first[m + 1]), relative to the
-  /// position of body a.
+  const double* point[3];  ///< only at level distance
+  /// Level manifold: the points of manifold m are [point_first[m], point_first[m + 1]), relative to
+  /// the position of body a.
   const uint32_t* point_first;
   size_t points;
   const float* position[3];
@@ -178,9 +179,9 @@ WINNOW_C_API winnow_status winnow_scene_collide(winnow_scene* scene, winnow_cont
 
 // --- room, bytes and counters ---------------------------------------------------------------
 
-/// How much a scene is to have room for.
+/// Numbers of bodies, pairs and contacts that memory is reserved for.
 typedef struct winnow_scene_room {
-  size_t size;  ///< sizeof(winnow_scene_room), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_scene_room)
   size_t bodies[WINNOW_MOTIONS];
   size_t pairs;
   winnow_contact_level level;
@@ -197,9 +198,9 @@ WINNOW_C_API winnow_status winnow_scene_reserve_contacts(const winnow_scene* sce
                                                          const winnow_scene_room* room,
                                                          winnow_pages pages);
 
-/// Bytes by part. The sum of `reserved` equals what is outstanding at the memory of the scene.
+/// Bytes by part. The sum of `reserved` equals the bytes allocated from the scene's memory.
 typedef struct winnow_scene_bytes {
-  size_t size;  ///< sizeof(winnow_scene_bytes), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_scene_bytes)
   winnow_bytes bodies;
   winnow_bytes partitions[WINNOW_MOTIONS];
   winnow_bytes pairs;
@@ -209,9 +210,9 @@ typedef struct winnow_scene_bytes {
 WINNOW_C_API winnow_status winnow_scene_footprint(const winnow_scene* scene,
                                                   winnow_scene_bytes* footprint);
 
-/// Counters of the last collide, never timings.
+/// Counters of the last collide, not timings.
 typedef struct winnow_scene_counts {
-  size_t size;  ///< sizeof(winnow_scene_counts), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_scene_counts)
   uint64_t boxes_updated;
   uint64_t body_pairs;
   uint64_t carried;
@@ -222,7 +223,7 @@ typedef struct winnow_scene_counts {
   uint64_t part_pairs;  ///< narrow phase, pairs of parts
   uint64_t part_recomputed;
   uint64_t part_exact;
-  uint64_t balls_apart;  ///< of body_pairs, not asked about since balls around them are apart
+  uint64_t balls_apart;  ///< body_pairs skipped because their bounding spheres are disjoint
 } winnow_scene_counts;
 WINNOW_C_API winnow_status winnow_scene_statistics(const winnow_scene* scene,
                                                    winnow_scene_counts* statistics);

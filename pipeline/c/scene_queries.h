@@ -1,7 +1,7 @@
 #pragma once
 
-/// Questions to the exact shapes of a scene. What each does, and when the scene wants a refresh
-/// before it, stands at the same name of <winnow/pipeline/scene_queries.h>.
+/// Queries against the exact shapes of a scene. <winnow/pipeline/scene_queries.h> documents each
+/// call under the same name, and when the scene must be refreshed before it.
 
 #include <winnow/c/core.h>
 #include <winnow/c/scene.h>
@@ -12,15 +12,15 @@
 extern "C" {
 #endif
 
-/// One for each thread: it keeps scratch memory, and what it answers by pointer is valid until its
-/// next question. The scene must outlive it.
+/// Holds scratch memory: use one per thread. Returned arrays are valid until its next query. The
+/// scene must outlive it.
 typedef struct winnow_scene_queries winnow_scene_queries;
 WINNOW_C_API winnow_status winnow_scene_queries_create(const winnow_scene* scene,
                                                        const winnow_memory* memory,
                                                        winnow_scene_queries** queries);
 WINNOW_C_API void winnow_scene_queries_destroy(winnow_scene_queries* queries);
 
-/// Where a ray or a moving shape meets a body; the null key if it meets none.
+/// Hit of a ray or a moving shape with a body; the null key if there is none.
 typedef struct winnow_scene_hit {
   winnow_key key;
   uint64_t data;
@@ -43,7 +43,7 @@ WINNOW_C_API winnow_status winnow_scene_queries_all(winnow_scene_queries* querie
                                                     const winnow_filter* filter,
                                                     const winnow_scene_hit** hits, size_t* count);
 
-/// Columns of rays; `max_t` is null for infinity.
+/// Columns of rays. A null `max_t` means infinity.
 typedef struct winnow_shape_ray_batch {
   const void* origin[3];
   const void* direction[3];
@@ -53,7 +53,7 @@ typedef struct winnow_shape_ray_batch {
   winnow_number number;
 } winnow_shape_ray_batch;
 
-/// Columns to be written to, each null if not wanted.
+/// Columns to write; each may be null.
 typedef struct winnow_scene_hit_columns {
   winnow_key* key;
   uint64_t* data;
@@ -71,14 +71,14 @@ WINNOW_C_API winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* q
                                                          const winnow_shape_ray_batch* rays,
                                                          const winnow_filter* filter,
                                                          const winnow_scene_hit_columns* hits);
-/// The hits of ray i are hits[first[i]] to hits[first[i + 1]], that excluded.
+/// The hits of ray i are hits[first[i]] up to, but not including, hits[first[i + 1]].
 WINNOW_C_API winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
                                                          const winnow_shape_ray_batch* rays,
                                                          const winnow_filter* filter,
                                                          const winnow_scene_hit** hits,
                                                          const size_t** first);
 
-/// A shape that moves along a line without turning: convex or composite, no half-space.
+/// A shape that moves along a line without turning. Convex or composite, but not a half-space.
 typedef struct winnow_shape_cast {
   winnow_shape_id shape;
   winnow_pose pose;
@@ -97,8 +97,8 @@ WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(winnow_scene_querie
 WINNOW_C_API winnow_status winnow_scene_queries_all_cast(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count);
-/// The same of a shape that does not meet what it touches at the start, unless it gets deeper into
-/// it: if it slides along it or leaves it, the hit is with what it runs into later.
+/// As above, but a body that the shape touches at the start is hit only if the shape gets deeper
+/// into it. If the shape slides along it or leaves it, the hit is a later one.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_cast_from_touch(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, winnow_scene_hit* hit);
@@ -116,14 +116,14 @@ WINNOW_C_API winnow_status winnow_scene_queries_overlap(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
     const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
 
-/// Which pairs of bodies a question about two bodies or about sets of them takes; see PairRules.
+/// Which pairs of bodies a query of two bodies or of two sets considers; see PairRules.
 typedef int32_t winnow_pair_rules;
 enum {
-  WINNOW_PAIR_RULES_SCENE = 0,  ///< those of which winnow_scene_collide would make a pair
+  WINNOW_PAIR_RULES_SCENE = 0,  ///< pairs that winnow_scene_collide would form
   WINNOW_PAIR_RULES_NONE = 1    ///< any two bodies
 };
 
-/// Two points, and how far they are apart.
+/// The closest (or deepest) points of two bodies, and their distance.
 typedef struct winnow_scene_distance {
   winnow_key key;
   uint64_t data;
@@ -135,7 +135,7 @@ typedef struct winnow_scene_distance {
   double point_a[3];
   double point_b[3];
 } winnow_scene_distance;
-/// `limit` is INFINITY for none.
+/// Set `limit` to INFINITY for no limit.
 WINNOW_C_API winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries,
                                                          winnow_key a, winnow_key b, double limit,
                                                          winnow_pair_rules rules,
@@ -146,7 +146,7 @@ WINNOW_C_API winnow_status winnow_scene_queries_nearest(winnow_scene_queries* qu
                                                         const winnow_scene_distance** bodies,
                                                         size_t* found);
 
-/// The closest pair of two sets of bodies; the null key in `a` if there is none.
+/// The closest pair of two sets of bodies. `a` is the null key if there is none.
 typedef struct winnow_set_distance {
   winnow_key a;
   uint64_t data_a;
@@ -155,21 +155,21 @@ typedef struct winnow_set_distance {
 WINNOW_C_API winnow_status winnow_scene_queries_least_distance(
     winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
     size_t count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer);
-/// At most `most` pairs (body of a, body of b).
+/// Finds at most `most` pairs (body of a, body of b).
 WINNOW_C_API winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries,
                                                          const winnow_key* a, size_t count_a,
                                                          const winnow_key* b, size_t count_b,
                                                          size_t most, winnow_pair_rules rules,
                                                          const winnow_key_pair** pairs,
                                                          size_t* count);
-/// The first pair (body of a, body of b) that touches or is no farther apart than `margin`; two
-/// null keys if there is none.
+/// Finds the first pair (body of a, body of b) whose distance is at most `margin`; two null keys if
+/// there is none.
 WINNOW_C_API winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries,
                                                             const winnow_key* a, size_t count_a,
                                                             const winnow_key* b, size_t count_b,
                                                             double margin, winnow_pair_rules rules,
                                                             winnow_key_pair* pair);
-/// Asks about the whole scene.
+/// As above, for all bodies of the scene.
 WINNOW_C_API winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
                                                                      double margin,
                                                                      winnow_pair_rules rules,

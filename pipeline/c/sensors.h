@@ -1,7 +1,7 @@
 #pragma once
 
-/// Volumes that tell which bodies of a scene are in them. What each call does stands at the same
-/// name of <winnow/pipeline/sensors.h>.
+/// Sensors: volumes that report which bodies of a scene overlap them. <winnow/pipeline/sensors.h>
+/// documents each call under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/scene.h>
@@ -11,12 +11,12 @@
 extern "C" {
 #endif
 
-/// A sensor as it is added.
+/// A sensor to add.
 typedef struct winnow_sensor_definition {
   winnow_shape_id shape;
   winnow_pose pose;
   winnow_object_filter filter;
-  winnow_key carrier;  ///< a body that it does not sense
+  winnow_key carrier;  ///< a body that the sensor ignores
   uint64_t data;
 } winnow_sensor_definition;
 #define WINNOW_SENSOR_DEFINITION                                                     \
@@ -34,7 +34,7 @@ typedef struct winnow_sensed_body {
   uint8_t event;  ///< WINNOW_EVENT_BEGUN or WINNOW_EVENT_PERSISTED
 } winnow_sensed_body;
 
-/// A body that was sensed the last time and is not now.
+/// A body that was sensed by the previous `sense` and is not sensed now.
 typedef struct winnow_left_sensor {
   winnow_key sensor;
   winnow_key body;
@@ -43,7 +43,7 @@ typedef struct winnow_left_sensor {
 } winnow_left_sensor;
 
 typedef struct winnow_sensors winnow_sensors;
-/// `scene` must outlive them.
+/// `scene` must outlive the sensors.
 WINNOW_C_API winnow_status winnow_sensors_create(winnow_scene* scene, const winnow_memory* memory,
                                                  winnow_sensors** sensors);
 WINNOW_C_API void winnow_sensors_destroy(winnow_sensors* sensors);
@@ -63,7 +63,7 @@ WINNOW_C_API winnow_status winnow_sensors_contains(const winnow_sensors* sensors
                                                    bool* contains);
 
 WINNOW_C_API winnow_status winnow_sensors_sense(winnow_sensors* sensors);
-/// Where they lie, until the next `sense`.
+/// Return arrays that are not copied and are valid until the next `sense`.
 WINNOW_C_API winnow_status winnow_sensors_sensed(const winnow_sensors* sensors,
                                                  const winnow_sensed_body** bodies, size_t* count);
 WINNOW_C_API winnow_status winnow_sensors_left(const winnow_sensors* sensors,

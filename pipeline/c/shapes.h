@@ -1,8 +1,7 @@
 #pragma once
 
-/// Convex shapes and shapes made of many. What each call does stands at the same name of
-/// <winnow/pipeline/shapes.h>, shape_pool.h, composite_pool.h, triangle_mesh.h, height_field.h and
-/// shape_rays.h.
+/// Convex shapes and composite shapes. <winnow/pipeline/shapes.h>, shape_pool.h, composite_pool.h,
+/// triangle_mesh.h, height_field.h and shape_rays.h document each call under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/volumes.h>
@@ -13,7 +12,8 @@
 extern "C" {
 #endif
 
-/// A shape of either pool: its kind (the upper four bits) and its place among those of the kind.
+/// Id of a shape of either pool: its kind (upper four bits) and its index among shapes of that
+/// kind.
 typedef uint32_t winnow_shape_id;
 #define WINNOW_NO_SHAPE 0xFFFFFFFFU
 
@@ -34,14 +34,14 @@ enum {
   WINNOW_SHAPE_TAPERED_CAPSULE = 12,
   WINNOW_SHAPE_SUPPORT = 13
 };
-/// "sphere", ...; "none" if it is none.
+/// Returns the name of a kind, such as "sphere"; "none" if it is invalid.
 WINNOW_C_API const char* winnow_shape_kind_name(winnow_shape_kind kind);
 
-/// `direction` and `point` are three numbers.
+/// Support function of a user shape. `direction` and `point` are arrays of three numbers.
 typedef void (*winnow_support_function)(const void* context, const double* direction,
                                         double* point);
 
-/// A convex shape but a hull.
+/// A convex shape other than a hull.
 typedef struct winnow_shape {
   winnow_shape_kind kind;
   union {
@@ -102,7 +102,8 @@ WINNOW_C_API winnow_status winnow_shape_pool_add_hull(winnow_shape_pool* pool,
                                                       const winnow_point_view* points,
                                                       double rounding, winnow_shape_id* id);
 
-/// Face i is the next `sizes[i]` of `indices` into the points, counter-clockwise from outside.
+/// Face i consists of the next `sizes[i]` entries of `indices`: indices into the points,
+/// counter-clockwise seen from outside.
 typedef struct winnow_hull_faces {
   const uint32_t* indices;
   size_t index_count;
@@ -118,24 +119,26 @@ WINNOW_C_API winnow_status winnow_shape_pool_contains(const winnow_shape_pool* p
                                                       winnow_shape_id id, bool* contains);
 WINNOW_C_API winnow_status winnow_shape_pool_size(const winnow_shape_pool* pool,
                                                   winnow_shape_kind kind, size_t* size);
-/// WINNOW_INVALID_KEY or WINNOW_INVALID_POSE where C++ asks for good ones.
+/// Returns WINNOW_INVALID_KEY or WINNOW_INVALID_POSE where the C++ function requires valid
+/// arguments.
 WINNOW_C_API winnow_status winnow_shape_pool_bounds(const winnow_shape_pool* pool,
                                                     winnow_shape_id id, const winnow_pose* pose,
                                                     winnow_aabb* box);
-/// The shape as it was added (a half-space normalised). WINNOW_INVALID_KEY for a hull.
+/// Returns the shape as it was added; the normal of a half-space is normalised. WINNOW_INVALID_KEY
+/// for a hull.
 WINNOW_C_API winnow_status winnow_shape_pool_shape(const winnow_shape_pool* pool,
                                                    winnow_shape_id id, winnow_shape* shape);
 
 typedef struct winnow_hull_face {
   double normal[3];
   double offset;
-  uint32_t first;  ///< its vertices are loop[first] to loop[first + count - 1]
+  uint32_t first;  ///< the vertices are loop[first] to loop[first + count - 1]
   uint32_t count;
 } winnow_hull_face;
 
-/// A hull as the pool holds it; valid until the pool is changed.
+/// A hull as the pool stores it; valid until the pool is changed.
 typedef struct winnow_hull {
-  size_t size;  ///< sizeof(winnow_hull), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_hull)
   size_t vertices;
   size_t faces;
   uint32_t dimension;
@@ -151,7 +154,7 @@ WINNOW_C_API winnow_status winnow_shape_pool_hull(const winnow_shape_pool* pool,
 WINNOW_C_API winnow_status winnow_shape_pool_footprint(const winnow_shape_pool* pool,
                                                        winnow_footprint* footprint);
 
-/// origin + t * direction, 0 <= t <= max_t.
+/// The points origin + t * direction, 0 <= t <= max_t.
 typedef struct winnow_shape_ray {
   double origin[3];
   double direction[3];
@@ -172,16 +175,16 @@ WINNOW_C_API winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow
 // --- shapes made of many --------------------------------------------------------------------
 
 typedef struct winnow_composite_pool winnow_composite_pool;
-/// `shapes` must outlive it.
+/// `shapes` must outlive the pool.
 WINNOW_C_API winnow_status winnow_composite_pool_create(const winnow_shape_pool* shapes,
                                                         const winnow_memory* memory,
                                                         winnow_composite_pool** pool);
 WINNOW_C_API void winnow_composite_pool_destroy(winnow_composite_pool* pool);
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_mesh_options {
-  size_t size;  ///< sizeof(winnow_mesh_options), of the caller
-  /// 0: 0.02. For edges that bend by anything at all: the smallest double above 0.
+  size_t size;  ///< set by the caller to sizeof(winnow_mesh_options)
+  /// 0 means 0.02. To make every edge that is not flat active, use the smallest double above 0.
   double active_edge_angle;
 } winnow_mesh_options;
 #define WINNOW_MESH_OPTIONS \
@@ -203,13 +206,13 @@ WINNOW_C_API winnow_status winnow_composite_pool_refit_mesh(winnow_composite_poo
                                                             const winnow_point_view* vertices,
                                                             const winnow_execution* execution);
 
-/// Sample (column, row) is heights[row * row_stride + column]; NaN is a hole.
+/// Sample (column, row) is heights[row * row_stride + column]. NaN is a hole.
 typedef struct winnow_height_samples {
   const float* heights;
-  size_t count;  ///< of heights
+  size_t count;  ///< number of heights
   uint32_t columns;
   uint32_t rows;
-  uint32_t row_stride;  ///< 0: columns
+  uint32_t row_stride;  ///< 0 means columns
   double spacing[2];
 } winnow_height_samples;
 #define WINNOW_HEIGHT_SAMPLES \
@@ -224,7 +227,7 @@ WINNOW_C_API winnow_status winnow_composite_pool_update_height_field(
     winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row,
     const winnow_height_samples* samples);
 
-/// A convex shape, a mesh or a height field, and where it stands in its compound.
+/// A convex shape, a mesh or a height field, with its pose in the frame of the compound.
 typedef struct winnow_compound_child {
   winnow_shape_id shape;
   winnow_pose pose;
@@ -251,23 +254,25 @@ WINNOW_C_API winnow_status winnow_composite_pool_bounds(const winnow_composite_p
                                                         winnow_aabb* box);
 WINNOW_C_API winnow_status winnow_composite_pool_radius(const winnow_composite_pool* pool,
                                                         winnow_shape_id id, double* radius);
-/// Triangles of a mesh or a height field; of a compound, child by child, one for each convex child
-/// and all triangles of a surface: what parts are numbered by.
+/// Returns the number of parts; parts are numbered from 0. A part is a triangle of a mesh or height
+/// field. A compound numbers them child by child: one part per convex child, one per triangle of a
+/// mesh or height field.
 WINNOW_C_API winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool,
                                                        winnow_shape_id id, size_t* parts);
-/// What part of a compound that number is: a child, and of a surface its triangle, else
-/// WINNOW_WHOLE_SHAPE. WINNOW_INVALID_KEY for a compound or part that is not there.
+/// Returns which child a part of a compound belongs to, and the triangle of that child,
+/// WINNOW_WHOLE_SHAPE if the child is convex. WINNOW_INVALID_KEY if the compound or the part does
+/// not exist.
 WINNOW_C_API winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
                                                       winnow_shape_id compound, uint32_t part,
                                                       uint32_t* child, uint32_t* child_part);
-/// Gives a mesh an inside, which distances and overlaps of scene queries then ask about, or takes
-/// it away again. WINNOW_INVALID_SHAPE for one that is not closed, or not wound counter-clockwise
-/// seen from outside.
+/// Makes a mesh solid, or a surface again. Distances and overlaps of scene queries treat the inside
+/// of a solid as part of it. WINNOW_INVALID_SHAPE if the mesh is not closed, or its triangles are
+/// not counter-clockwise seen from outside.
 WINNOW_C_API winnow_status winnow_composite_pool_set_solid(winnow_composite_pool* pool,
                                                            winnow_shape_id mesh, bool solid);
 WINNOW_C_API winnow_status winnow_composite_pool_is_solid(const winnow_composite_pool* pool,
                                                           winnow_shape_id mesh, bool* solid);
-/// Of a compound; valid until the pool is changed.
+/// Returns the children of a compound; valid until the pool is changed.
 WINNOW_C_API winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool,
                                                           winnow_shape_id id,
                                                           const winnow_compound_child** children,

@@ -1,8 +1,7 @@
 #pragma once
 
-/// What is saved as bytes and loaded again. What each call does stands at `save`, `load`,
-/// `save_contacts` and `load_contacts` of the classes of C++: pools are loaded before scenes,
-/// scenes before their contacts.
+/// Saving to bytes and loading again. `save`, `load`, `save_contacts` and `load_contacts` of the
+/// C++ classes document each call. Load pools before scenes, and scenes before their contacts.
 
 #include <winnow/c/core.h>
 #include <winnow/c/partition.h>
@@ -13,16 +12,16 @@
 extern "C" {
 #endif
 
-/// Bytes that something was saved as.
+/// Buffer of saved bytes.
 typedef struct winnow_snapshot winnow_snapshot;
 WINNOW_C_API winnow_status winnow_snapshot_create(const winnow_memory* memory,
                                                   winnow_snapshot** snapshot);
 WINNOW_C_API void winnow_snapshot_destroy(winnow_snapshot* snapshot);
-/// Where they lie, until something else is saved there.
+/// Returns the bytes, not copied, valid until the buffer is saved to again.
 WINNOW_C_API winnow_status winnow_snapshot_bytes(const winnow_snapshot* snapshot,
                                                  const uint8_t** bytes, size_t* count);
 
-/// Each takes the place of what was saved there before.
+/// Each `save` replaces the content of the snapshot.
 WINNOW_C_API winnow_status winnow_partition_save(const winnow_partition* partition,
                                                  winnow_snapshot* snapshot);
 WINNOW_C_API winnow_status winnow_partition_load(winnow_partition* partition, const uint8_t* bytes,

@@ -1,7 +1,7 @@
 #pragma once
 
-/// When shapes that move and turn first meet. What each call does stands at the same name of
-/// <winnow/pipeline/time_of_impact.h> and rigid_motion.h.
+/// Times of impact of shapes that move and turn. <winnow/pipeline/time_of_impact.h> and
+/// rigid_motion.h document each call under the same name.
 
 #include <winnow/c/core.h>
 #include <winnow/c/narrow_phase.h>
@@ -12,13 +12,13 @@
 extern "C" {
 #endif
 
-/// A motion while time runs from 0 to 1.
+/// A motion over time 0 to 1.
 typedef struct winnow_rigid_motion {
   winnow_pose start;
   double travel[3];
-  double turn[3];  ///< axis times angle in radians, in the axes of the world
+  double turn[3];  ///< rotation axis times angle in radians, in world axes
 } winnow_rigid_motion;
-/// WINNOW_INVALID_POSE, here and below, for what is no valid motion.
+/// WINNOW_INVALID_POSE, here and below, for an invalid motion.
 WINNOW_C_API winnow_status winnow_rigid_motion_between(const winnow_pose* start,
                                                        const winnow_pose* end,
                                                        winnow_rigid_motion* motion);
@@ -38,11 +38,11 @@ typedef struct winnow_moving_bodies {
   size_t count;
 } winnow_moving_bodies;
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_impact_options {
-  size_t size;       ///< sizeof(winnow_impact_options), of the caller
-  double tolerance;  ///< 0: 1e-6
-  /// What holds meshes, height fields and compounds, or null.
+  size_t size;       ///< set by the caller to sizeof(winnow_impact_options)
+  double tolerance;  ///< 0 means 1e-6
+  /// Pool of the meshes, height fields and compounds, or null.
   const winnow_composite_pool* composites;
   winnow_execution execution;
 } winnow_impact_options;
@@ -60,14 +60,14 @@ WINNOW_C_API winnow_status winnow_impact_result_create(const winnow_memory* memo
                                                        winnow_impact_result** result);
 WINNOW_C_API void winnow_impact_result_destroy(winnow_impact_result* result);
 
-/// Answers where they lie, one for each pair in the order given, valid until the result is used
-/// again or destroyed. Columns that are empty are null.
+/// Results as columns, not copied: one entry per pair, in the order of the pairs. Valid until the
+/// result is used again or destroyed. Empty columns are null.
 typedef struct winnow_impact_columns {
-  size_t size;  ///< sizeof(winnow_impact_columns), of the caller
+  size_t size;  ///< set by the caller to sizeof(winnow_impact_columns)
   size_t answers;
-  const uint8_t* status;  ///< a winnow_status of each pair
-  const uint8_t* hit;     ///< not 0 where they meet
-  const double* time;     ///< in [0, 1], never late; 1 where they do not meet
+  const uint8_t* status;  ///< winnow_status of each pair
+  const uint8_t* hit;     ///< not 0 if the pair has an impact
+  const double* time;     ///< in [0, 1], never later than the true time; 1 if there is no impact
   const double* gap;
   const double* error_bound;
   const double* normal[3];
@@ -80,8 +80,8 @@ WINNOW_C_API winnow_status winnow_impact_result_columns(const winnow_impact_resu
 WINNOW_C_API winnow_status winnow_impact_result_footprint(const winnow_impact_result* result,
                                                           winnow_footprint* footprint);
 
-/// `options` may be null. What is wrong with one pair is in its status; a call that is refused
-/// leaves `result` empty.
+/// `options` may be null. An error of one pair is reported in its status. If the call fails,
+/// `result` is empty.
 WINNOW_C_API winnow_status winnow_time_of_impact(const winnow_shape_pool* shapes,
                                                  const winnow_moving_bodies* bodies,
                                                  const winnow_body_pair* pairs, size_t count,

@@ -1,8 +1,8 @@
 #pragma once
 
-/// Volumes in float, poses, and columns of numbers where the caller keeps them. A view is read
-/// where it lies and while the call lasts; of double, what the engine keeps in float is rounded
-/// outward first.
+/// Bounding volumes in float, poses, and views of the caller's columns. A view is read without a
+/// copy, and only during the call. If the engine stores float and the column is double, values are
+/// first rounded outward.
 
 #include <winnow/c/core.h>
 
@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/// Closed boxes; ends may be infinite.
+/// Closed box; bounds may be infinite.
 typedef struct winnow_aabb {
   float min[3];
   float max[3];
@@ -40,14 +40,15 @@ typedef struct winnow_plane {
   float offset;
 } winnow_plane;
 
-/// What a camera sees: planes that face inward (left, right, bottom, top, near, far), and a box
-/// around what lies within them, infinite where not known.
+/// View volume of a camera: inward-facing planes (left, right, bottom, top, near, far), and a box
+/// that contains the volume, infinite if unknown.
 typedef struct winnow_frustum {
   winnow_plane planes[6];
   winnow_aabb bounds;
 } winnow_frustum;
 
-/// Where a body is: x -> position + R(orientation) x; a quaternion w, x, y, z of any length but 0.
+/// Pose of a body: x -> position + R(orientation) x. The orientation is a quaternion w, x, y, z of
+/// any nonzero length.
 typedef struct winnow_pose {
   double position[3];
   double orientation[4];
@@ -59,34 +60,35 @@ typedef struct winnow_pose {
     }                    \
   }
 
-/// The smallest float box that contains the double box, measured from `origin` unless that is null.
+/// Computes the smallest float box that contains the double box, relative to `origin` unless that
+/// is null.
 WINNOW_C_API winnow_status winnow_aabb_outward(const double min[3], const double max[3],
                                                const double origin[3], winnow_aabb* box);
 
-/// The k-DOP (k = 14, 18 or 26) of a turned box: k/2 lower ends of its slabs, then k/2 upper ones,
-/// rounded outward.
+/// Computes the k-DOP (k = 14, 18 or 26) of an oriented box: k/2 lower bounds of its slabs, then
+/// k/2 upper bounds, rounded outward.
 WINNOW_C_API winnow_status winnow_kdop_around(uint32_t k, const winnow_oriented_box* box,
                                               float* slabs);
 
-/// See Frustum::perspective. WINNOW_INVALID_ARGUMENT where that is invalid.
+/// See Frustum::perspective. WINNOW_INVALID_ARGUMENT if the result would be invalid.
 WINNOW_C_API winnow_status winnow_frustum_perspective(const float eye[3], const float forward[3],
                                                       const float up[3], float vertical_fov,
                                                       float aspect, float near_t, float far_t,
                                                       winnow_frustum* frustum);
 
-/// Depth that the near plane has in clip space.
+/// Depth of the near plane in clip space.
 enum { WINNOW_NEAR_DEPTH_ZERO = 0, WINNOW_NEAR_DEPTH_MINUS_ONE = 1 };
-/// From a matrix, row by row, that takes column vectors of the world to clip space.
+/// Computes a frustum from a row-major matrix that maps column vectors from world to clip space.
 WINNOW_C_API winnow_status winnow_frustum_from_matrix(const double clip_from_world[16],
                                                       int32_t near_depth, winnow_frustum* frustum);
 
-/// What the numbers of a view are.
+/// Number type of a view.
 typedef int32_t winnow_number;
 enum { WINNOW_FLOAT = 0, WINNOW_DOUBLE = 1 };
-/// What indices are.
+/// Index type of a view.
 enum { WINNOW_UINT32 = 0, WINNOW_UINT16 = 1 };
 
-/// Strides are bytes from one entry to the next; 0 stands for columns without gaps.
+/// Strides are bytes from one entry to the next. 0 means entries without gaps.
 
 typedef struct winnow_box_view {
   const void* min[3];
@@ -103,17 +105,17 @@ typedef struct winnow_point_view {
   winnow_number number;
 } winnow_point_view;
 
-/// Triangles as corners' numbers; the three of a triangle are contiguous, and a stride of 0 stands
-/// for triangles without gaps.
+/// Triangles as vertex indices. The three indices of a triangle are contiguous. Stride 0 means
+/// triangles without gaps.
 typedef struct winnow_index_view {
   const void* corners;
   size_t stride;
   size_t count;
-  int32_t index;  ///< WINNOW_UINT32, WINNOW_UINT16
+  int32_t index;  ///< WINNOW_UINT32 or WINNOW_UINT16
 } winnow_index_view;
 
-/// Without orientations (all four null) bodies that are moved do not turn, and poses that are read
-/// have the identity.
+/// If all four orientation pointers are null, moved bodies keep their orientation, and poses that
+/// are read have the identity.
 typedef struct winnow_pose_view {
   const void* position[3];
   const void* orientation[4];
@@ -124,7 +126,7 @@ typedef struct winnow_pose_view {
   winnow_number orientation_number;
 } winnow_pose_view;
 
-// Arrays of structs as views.
+// Views of arrays of structs.
 
 static inline winnow_box_view winnow_boxes(const winnow_aabb* boxes, size_t count) {
   winnow_box_view view = {{NULL, NULL, NULL}, {NULL, NULL, NULL}, 0, 0, WINNOW_FLOAT};
@@ -139,7 +141,7 @@ static inline winnow_box_view winnow_boxes(const winnow_aabb* boxes, size_t coun
   return view;
 }
 
-/// x, y, z of each point next to each other.
+/// Coordinates x, y, z of each point are adjacent.
 static inline winnow_point_view winnow_points(const double* points, size_t count) {
   winnow_point_view view = {{NULL, NULL, NULL}, 0, 0, WINNOW_DOUBLE};
   if (points != NULL) {
@@ -163,8 +165,8 @@ static inline winnow_pose_view winnow_poses(const winnow_pose* poses, size_t cou
   return view;
 }
 
-// What partitions and scenes draw themselves with. Each call may be null; what it is given is valid
-// while it lasts. See DebugDraw.
+// Callbacks for drawing partitions and scenes. Each may be null. Pointers passed to them are valid
+// only during the call. See DebugDraw.
 
 typedef struct winnow_colour {
   uint8_t r, g, b, a;
@@ -175,18 +177,18 @@ typedef struct winnow_debug_draw {
   void (*box)(void* context, const winnow_aabb* box, winnow_colour colour);
   void (*line)(void* context, const float from[3], const float to[3], winnow_colour colour);
   void (*sphere)(void* context, const winnow_sphere* sphere, winnow_colour colour);
-  /// Not ended by a zero.
+  /// `text` is not null-terminated.
   void (*text)(void* context, const float at[3], const char* text, size_t length,
                winnow_colour colour);
 } winnow_debug_draw;
 
-/// Null, and zeros behind `size`, stand for what C++ has by default.
+/// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_debug_draw_options {
-  size_t size;                ///< sizeof(winnow_debug_draw_options), of the caller
-  uint8_t leave_out_objects;  ///< 0 or 1, as the next two
+  size_t size;                ///< set by the caller to sizeof(winnow_debug_draw_options)
+  uint8_t leave_out_objects;  ///< 0 or 1, like the next two
   uint8_t leave_out_structure;
   uint8_t labels;
-  int32_t max_depth;  ///< 0: 64
+  int32_t max_depth;  ///< 0 means 64
 } winnow_debug_draw_options;
 #define WINNOW_DEBUG_DRAW_OPTIONS \
   { sizeof(winnow_debug_draw_options), 0, 0, 0, 64 }

@@ -1,26 +1,27 @@
 #pragma once
 
-/// winnow for C99, and for whatever calls C. It has the words of the C++ interface:
-/// winnow_partition_self_pairs is Partition::self_pairs, which its header documents; said here is
-/// what is different in C.
+/// winnow for C99, and for any language that can call C. The functions are named after the C++
+/// interface: winnow_partition_self_pairs is Partition::self_pairs, and the C++ header documents
+/// it. The C headers document only the differences.
 ///
-///  - Every call that can be refused answers a winnow_status. A refused call has changed nothing. A
-///    null pointer where none is allowed, a kind that does not exist and a wrong `size` are
-///    WINNOW_INVALID_ARGUMENT. What cannot be told, and must not be, is a pointer to memory that is
-///    not there, too short, or of something that was destroyed.
-///  - winnow_x_create makes an x and winnow_x_destroy ends it; null is ended by doing nothing. What
-///    an x was made of (shapes of a scene, a scene of queries, the context of a winnow_memory) must
-///    outlive it.
-///  - Calls that take const are questions, and may run at the same time from several threads; all
-///    others want the thing to themselves. Buffers of results belong to one thread at a time.
-///  - Results are shown where they lie: a pointer that a call answers is valid until what it was
-///    taken from is used again or destroyed.
-///  - Structs that may grow begin with their `size`, which the caller sets to sizeof. Options with
-///    zeros behind it are what C++ has by default, and so is null in their place. A struct of which
-///    something else than zeros is the default has a macro of its name in capitals.
-///  - Callbacks must not throw, jump out, or call what calls them.
+/// - Every call that can fail returns a winnow_status. A call that fails has changed nothing. A
+///   null pointer that is not allowed, an invalid kind and a wrong `size` are
+///   WINNOW_INVALID_ARGUMENT. Pointers to missing, too short or destroyed memory cannot be detected
+///   and must not be passed.
+/// - winnow_x_create creates an x, and winnow_x_destroy destroys it; destroying null does nothing.
+///   Objects that an x was created from (the shapes of a scene, the scene of its queries, the
+///   context of a winnow_memory) must outlive it.
+/// - Calls with a const handle are queries and may run concurrently on several threads. All other
+///   calls need exclusive access. A result buffer belongs to one thread at a time.
+/// - Results are not copied: a returned pointer is valid until the object that it came from is used
+///   again or destroyed.
+/// - Structs that may grow begin with their `size`, which the caller sets to sizeof. If all other
+///   members of an options struct are zero, it has the defaults of C++; a null pointer to options
+///   also means the defaults. A struct whose defaults are not all zero has an initializer macro,
+///   its name in capitals.
+/// - Callbacks must not throw, longjmp, or call the object that called them.
 ///
-/// How the binary interface may change is written in README.md beside this file.
+/// README.md in this directory states how the binary interface may change.
 
 #include <winnow/c/contact_groups.h>
 #include <winnow/c/core.h>

@@ -16,11 +16,11 @@ struct WorkItem {
   std::uint64_t work;
 };
 
-/// A plane that could cut, and what it would do.
+/// A possible cut, with its quality.
 struct Candidate {
   RegionCut cut;
   std::size_t cut_in_two = 0;
-  float length = 0.0F;  // of the centres along the axis
+  float length = 0.0F;  // extent of the centres along the axis
 
   [[nodiscard]] bool is_better_than(const Candidate& other) const noexcept {
     if (cut_in_two != other.cut_in_two) return cut_in_two < other.cut_in_two;
@@ -33,7 +33,7 @@ class Bisection {
   Bisection(std::vector<WorkItem> items, std::span<RegionCut> cuts)
       : items_(std::move(items)), cuts_(cuts) {}
 
-  /// Cuts for some ranks; returns the root of what it made.
+  /// Cuts the region of some ranks; returns the index of the root of the new cuts.
   std::int32_t cut(std::span<WorkItem> items, std::uint32_t first, std::uint32_t count) {
     if (count == 1) return ~static_cast<std::int32_t>(first);
     const std::uint32_t below = count / 2;
@@ -77,13 +77,13 @@ class Bisection {
       candidate.cut_in_two +=
           item.box.min[a] < candidate.cut.at && item.box.max[a] >= candidate.cut.at;
     }
-    // Where all centres are alike nothing is shared out.
+    // If all centres are equal, this axis cannot divide the work: rank it last.
     if (!(low < high)) candidate.cut_in_two = items.size() + 1;
     candidate.length = high * 0.5F - low * 0.5F;
     return candidate;
   }
 
-  /// The coordinate below which lies the share below / count of the work, by selection.
+  /// Returns the coordinate below which the share below / count of the work is, by selection.
   static float quantile(std::span<WorkItem> items, int axis, std::uint32_t below,
                         std::uint32_t count) {
     std::uint64_t sum = 0;

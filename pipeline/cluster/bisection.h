@@ -6,9 +6,9 @@
 
 namespace winnow {
 
-/// Cuts space for `cuts.size() + 1` ranks by recursive bisection: across the axis on which the
-/// fewest boxes are cut in two, where the work on both sides is as the numbers of ranks. O(boxes *
-/// log ranks).
+/// Cuts space for `cuts.size() + 1` ranks by recursive bisection. Each cut is across the axis on
+/// which it intersects the fewest boxes; the work on its sides is proportional to the numbers of
+/// ranks. O(boxes * log ranks).
 void bisect(std::span<const CutWork> work, std::span<RegionCut> cuts);
 
 }  // namespace winnow

@@ -11,7 +11,7 @@ namespace winnow {
 namespace {
 
 constexpr std::uint64_t kCheckpoint = 0x3130545352435257ULL;  // "WRCRST01"
-/// What stands before the columns: that number, and how many bytes follow.
+/// Size of the header: the constant above, and the number of bytes that follow.
 constexpr std::size_t kHeader = 2 * sizeof(std::uint64_t);
 
 [[nodiscard]] std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept {
@@ -30,7 +30,7 @@ constexpr std::size_t kHeader = 2 * sizeof(std::uint64_t);
   return pair.code < KindPairs::kCount && pair.a != pair.b;
 }
 
-/// Adds what one checkpoint has in its columns.
+/// Reads the columns of one checkpoint and appends them to the batch.
 [[nodiscard]] Status take_columns(std::span<const std::byte> columns, RecordBatch& batch) {
   Column<BodyName> names(default_memory());
   Column<BodyRecord> bodies(default_memory());

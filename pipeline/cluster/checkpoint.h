@@ -12,28 +12,28 @@
 
 namespace winnow {
 
-/// What one rank adds, or kept.
+/// The bodies that one rank adds, or saved.
 struct RecordBatch {
   std::vector<BodyName> names;
   std::vector<BodyRecord> bodies;
   std::vector<TouchingPair> touching;  // sorted
 };
 
-/// Bodies as they are added, with their names for client data, and the other way round.
+/// Converts records to definitions, with names as client data.
 [[nodiscard]] std::vector<BodyDefinition> definitions_of(std::span<const BodyName> names,
                                                          std::span<const BodyRecord> bodies);
-/// New ones.
+/// Converts definitions to records of new bodies.
 [[nodiscard]] std::vector<BodyRecord> records_of(std::span<const BodyDefinition> bodies);
-/// Tells batches from each other, by every bit of them.
+/// Returns a digest of all bits of a batch.
 [[nodiscard]] std::uint64_t told_by(const ClusterSceneBatch& batch) noexcept;
 
-/// Appends what one rank keeps: see CONTRACT.md, "Checkpoints of clusters".
+/// Appends the checkpoint of one rank: see FORMATS.md, "Checkpoints of clusters".
 [[nodiscard]] Status write_checkpoint(std::span<const BodyName> names,
                                       std::span<const BodyRecord> bodies,
                                       std::span<const TouchingPair> touching,
                                       std::vector<std::byte>& bytes);
-/// Reads any number of checkpoints, one after the other. `invalid_argument` for other bytes; shapes
-/// and poses are not looked at.
+/// Reads any number of consecutive checkpoints. `invalid_argument` if the bytes are not
+/// checkpoints. Does not check shapes and poses.
 [[nodiscard]] Status read_checkpoints(std::span<const std::byte> bytes, RecordBatch& batch);
 
 }  // namespace winnow

@@ -1,3 +1,6 @@
+// Cluster: collective calls, each a sequence of steps on the hosted ranks (rank_bodies.h) and
+// exchanges between ranks (rank_group.h).
+
 #include <winnow/pipeline/cluster.h>
 
 #include "core/memory/guarded.h"
@@ -10,7 +13,7 @@
 
 namespace winnow {
 
-/// The ranks that this process hosts, and the boxes that they hold.
+/// State of a Cluster: the hosted ranks and their boxes.
 struct ClusterState : RankGroup {
   ClusterState(Transport& given, const ClusterOptions& with);
 
@@ -38,7 +41,7 @@ ClusterState::ClusterState(Transport& given, const ClusterOptions& with)
   if (with.structure == StructureKind{}) status = Status::invalid_argument;
 }
 
-/// Brings bodies where they belong, and copies to where they are met.
+/// Sends bodies to the ranks that they belong to, and copies to the ranks that they overlap.
 Status ClusterState::settle() {
   const Regions before = regions;
   was_cut = wants_cut && !is_alone();
@@ -53,7 +56,7 @@ Status ClusterState::settle() {
     one.send(before, regions, was_cut);
     one.pack(parcels);
   }
-  // Not where much comes and goes.
+  // Refresh during the exchange, except after a cut, when many bodies come and go.
   if (was_cut) return deliver();
   return deliver({[](void* state) noexcept {
                     for (RankBodies& one : static_cast<ClusterState*>(state)->bodies) one.refresh();
@@ -61,7 +64,7 @@ Status ClusterState::settle() {
                   this});
 }
 
-/// Brings every rank what others tell it.
+/// Exchanges the packed parcels, and applies the received ones.
 Status ClusterState::deliver(const Meanwhile& meanwhile) {
   std::span<const Parcel> received;
   Status answer = is_alone() ? Status::ok : exchange(received, meanwhile);
@@ -84,7 +87,7 @@ Status ClusterState::take_names_of(std::span<const ClusterBatch> batches,
 }
 
 Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
-  // What was removed is gone on every rank before its name can come anew.
+  // Remove bodies on every rank before their names can be added again.
   for (RankBodies& one : bodies) {
     one.forget_pairs();
     one.send_removals(regions);
@@ -165,7 +168,7 @@ Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> ans
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
-    // Others wait for this process, which adds nothing.
+    // The call is collective: other processes need this one to take part, with no bodies.
     const std::vector<ClusterBatch> nothing(hosted());
     std::vector<Status> ignored(hosted());
     return state_->add(nothing, ignored);

@@ -1,6 +1,6 @@
-// A question goes to the ranks that may know an answer, and theirs come back: two exchanges. Each
-// kind of question says who that is, how one scene answers, and how answers of many are put in
-// order.
+// Queries of a ClusterScene, in two exchanges: each rank sends its queries to the ranks that may
+// have results, and receives their results. Each kind of query (RayAll, ProbeOverlap, ...) defines
+// these ranks, the query of one scene, and the order in which results are merged.
 
 #include <winnow/pipeline/cluster_queries.h>
 
@@ -20,7 +20,7 @@
 
 namespace winnow {
 
-/// What one hosted rank was answered.
+/// The results that one hosted rank received.
 template <typename Answer>
 struct AnswerLists {
   std::vector<Answer> answers;
@@ -34,14 +34,14 @@ using AnswersOfRanks = std::vector<AnswerLists<Answer>>;
 
 namespace {
 
-/// The answers of one rank to a question by its number.
+/// A result of one rank, with the index of its query.
 template <typename Answer>
 struct NumberedAnswer {
   std::uint32_t number;
   Answer answer;
 };
 
-/// A scene that is asked.
+/// The scene of a rank, with an object for queries.
 struct AskedScene {
   const RankScene& rank;
   SceneQueries queries;
@@ -83,7 +83,7 @@ struct RayAll {
   static std::size_t most(const ShapeRay&) noexcept { return ~std::size_t{0}; }
 };
 
-/// What `closest` writes of a batch.
+/// Columns for the results of a batch of `closest`.
 struct HitColumnsOfRays {
   explicit HitColumnsOfRays(std::size_t rays) : name(rays), part(rays) {
     for (std::vector<double>& column : number) column.resize(rays);
@@ -113,14 +113,15 @@ struct HitColumnsOfRays {
   std::vector<double> number[7];
 };
 
-/// A scene breaks ties by ids, which are not names. So rays are asked once more, up to a little
-/// behind their hits; where these meet several bodies there, all that the whole ray hits is told.
+/// A scene breaks ties by id, which does not follow the order of names. So each ray is cast again,
+/// up to a little behind its hit; if it hits several bodies there, all hits of the whole ray are
+/// sent.
 struct RayClosest : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::closest;
   template <typename Give>
   static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
-    // Where a ray ends changes the last digits of its hits.
+    // Cast the whole ray: the last digits of its hits depend on where it ends.
     constexpr double kBehind = 1.0 + 1e-6;
     HitColumnsOfRays table(rays.size());
     Status status = scene.queries.closest(ShapeRayBatch(rays), table.columns(), filter);
@@ -152,7 +153,7 @@ struct RayClosest : RayAll {
   static std::size_t most(const ShapeRay&) noexcept { return 1; }
 };
 
-/// Answers are hits of which nothing is told, one for each ray.
+/// The result is one empty hit for each ray that hits anything.
 struct RayAny : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::any;
   template <typename Give>
@@ -217,7 +218,7 @@ struct PointNearest {
       std::span<const SceneDistance> bodies;
       Status status = scene.queries.nearest(probe.point, probe.count, probe.radius, bodies, filter);
       if (status == Status::ok && probe.count != 0 && bodies.size() == probe.count) {
-        // Others may be as far as the last one, and have lesser names.
+        // Other bodies may be at the same distance as the last one, with smaller names.
         const double radius = std::max(bodies.back().distance, 0.0);
         status = scene.queries.nearest(probe.point, ~std::size_t{0}, radius, bodies, filter);
       }
@@ -240,7 +241,7 @@ struct PointNearest {
   static std::size_t most(const NearestProbe& probe) noexcept { return probe.count; }
 };
 
-/// One collective question of a kind.
+/// One collective query of one kind.
 template <typename Kind>
 class Asking {
  public:
@@ -251,7 +252,7 @@ class Asking {
   Asking(ClusterSceneState& cluster, std::span<const ClusterQuestions<Question>> asked)
       : cluster_(cluster), asked_(asked), sent_(asked.size()), answered_(asked.size()) {}
 
-  /// Fills `lists` and answers each hosted rank.
+  /// Fills `lists`, and sets the status of each hosted rank.
   Status run(AnswersOfRanks<Answer>& lists, std::span<Status> answers) {
     const Status settled = cluster_.settle();
     if (settled == Status::communication_failed) return settled;
@@ -280,7 +281,7 @@ class Asking {
     std::uint32_t to;
     std::uint32_t number;
   };
-  /// What a rank sends, which lies here until all is answered.
+  /// Data of the sent parcels; must stay in place until all results have been received.
   struct Sent {
     std::vector<Question> questions;
     std::vector<std::uint32_t> numbers;
@@ -327,7 +328,7 @@ class Asking {
     });
   }
 
-  /// Answers what was asked of a hosted rank.
+  /// Runs the queries that were sent to a hosted rank.
   [[nodiscard]] Status answer(std::size_t i, std::span<const Parcel> received) {
     AskedScene scene{cluster_.scenes[i], SceneQueries(cluster_.scenes[i].scene())};
     std::vector<Numbered>& out = answered_[i];
@@ -353,7 +354,8 @@ class Asking {
     return status;
   }
 
-  /// Puts in order what a hosted rank was answered; what is on several ranks was told by each.
+  /// Sorts the results that a hosted rank received, and removes duplicates: each rank that holds a
+  /// body reports it.
   void gather(std::size_t i, std::span<const Parcel> received, Status answered,
               AnswerLists<Answer>& lists) const {
     std::vector<Numbered> all;
@@ -387,7 +389,7 @@ class Asking {
 
 }  // namespace
 
-/// What was answered last.
+/// The results of the last queries.
 struct ClusterQueryState {
   ClusterSceneState* cluster;
   AnswersOfRanks<ClusterHit> hits;
@@ -402,7 +404,7 @@ struct ClusterQueryState {
     const bool fit = asked.size() == hosted && answers.size() == hosted;
     const Status status = collective(cluster, Kind::kCall, [&] {
       if (fit) return Asking<Kind>(*cluster, asked).run(lists, answers);
-      // Others wait for this process, which asks nothing.
+      // The call is collective: other processes need this one to take part, with no queries.
       const std::vector<ClusterQuestions<typename Kind::Question>> nothing(hosted);
       std::vector<Status> ignored(hosted);
       return Asking<Kind>(*cluster, nothing).run(lists, ignored);
@@ -410,7 +412,7 @@ struct ClusterQueryState {
     return status == Status::ok && !fit ? Status::size_mismatch : status;
   }
 
-  /// The place of a rank among those that have answers.
+  /// The results of a hosted rank; null for any other.
   template <typename Lists>
   [[nodiscard]] const auto* of(const Lists& lists, std::uint32_t rank) const noexcept {
     const std::uint32_t place = cluster == nullptr ? rank : rank - cluster->first;

@@ -1,3 +1,6 @@
+// ClusterScene: collective calls, each a sequence of steps on the hosted ranks (rank_scene.h) and
+// exchanges between ranks (rank_group.h). Queries are in cluster_queries.cpp.
+
 #include <winnow/pipeline/cluster_scene.h>
 
 #include "core/memory/byte_stream.h"
@@ -21,7 +24,7 @@ ClusterSceneState::ClusterSceneState(Transport& given, const ShapePool& shapes,
 }
 
 Status ClusterSceneState::settle() {
-  // What fails here is told after the exchange, which others wait in.
+  // Report errors only after the exchange, in which the other ranks take part.
   Status found = Status::ok;
   for (RankScene& one : scenes) {
     if (found == Status::ok) found = one.refresh();
@@ -43,7 +46,7 @@ Status ClusterSceneState::settle() {
   return answer == Status::communication_failed || found == Status::ok ? answer : found;
 }
 
-/// Brings every rank what others tell it.
+/// Exchanges the packed parcels, and applies the received ones.
 Status ClusterSceneState::deliver() {
   std::span<const Parcel> received;
   Status answer = is_alone() ? Status::ok : exchange(received);
@@ -53,7 +56,7 @@ Status ClusterSceneState::deliver() {
   return answer;
 }
 
-/// What was removed is gone on every rank before its name can come anew.
+/// Removes bodies on every rank before their names can be added again.
 Status ClusterSceneState::deliver_removals() {
   for (RankScene& one : scenes) {
     one.send_removals(regions);
@@ -62,7 +65,7 @@ Status ClusterSceneState::deliver_removals() {
   return deliver();
 }
 
-/// Of those that are refused already, nothing is wanted.
+/// Batches that are refused already request no names.
 Status ClusterSceneState::take_names_of(std::span<const std::span<const BodyName>> wanted,
                                         std::span<Status> answers) {
   std::vector<std::vector<BodyName>> removed;
@@ -113,7 +116,8 @@ Status ClusterSceneState::restore(std::span<const RecordBatch> batches, std::spa
   return answer;
 }
 
-/// Whether all processes were told the same, and none refuses.
+/// Checks that all processes passed the same arguments (`told` is their digest) and that none
+/// refuses.
 Status ClusterSceneState::agree(std::uint64_t told, Status& refused) {
   std::uint64_t greatest[3] = {static_cast<std::uint64_t>(refused), told, ~told};
   const Status answer = transport.reduce({}, greatest);
@@ -135,7 +139,7 @@ Status ClusterSceneState::replicate(const ClusterSceneBatch& batch, Status& refu
   }
   answer = agree(told_by(batch), refused);
   if (answer != Status::ok || refused != Status::ok) return answer;
-  // Rank 0 asks for the names of all.
+  // Rank 0 requests the names for all ranks.
   std::vector<Status> answers(scenes.size(), Status::ok);
   std::vector<std::span<const BodyName>> wanted(scenes.size());
   if (first == 0) wanted.front() = batch.names;
@@ -176,7 +180,8 @@ Status ClusterSceneState::collide(ContactLevel level) {
   return count_found(found);
 }
 
-/// Also after a failure here, which others are told of only then.
+/// Takes part in the exchanges even after an error on this process, which the other ranks get only
+/// later.
 Status ClusterSceneState::agree_on_events() {
   std::span<const Parcel> received;
   if (!is_alone()) {
@@ -219,7 +224,7 @@ Status ClusterSceneState::digest(ClusterDigest& digest) {
 
 namespace {
 
-/// The bits of one pair of contacts, with everything that was found of it.
+/// Hashes all results of one pair of contacts.
 std::uint64_t digest_of_pair(const Contacts& contacts, std::size_t pair, std::uint64_t seed) {
   Digest digest;
   digest.add(seed);
@@ -260,7 +265,7 @@ ClusterDigest digest_of(const Contacts& contacts) noexcept {
   return sum;
 }
 
-// ---- what a caller sees
+// ---- public functions
 
 ClusterScene::ClusterScene(Transport& transport, const ShapePool& shapes,
                            const ClusterSceneOptions& options) noexcept
@@ -292,7 +297,7 @@ Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<S
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
-    // Others wait for this process, which adds nothing.
+    // The call is collective: other processes need this one to take part, with no bodies.
     const std::vector<ClusterSceneBatch> nothing(hosted());
     std::vector<Status> ignored(hosted());
     return state_->add(nothing, ignored);

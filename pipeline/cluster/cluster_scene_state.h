@@ -10,7 +10,7 @@
 
 namespace winnow {
 
-/// The ranks that this process hosts, and their scenes.
+/// State of a ClusterScene: the hosted ranks and their scenes.
 struct ClusterSceneState : RankGroup {
   ClusterSceneState(Transport& given, const ShapePool& shapes, const ClusterSceneOptions& options);
 
@@ -19,12 +19,13 @@ struct ClusterSceneState : RankGroup {
     return place < scenes.size() ? &scenes[place] : nullptr;
   }
 
-  /// Brings bodies where they belong, and copies to where they are met, as they are now.
+  /// Sends bodies to the ranks that they belong to, and copies to the ranks that they overlap, for
+  /// their current poses.
   [[nodiscard]] Status settle();
   [[nodiscard]] Status add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers);
-  /// Adds what was kept, of which some answers may tell already that it is no good.
+  /// Adds the bodies of checkpoints. `answers` may already contain errors of reading them.
   [[nodiscard]] Status restore(std::span<const RecordBatch> batches, std::span<Status> answers);
-  /// `refused`: why nothing was added, on all ranks.
+  /// Sets `refused` to the reason for which nothing was added, the same on all ranks.
   [[nodiscard]] Status replicate(const ClusterSceneBatch& batch, Status& refused);
   [[nodiscard]] Status move_replicated(std::span<const BodyName> bodies,
                                        std::span<const Pose> poses, Status& refused);

@@ -13,7 +13,7 @@ std::uint32_t ContactEvents::keeper_of(const TouchingPair& pair) const noexcept 
   return static_cast<std::uint32_t>((hash >> 32U) % ranks_);
 }
 
-/// Adds one parcel for each receiver: pairs that began, then pairs that ended.
+/// Adds one parcel per receiver: begun pairs, then ended pairs.
 void ContactEvents::post(std::vector<Posted>& begun, std::vector<Posted>& ended, Columns& columns,
                          std::vector<Parcel>& parcels) const {
   columns.begun.clear();
@@ -56,7 +56,7 @@ void ContactEvents::answer(std::span<const Parcel> asked, std::vector<Parcel>& p
   }
   std::sort(begun.begin(), begun.end());
   std::sort(ended.begin(), ended.end());
-  // The lists that were asked about have been sent.
+  // The lists have been sent: reuse them.
   begun_in_doubt_.clear();
   ended_in_doubt_.clear();
   for (const Told& one : begun) {

@@ -10,54 +10,56 @@
 
 namespace winnow {
 
-/// A pair that touches, as ranks know it: sorts as contacts do.
+/// A touching pair, by names. Sorts in the order of contacts.
 struct TouchingPair {
-  std::uint64_t code = 0;  ///< of the kinds of its shapes
+  std::uint64_t code = 0;  ///< code of the two kinds of shapes
   BodyName a = 0;
   BodyName b = 0;
 
   friend constexpr auto operator<=>(const TouchingPair&, const TouchingPair&) noexcept = default;
 };
 
-/// Which of a rank's pairs began, and which ended. The rank that reports a pair changes as bodies
-/// move, so that what began here may have ended there. Where a rank cannot know, it tells both to
-/// the rank that the pair's hash says, which finds what is in both lists: two exchanges, of as much
-/// as changed near borders.
+/// Determines which pairs of a rank have begun and ended. The rank that reports a pair may change
+/// as bodies move, so that a pair that began on one rank may have ended on another. If a rank
+/// cannot decide this, it sends the pair to the rank that the pair's hash selects (its keeper),
+/// which finds the pairs that are in both lists. Takes two exchanges; the size of the messages is
+/// proportional to the changes near borders.
 class ContactEvents {
  public:
   ContactEvents(std::uint32_t rank, std::uint32_t ranks) : rank_(rank), ranks_(ranks) {}
 
-  /// What is known of a pair that touches now.
+  /// Information that a rank has about a pair that touches now.
   enum class Knowledge : std::uint8_t {
-    is_new,  ///< one of its bodies is: it cannot have touched before
-    local,   ///< it was this rank's before too, if it was at all
+    is_new,  ///< one of its bodies is new: it did not touch before
+    local,   ///< if it touched before, this rank reported it
     none,
   };
 
-  /// Takes the pairs that touch now, sorted, and what is known of each. `was_local(pair)`: a pair
-  /// that touched before would still be this rank's.
+  /// Compares the pairs that touch now, sorted, with the pairs of the last call. `knowledge` has
+  /// one entry per pair. `was_local(pair)` returns true if this rank would still report a previous
+  /// pair.
   template <typename WasLocal>
   void compare(std::vector<TouchingPair>& now, std::span<const Knowledge> knowledge,
                WasLocal&& was_local);
-  /// 1: tells the keepers of pairs what may have begun and ended.
+  /// Step 1: sends the pairs that may have begun or ended to their keepers.
   void ask(std::vector<Parcel>& parcels);
-  /// 2: tells of those that did both.
+  /// Step 2, as keeper: returns the pairs that are in both lists.
   void answer(std::span<const Parcel> asked, std::vector<Parcel>& parcels);
-  /// 3: takes back what went on.
+  /// Step 3: marks the returned pairs as persisting.
   void conclude(std::span<const Parcel> answers);
 
-  /// One of each pair that touches now: not 0 if it did before.
+  /// For each pair that touches now: not 0 if it touched before.
   [[nodiscard]] std::span<const std::uint8_t> persisted() const noexcept { return persisted_; }
-  /// Sorted.
+  /// The pairs that ended, sorted.
   [[nodiscard]] std::span<const TouchingPair> ended() const noexcept { return ended_; }
 
-  /// Pairs that touch, sorted: what is to be kept of this.
+  /// All touching pairs, sorted; checkpoints save them.
   [[nodiscard]] std::span<const TouchingPair> touching() const noexcept { return touching_; }
   /// Adds pairs that touched on another rank.
   void remember(std::span<const TouchingPair> pairs);
 
  private:
-  /// A pair on its way to its keeper, or back to a rank.
+  /// A pair to be sent to its keeper, or back to a rank.
   struct Posted {
     std::uint32_t to;
     TouchingPair pair;
@@ -65,7 +67,7 @@ class ContactEvents {
   };
 
   [[nodiscard]] std::uint32_t keeper_of(const TouchingPair& pair) const noexcept;
-  /// What is sent, which lies here until the next time.
+  /// Data of the sent parcels; must stay in place until the next step.
   struct Columns {
     std::vector<TouchingPair> begun;
     std::vector<TouchingPair> ended;
@@ -99,7 +101,7 @@ void ContactEvents::compare(std::vector<TouchingPair>& now, std::span<const Know
   for (std::size_t i = 0; i < now.size(); ++i) {
     while (before != touching_.cend() && *before < now[i]) end_pair(*before++);
     const bool touched = before != touching_.cend() && *before == now[i];
-    if (knowledge[i] == Knowledge::is_new) continue;  // one that touched was of others of that name
+    if (knowledge[i] == Knowledge::is_new) continue;  // equal previous pairs had other bodies
     if (touched) {
       persisted_[i] = 1;
       ++before;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::byte kRefusal{1};
 
-/// Parcels of one receiver are sorted by sender.
+/// The parcels for one receiver are sorted by sender.
 bool is_of(std::span<const Parcel> parcels, std::uint32_t from) noexcept {
   return std::ranges::binary_search(parcels, from, {}, &Parcel::from);
 }

@@ -10,24 +10,26 @@
 
 namespace winnow {
 
-/// One rank's share of all names that there are, so that none is given twice wherever this is
-/// tried: a name is kept on the rank that its hash says. Three exchanges add names: they are asked
-/// for, what is refused is told, and who was refused anywhere takes all of its names back.
+/// One rank's part of a distributed directory of all names, which ensures that no name is used
+/// twice on any ranks. The hash of a name selects the rank that stores it (its keeper). Adding
+/// names takes three exchanges: ranks send names to the keepers, keepers return refusals, and a
+/// rank with any refusal withdraws all of its names.
 class NameDirectory {
  public:
   NameDirectory(std::uint32_t rank, std::uint32_t ranks, std::pmr::memory_resource* memory)
       : rank_(rank), ranks_(ranks), names_(memory) {}
 
-  /// To be told with the next names that are asked for.
+  /// Frees a name; sent with the next call of `ask`.
   void forget(std::uint64_t name) { forgotten_.push_back(name); }
 
-  /// 1: asks the ranks that keep these names for them.
+  /// Step 1: requests names from their keepers.
   void ask(std::span<const std::uint64_t> names, std::vector<Parcel>& parcels);
-  /// 2: tells who asked for a name that is there, or that another rank asks for.
+  /// Step 2, as keeper: refuses ranks that request a stored name, or a name that another rank
+  /// requests too.
   void answer(std::span<const Parcel> asked, std::vector<Parcel>& parcels);
-  /// 3: true if nothing was refused; else tells those who were asked.
+  /// Step 3: returns true if nothing was refused; else sends withdrawals to the requested keepers.
   [[nodiscard]] bool conclude(std::span<const Parcel> refusals, std::vector<Parcel>& parcels);
-  /// Keeps the names of those who took nothing back.
+  /// As keeper, stores the names of the ranks that did not withdraw.
   void keep(std::span<const Parcel> taken_back);
 
   [[nodiscard]] std::size_t bytes() const noexcept { return names_.bytes(); }
@@ -40,7 +42,7 @@ class NameDirectory {
   };
 
   [[nodiscard]] std::uint32_t keeper_of(std::uint64_t name) const noexcept {
-    // Other bits than those that say where it lies in a table.
+    // Uses other bits of the hash than NameTable.
     return static_cast<std::uint32_t>((scattered(name) >> 32U) % ranks_);
   }
   void sort_by_keeper(std::vector<std::uint64_t>& names) const;
@@ -49,10 +51,10 @@ class NameDirectory {
   std::uint32_t ranks_;
   NameTable names_;
   std::vector<std::uint64_t> forgotten_;
-  // What is sent lies here until the next exchange.
+  // Data of the sent parcels; must stay in place until the next exchange.
   std::vector<std::uint64_t> sent_;
   std::vector<std::uint64_t> sent_forgotten_;
-  std::vector<std::uint32_t> asked_;  // ranks
+  std::vector<std::uint32_t> asked_;  // ranks that names were requested from
   std::vector<Wanted> wanted_;
 };
 

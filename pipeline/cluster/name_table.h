@@ -9,24 +9,24 @@
 
 namespace winnow {
 
-/// All bits of a number decide on all bits of the result: the finalizer of SplitMix64 (Steele, Lea,
-/// Flood 2014).
+/// Hash function: the finalizer of SplitMix64 (Steele, Lea, Flood 2014). Every input bit affects
+/// all output bits.
 [[nodiscard]] constexpr std::uint64_t scattered(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
   return x ^ (x >> 31U);
 }
 
-/// Sorts a copy. O(n log n).
+/// True if a value occurs twice. Sorts a copy. O(n log n).
 template <typename T>
 [[nodiscard]] bool has_twice(std::vector<T> values) {
   std::sort(values.begin(), values.end());
   return std::adjacent_find(values.begin(), values.end()) != values.end();
 }
 
-/// Names of bodies to numbers below 2^32 - 1, by linear probing; what is erased leaves no mark
-/// (Knuth, The Art of Computer Programming 3, 6.4, algorithm R). Throws std::bad_alloc as the
-/// standard containers do, and is then as it was.
+/// Hash table from names of bodies to numbers below 2^32 - 1, with linear probing. Erasing leaves
+/// no tombstones (Knuth, The Art of Computer Programming 3, 6.4, algorithm R). Throws
+/// std::bad_alloc like the standard containers, and is then unchanged.
 class NameTable {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -36,17 +36,17 @@ class NameTable {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t bytes() const noexcept { return places_.capacity() * sizeof(Place); }
 
-  /// The number of a name; kNone if there is none.
+  /// Returns the number of a name; kNone if there is none.
   [[nodiscard]] std::uint32_t find(std::uint64_t name) const noexcept {
     return places_.empty() ? kNone : places_[place_of(name)].number;
   }
 
-  /// Has what `find` reads brought near.
+  /// Prefetches the entry that `find` reads first.
   void fetch(std::uint64_t name) const noexcept {
     if (!places_.empty()) __builtin_prefetch(&places_[home_of(name)]);
   }
 
-  /// Room for so many names in all.
+  /// Reserves memory for `count` names in total.
   void reserve(std::size_t count) {
     std::size_t places = places_.empty() ? 16 : places_.size();
     while (count * 4 > places * 3) places *= 2;
@@ -58,7 +58,7 @@ class NameTable {
     }
   }
 
-  /// Gives a name a number, whether it had one or not.
+  /// Sets the number of a name, whether or not it had one.
   void set(std::uint64_t name, std::uint32_t number) {
     reserve(size_ + 1);
     Place& place = places_[place_of(name)];
@@ -66,12 +66,12 @@ class NameTable {
     place = {name, number};
   }
 
-  /// Forgets a name, if it is there.
+  /// Removes a name if it is present.
   void erase(std::uint64_t name) noexcept {
     if (find(name) == kNone) return;
     std::size_t gap = place_of(name);
     for (std::size_t i = next(gap); places_[i].number != kNone; i = next(i)) {
-      // What lies where it belongs, or between there and the gap, is found without moving it.
+      // An entry whose hash slot is behind the gap can stay.
       const std::size_t home = home_of(places_[i].name);
       if (((i - home) & mask()) < ((i - gap) & mask())) continue;
       places_[gap] = places_[i];

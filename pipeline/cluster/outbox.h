@@ -1,5 +1,8 @@
 #pragma once
 
+// Messages about bodies between ranks: Outbox collects them, BodyNews reads them, BodyChanges
+// collects their effect on the receiver. Used by RankBodies (boxes) and RankScene (records).
+
 #include <winnow/core/key.h>
 #include <winnow/pipeline/cluster_transport.h>
 #include "pipeline/cluster/name_table.h"
@@ -12,8 +15,8 @@
 
 namespace winnow {
 
-/// Walks two lists, both sorted by their entries' `to`: call(to, entries of one, of the other) for
-/// each receiver.
+/// Traverses two lists that are sorted by `to`: calls call(to, entries of the first list, entries
+/// of the second list) for each receiver.
 template <typename One, typename Other, typename Call>
 void for_each_receiver(std::span<const One> ones, std::span<const Other> others, Call&& call) {
   const auto run_to = [](const auto& entries, std::size_t first, std::uint32_t to) {
@@ -34,29 +37,30 @@ void for_each_receiver(std::span<const One> ones, std::span<const Other> others,
   }
 }
 
-/// What one rank tells others of bodies: such as they are to hold, and such as they hold no more.
-/// The columns of a parcel are, in this order, names and contents (boxes, or all that a body is) of
-/// bodies, whether each belongs to the receiver (1) or is a copy (0), and names of what is gone.
+/// Messages from one rank to others: bodies that they hold from now on, and bodies that they hold
+/// no longer. The columns of a parcel are, in this order: names and contents (boxes or records) of
+/// bodies, whether each belongs to the receiver (1) or is a copy (0), and names of bodies to
+/// remove.
 template <typename Content>
 class Outbox {
  public:
-  /// A body, and who was told of it.
+  /// A body to be sent.
   struct Body {
     std::uint64_t name = 0;
     std::uint32_t owner = 0;  ///< the rank that it belongs to
-    bool same = false;        ///< who has a copy need not be told
+    bool same = false;        ///< unchanged: ranks that have a copy need no message
   };
 
   void clear() noexcept {
     held_.clear();
     gone_.clear();
   }
-  /// Tells ranks other than `self` that hold a body from now on, and those that did `before` and do
-  /// no more. Both lists are sorted.
+  /// Adds messages for the ranks other than `self` that hold a body from now on (`now`), and for
+  /// ranks that held it `before` and hold it no longer. Both lists are sorted.
   void tell(std::uint32_t self, const Body& body, const Content& content,
             std::span<const std::uint32_t> before, std::span<const std::uint32_t> now);
 
-  /// Adds one parcel for each receiver, which look at columns of this.
+  /// Adds one parcel per receiver. The parcels refer to columns of this object.
   void pack(std::uint32_t from, std::vector<Parcel>& parcels);
 
  private:
@@ -79,14 +83,14 @@ class Outbox {
   std::vector<std::uint64_t> gone_names_;
 };
 
-/// A column of a parcel, as elements.
+/// Returns a column of a parcel as elements.
 template <typename T>
 [[nodiscard]] std::span<const T> column_of(const Parcel& parcel, std::size_t column) noexcept {
   const std::span<const std::byte> bytes = parcel.columns[column];
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
-/// A parcel of an Outbox as its receiver reads it.
+/// A parcel of an Outbox, as its receiver reads it.
 template <typename Content>
 struct BodyNews {
   explicit BodyNews(const Parcel& parcel) noexcept
@@ -101,14 +105,14 @@ struct BodyNews {
   std::span<const std::uint64_t> gone;
 };
 
-/// What a rank's bodies become by all that it was told, to be done at once.
+/// All changes of a rank's bodies that follow from the received parcels, to be applied at once.
 template <typename Place, typename Content>
 struct BodyChanges {
   std::vector<Key> dropped;
-  /// Of bodies that are here, and where they are now.
+  /// Bodies that are here already, and their new boxes or poses.
   std::vector<Key> keys;
   std::vector<Place> places;
-  /// Of others, all that they are, and which belong here.
+  /// Bodies to add: names, contents, and whether they belong to this rank.
   std::vector<BodyName> names;
   std::vector<Content> fresh;
   std::vector<std::uint8_t> belongs;
@@ -128,7 +132,7 @@ struct BodyChanges {
   }
 };
 
-/// Takes what parcels say is gone from the names, and calls drop(id).
+/// For each name that the parcels list as removed, calls drop(id) and erases it from the table.
 template <typename Content, typename Drop>
 void take_gone(std::span<const Parcel> parcels, NameTable& table, Drop&& drop) {
   for (const Parcel& parcel : parcels) {
@@ -163,7 +167,7 @@ void Outbox<Content>::tell(std::uint32_t self, const Body& body, const Content& 
 template <typename Content>
 void Outbox<Content>::pack(std::uint32_t from, std::vector<Parcel>& parcels) {
   const auto by_receiver = [](const auto& a, const auto& b) { return a.to < b.to; };
-  // Between two ranks all are for the other.
+  // With two ranks, all messages have the same receiver.
   const auto sort = [&](auto& entries) {
     if (std::ranges::is_sorted(entries, by_receiver)) return;
     std::stable_sort(entries.begin(), entries.end(), by_receiver);

@@ -1,3 +1,5 @@
+// Bodies of one rank of a Cluster: see rank_bodies.h. Called by cluster.cpp.
+
 #include "pipeline/cluster/rank_bodies.h"
 
 #include "partitions/rows/volume_source.h"
@@ -16,7 +18,7 @@ namespace {
   return true;
 }
 
-/// Of four keys; behind the greatest id comes 0.
+/// True for four keys with consecutive ids. The id after the greatest one is 0.
 [[nodiscard]] bool follow_each_other(std::span<const Key> keys) noexcept {
   const ObjectId first = keys[0].id;
   return ((keys[1].id - first - 1) | (keys[2].id - first - 2) | (keys[3].id - first - 3)) == 0;
@@ -35,7 +37,7 @@ RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& opt
       table_(options.memory),
       sorted_(options.memory) {}
 
-// ---- what the rank is told
+// ---- changes by the caller
 
 Status RankBodies::check(const ClusterBatch& batch) {
   if (batch.names.size() != batch.boxes.count) return Status::size_mismatch;
@@ -62,7 +64,7 @@ Status RankBodies::insert(const ClusterBatch& batch) {
 }
 
 void RankBodies::add_rows(std::span<const BodyName> names, std::span<const Key> keys) {
-  forget_pairs();  // numbers of bodies that were removed get other names
+  forget_pairs();  // ids of removed bodies are reused for other names
   std::size_t rows = names_.size();
   for (const Key& key : keys) rows = std::max<std::size_t>(rows, key.id + std::size_t{1});
   names_.resize(rows);
@@ -79,7 +81,7 @@ Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
   if (keys.size() != boxes.count) return Status::size_mismatch;
   const std::size_t moved = moved_.size();
   Status status = note_moves(keys, boxes) ? Status::ok : Status::invalid_key;
-  // Which knows as well which keys are stale and which boxes are none.
+  // The partition also checks for stale keys and invalid boxes.
   if (status == Status::ok) status = partition_.update(keys, boxes);
   if (status == Status::ok) return status;
   for (std::size_t i = moved; i < moved_.size(); ++i) flags_[moved_[i].key.id] &= ~kMoved;
@@ -87,7 +89,7 @@ Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
   return status;
 }
 
-/// Leaves in `beyond_` the numbers of the boxes that do not lie within this rank's region.
+/// Writes to `beyond_` the indices of boxes that are not contained in this rank's region.
 void RankBodies::find_beyond(const BoxView& boxes) {
   beyond_.resize(boxes.count);
   std::uint32_t found = 0;
@@ -103,8 +105,8 @@ void RankBodies::find_beyond(const BoxView& boxes) {
   beyond_.resize(found);
 }
 
-/// What lies within the region, and did, is nobody else's business. False if a key is that of none
-/// of this rank's own.
+/// Bodies that were and are contained in the region concern no other rank. Returns false if a key
+/// does not belong to this rank.
 bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   asked_.clear();
   const auto look = [this](Key key) {
@@ -118,7 +120,7 @@ bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   for (std::size_t i = 0; i < keys.size(); i += kTogether) {
     const std::span<const Key> some = keys.subspan(i, std::min(kTogether, keys.size() - i));
     if (some.size() == kTogether && follow_each_other(some)) {
-      // Most have no other flag.
+      // Fast path: most bodies have no other flag.
       std::array<std::uint8_t, kTogether> flags{};
       if (std::max(some.front().id, some.back().id) >= flags_.size()) return false;
       std::copy_n(flags_.data() + some.front().id, kTogether, flags.begin());
@@ -201,7 +203,7 @@ Status RankBodies::bodies(std::span<ClusterBody> bodies, std::span<Aabb> boxes) 
   return partition_.bounds(keys, boxes);
 }
 
-// ---- how bodies go where they belong
+// ---- migration
 
 Aabb RankBodies::box_of(Key key) const noexcept {
   Aabb box;
@@ -209,7 +211,7 @@ Aabb RankBodies::box_of(Key key) const noexcept {
   return box;
 }
 
-/// The boxes of the keys in `asked_`; false if some are stale.
+/// Looks up the boxes of the keys in `asked_`; false if any is stale.
 bool RankBodies::find_boxes() {
   boxes_.resize(asked_.size());
   return partition_.bounds(asked_, boxes_) == Status::ok;
@@ -250,7 +252,7 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
   departed_.clear();
   works_.clear();
   if (regions_changed) note_all_that_cross();
-  // One that is alone removes at once what it has told nobody of.
+  // A single rank removes bodies at once, without sending that.
   std::erase_if(moved_, [this](const Moved& moved) { return !partition_.contains(moved.key); });
   asked_.clear();
   for (const Moved& moved : moved_) asked_.push_back(moved.key);
@@ -262,7 +264,7 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
   moved_.clear();
 }
 
-/// Of bodies that did not move those are looked at that crossed the old region or cross the new.
+/// Notes unmoved bodies that crossed the old region or cross the new one.
 void RankBodies::note_all_that_cross() {
   asked_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
@@ -306,7 +308,7 @@ void RankBodies::tell(const Moved& moved, const Aabb& box, const Regions& before
 }
 
 Status RankBodies::receive(std::span<const Parcel> parcels) {
-  // What is gone first: a name may come anew in the same breath.
+  // Apply removals first: a name may be added again in the same exchange.
   take_gone<Aabb>(parcels, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(partition_.key_of(id));
     flags_[id] = 0;
@@ -355,10 +357,11 @@ Status RankBodies::apply_changes() {
   return Status::ok;
 }
 
-// ---- pairs, and the work that they make
+// ---- pairs, and the work that they cause
 
-/// A pair is reported where its boxes meet: on each axis at the larger of their low corners. That
-/// is below the region where both are. It is never above: what a rank holds meets its region.
+/// A pair is reported by the rank of its reference point: on each axis the larger of the two low
+/// corners. The point is below this region on an axis if both low corners are. It is never above,
+/// because every box that a rank holds overlaps its region.
 std::size_t RankBodies::put_reported_first() noexcept {
   return found_.partition([flags = flags_.data()](const Pair& pair) {
     const unsigned below = flags[pair.first] & kBelow;

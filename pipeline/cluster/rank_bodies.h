@@ -13,45 +13,49 @@
 
 namespace winnow {
 
-/// What one rank holds: the bodies that belong to it, and copies of those of others that its region
-/// meets, all in one partition. Throws std::bad_alloc where memory is refused.
+/// The bodies of one rank of a Cluster: bodies that belong to it, and copies (ghosts) of bodies of
+/// other ranks whose boxes overlap its region, all in one partition. Throws std::bad_alloc if
+/// memory is refused.
 class RankBodies {
  public:
   RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options);
 
-  // What the rank is told. Refused calls change nothing.
+  // Changes by the caller. A refused call changes nothing.
 
-  /// Whether a batch may be added, as far as this rank knows.
+  /// Checks a batch, except for names on other ranks.
   [[nodiscard]] Status check(const ClusterBatch& batch);
-  /// Adds a batch that was checked. Its bodies belong to this rank until they are settled.
+  /// Adds a checked batch. Its bodies belong to this rank until the next `send`.
   [[nodiscard]] Status insert(const ClusterBatch& batch);
   [[nodiscard]] Status move(std::span<const Key> keys, const BoxView& boxes);
   [[nodiscard]] Status move(std::span<const BodyName> names, const BoxView& boxes);
   [[nodiscard]] Status remove(std::span<const BodyName> names);
 
-  // How bodies go where they belong, and copies to where they are met.
+  // Migration: each body goes to the rank that it belongs to, and copies go to the other ranks
+  // whose regions its box overlaps.
 
-  /// Tells other ranks what was removed, and nothing else.
+  /// Prepares only the removals for other ranks.
   void send_removals(const Regions& regions);
-  /// Tells other ranks what they hold from now on and what no more, of bodies that changed, or of
-  /// all where regions did.
+  /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
+  /// or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
   void pack(std::vector<Parcel>& parcels) { outbox_.pack(rank_, parcels); }
-  /// Takes what others tell, and drops what this rank holds no more.
+  /// Applies parcels of other ranks, and removes what this rank holds no longer.
   [[nodiscard]] Status receive(std::span<const Parcel> parcels);
 
-  /// Brings the structure to where own bodies are, before copies come: what is left then is little.
+  /// Updates the structure for the own bodies while parcels are in transit, so that little remains
+  /// to be done when the copies arrive.
   void refresh() noexcept { (void)partition_.refresh(); }
-  /// Finds those that this rank reports.
+  /// Finds the pairs that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
-  /// Of the last `find_pairs`, until rows are added or they are forgotten.
+  /// Pairs of the last `find_pairs`; valid until rows are added or `forget_pairs` is called.
   [[nodiscard]] NamePairs pairs() const noexcept { return {reported_, names_.data()}; }
   void forget_pairs() noexcept { reported_ = {}; }
-  /// Boxes held and pairs found by the last `find_pairs`.
+  /// Number of boxes plus number of pairs found, in the last `find_pairs`.
   [[nodiscard]] std::uint64_t work() const noexcept { return partition_.size() + found_.size(); }
-  /// Shares the work of the last `find_pairs` among the bodies that made it; forgotten by `send`.
+  /// Distributes the work of the last `find_pairs` over the bodies that caused it. `send` resets
+  /// it.
   void measure_work();
-  /// Boxes of the bodies that belong here, and the work of each: 1 where it was not measured.
+  /// Boxes of the bodies that belong to this rank, and the work of each; 1 if it was not measured.
   [[nodiscard]] CutWork cut_work();
 
   [[nodiscard]] std::size_t size() const noexcept { return table_.size() - ghosts_; }
@@ -60,27 +64,27 @@ class RankBodies {
   [[nodiscard]] Status key_of(BodyName name, Key& key) const noexcept;
   [[nodiscard]] std::span<const ClusterBody> arrived() const noexcept { return arrived_; }
   [[nodiscard]] std::span<const BodyName> departed() const noexcept { return departed_; }
-  /// Names of removed bodies, since the last call of this.
+  /// Returns the names of bodies that were removed since the last call.
   [[nodiscard]] std::vector<BodyName> take_removed() { return std::exchange(removed_, {}); }
   [[nodiscard]] Bytes bytes() const noexcept;
 
  private:
-  /// What is known of a row, by the id of its key.
+  /// State of a row, indexed by the id of its key.
   enum Flag : std::uint8_t {
-    kOwned = 1,    // belongs here
-    kCrosses = 2,  // its box does not lie within this rank's region
-    kMoved = 4,    // in moved_
-    kRemoved = 8,  // to be told to others and dropped
-    // Of boxes that cross: where the low corner is below the region.
+    kOwned = 1,    // belongs to this rank
+    kCrosses = 2,  // its box is not contained in this rank's region
+    kMoved = 4,    // is in moved_
+    kRemoved = 8,  // to be removed here and on other ranks
+    // For boxes that cross: the axes on which the low corner is below the region.
     kBelowX = 16,
     kBelowY = 32,
     kBelowZ = 64,
     kBelow = kBelowX | kBelowY | kBelowZ,
   };
-  /// A body whose box is not the one that others were last told.
+  /// A body whose box may differ from the box that was last sent to other ranks.
   struct Moved {
     Key key;
-    Aabb told;  // empty: they know nothing of it
+    Aabb told;  // the box last sent; empty if there is none
   };
 
   [[nodiscard]] bool is_owned(Key key) const noexcept {
@@ -97,7 +101,7 @@ class RankBodies {
   void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
-  /// Of a body and where it is now: an empty box for one that was removed.
+  /// Sends one body with its current box; an empty box for a removed body.
   void tell(const Moved& moved, const Aabb& box, const Regions& before, const Regions& now);
   void take(const BodyNews<Aabb>& news);
   [[nodiscard]] Status apply_changes();
@@ -115,8 +119,8 @@ class RankBodies {
   std::vector<BodyName> removed_;
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
-  std::pmr::vector<Pair> sorted_;   // of those found, where they are not reported as they come
-  std::span<const Pair> reported_;  // in one of these
+  std::pmr::vector<Pair> sorted_;   // the pairs in canonical order, if that is requested
+  std::span<const Pair> reported_;  // in found_ or sorted_
   Outbox<Aabb> outbox_;
   BodyChanges<Aabb, Aabb> changes_;
   std::vector<std::uint32_t> works_;  // by id
@@ -126,8 +130,8 @@ class RankBodies {
   std::vector<std::uint32_t> ranks_now_;
   std::vector<Key> keys_;
   std::vector<std::uint32_t> beyond_;
-  std::vector<Key> asked_;   // for their boxes
-  std::vector<Aabb> boxes_;  // of these
+  std::vector<Key> asked_;   // keys whose boxes are looked up
+  std::vector<Aabb> boxes_;  // the boxes of asked_
 };
 
 }  // namespace winnow

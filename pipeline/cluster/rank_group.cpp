@@ -92,8 +92,7 @@ Status RankGroup::count(std::span<const RankCounts> counts, Status found) {
   return Status::ok;
 }
 
-/// A cut that helped is followed by another; after one that did not, things have to get worse
-/// first.
+/// After a cut that helped, cut again; after one that did not, only if the imbalance gets worse.
 void RankGroup::decide_on_cut() {
   constexpr double kHelped = 0.98;
   constexpr double kWorse = 1.05;

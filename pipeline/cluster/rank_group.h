@@ -15,7 +15,7 @@
 
 namespace winnow {
 
-/// What one rank found, to be summed over all.
+/// Counters of one rank, to be summed over all ranks.
 struct RankCounts {
   std::uint64_t bodies = 0;
   std::uint64_t ghosts = 0;
@@ -24,27 +24,29 @@ struct RankCounts {
   std::uint64_t work = 0;
 };
 
-/// Those of sorted parcels that are for one rank.
+/// Returns the parcels for one rank; they are sorted by receiver.
 [[nodiscard]] std::span<const Parcel> parcels_for(std::span<const Parcel> parcels,
                                                   std::uint32_t rank);
 
-/// The ranks of a cluster as this process sees them: how they speak, who has which part of space,
-/// which names are taken, and what was counted. What the ranks hold is no concern of it.
+/// The ranks of a cluster, as seen by this process: communication, regions, the directory of names,
+/// and statistics. Base of ClusterState and ClusterSceneState, which add the bodies.
 struct RankGroup {
   RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory);
 
   [[nodiscard]] bool is_alone() const noexcept { return ranks == 1; }
 
-  /// Sends what is in `parcels`, and counts what leaves its rank.
+  /// Sends `parcels`, and counts the bytes and messages between different ranks.
   [[nodiscard]] Status exchange(std::span<const Parcel>& received, const Meanwhile& meanwhile = {});
-  /// Gives ranks new regions, if the last frame asks for it. One entry for each hosted rank.
+  /// Computes new regions. `work` has one entry for each hosted rank.
   [[nodiscard]] Status cut_space(std::span<const CutWork> work);
-  /// Takes names for hosted ranks, and frees others, one list for each; `invalid_key` for a rank of
-  /// which one name is taken or wanted by two, which then gets none. In three exchanges.
+  /// Reserves names for the hosted ranks and frees others, one list for each rank. A rank gets
+  /// `invalid_key` and no names if one of its names is used, or is requested by two ranks. Takes
+  /// three exchanges.
   [[nodiscard]] Status take_names(std::span<const std::span<const BodyName>> freed,
                                   std::span<const std::span<const BodyName>> wanted,
                                   std::span<Status> answers);
-  /// Tells all ranks what each found, also that one could not, and whether to cut space anew.
+  /// Sums the counters of all ranks, distributes errors to all of them, and decides whether to cut
+  /// space again.
   [[nodiscard]] Status count(std::span<const RankCounts> counts, Status found);
 
   Transport& transport;
@@ -55,7 +57,7 @@ struct RankGroup {
   Regions regions;
   std::vector<Parcel> parcels;
   ClusterStatistics statistics;
-  // What decides on cuts, the same on every process.
+  // State of that decision, the same on every process.
   bool wants_cut = true;
   bool was_cut = false;
 
@@ -63,13 +65,13 @@ struct RankGroup {
   void decide_on_cut();
 
   double imbalance_;
-  double after_cut_ = std::numeric_limits<double>::infinity();  // imbalance
-  // Of this process, since statistics were last counted.
+  double after_cut_ = std::numeric_limits<double>::infinity();  // imbalance after the last cut
+  // Counters of this process since the last `count`.
   std::uint64_t bytes_ = 0;
   std::uint64_t messages_ = 0;
 };
 
-/// Which collective call: the same number on all processes.
+/// Identifies a collective call; all processes pass the same one.
 enum class CollectiveCall : std::uint32_t {
   add,
   replicate,
@@ -84,7 +86,7 @@ enum class CollectiveCall : std::uint32_t {
   nearest
 };
 
-/// A collective call: what goes wrong in it ends the cluster.
+/// Runs a collective call. Any error in it ends the cluster.
 template <typename State, typename Call>
 Status collective(State* state, CollectiveCall which, Call&& call) noexcept {
   if (state == nullptr) return Status::out_of_memory;
@@ -93,7 +95,7 @@ Status collective(State* state, CollectiveCall which, Call&& call) noexcept {
   return state->status = guarded(call, Status::out_of_memory);
 }
 
-/// A call of one rank: refused, it has changed nothing.
+/// Runs a call of one rank. If it is refused, it has changed nothing.
 template <typename State, typename Call>
 Status on_rank(State* state, std::uint32_t rank, Call&& call) noexcept {
   if (state == nullptr) return Status::out_of_memory;

@@ -1,3 +1,5 @@
+// Bodies of one rank of a ClusterScene: see rank_scene.h. Called by cluster_scene.cpp.
+
 #include "pipeline/cluster/rank_scene.h"
 
 #include "core/memory/guarded.h"
@@ -39,7 +41,7 @@ bool RankScene::is_good() const noexcept {
   return state().options_are_good;
 }
 
-// ---- what the rank is told
+// ---- changes by the caller
 
 Status RankScene::check(const ClusterSceneBatch& batch) {
   if (batch.names.size() != batch.bodies.size()) return Status::size_mismatch;
@@ -60,7 +62,7 @@ Status RankScene::check(const ClusterSceneBatch& batch) {
   return Status::ok;
 }
 
-/// Adds bodies to the scene, with keys in `keys_` and no flags but that they are new.
+/// Adds bodies to the scene. Their keys are in `keys_`; they have no flags except kNew.
 Status RankScene::add_bodies(std::span<const BodyName> names, std::span<const BodyRecord> bodies) {
   definitions_.clear();
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -98,7 +100,7 @@ Status RankScene::insert(std::span<const BodyName> names, std::span<const BodyRe
 Status RankScene::replicate(const ClusterSceneBatch& batch) {
   if (batch.names.empty()) return Status::ok;
   std::vector<BodyRecord> records;
-  // Before the first call of collide it may be what touched in a cluster that is restored.
+  // Before the first collide, the bodies may belong to a restored cluster and may have touched.
   const std::uint8_t is_new = has_collided_ ? 1 : 0;
   for (const BodyDefinition& body : batch.bodies) {
     records.push_back({body.pose, body.shape, body.filter, body.motion, is_new});
@@ -120,8 +122,8 @@ Status RankScene::move_replicated(std::span<const Pose> poses) {
   return scene_.move(replicated_keys_, poses);
 }
 
-/// Before a body's box changes, or the regions that it meets: what others know of it. Room was
-/// made.
+/// Records what other ranks store of a body, before its box or the regions change. The caller has
+/// reserved memory.
 void RankScene::note(ObjectId id, bool has_changed) {
   if ((flags_[id] & kMoved) != 0) return;
   moved_.push_back({state().keys.key_of(id), box_of(id), has_changed});
@@ -199,7 +201,7 @@ void RankScene::records(std::vector<BodyName>& names, std::vector<BodyRecord>& b
   }
 }
 
-// ---- how bodies go where they belong
+// ---- migration
 
 Aabb RankScene::box_of(ObjectId id) const noexcept {
   Aabb box;
@@ -223,7 +225,7 @@ Status RankScene::refresh() {
   return scene_.refresh();
 }
 
-/// Those that change where they lie have other boxes, though nobody moved them.
+/// Composite shapes that were changed in place have new boxes although nobody moved the bodies.
 void RankScene::note_changed_composites() {
   const MidPhase* const composites = state().options.composites;
   if (alone_ || composites == nullptr || composites->revision() == state().composites_seen) return;
@@ -254,14 +256,14 @@ void RankScene::send(const Regions& before, const Regions& now, bool regions_cha
   works_.clear();
   if (regions_changed) {
     note_all_that_cross();
-    // Which of them this rank reports is another question now.
+    // Other pairs are reported by this rank now.
     state().pairs.clear();
   }
   for (const Moved& moved : moved_) tell(moved, before, now);
   moved_.clear();
 }
 
-/// Of bodies that did not move those are looked at that crossed the old region or cross the new.
+/// Notes unmoved bodies that crossed the old region or cross the new one.
 void RankScene::note_all_that_cross() {
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     if (!is_owned(state().keys.key_of(id))) continue;
@@ -275,7 +277,7 @@ void RankScene::tell(const Moved& moved, const Regions& before, const Regions& n
   const bool removed = (flags_[id] & kRemoved) != 0;
   const Aabb box = removed ? Aabb{} : box_of(id);
   const bool is_known = !is_empty(moved.told);
-  // What lies within the region, and did, is nobody else's business.
+  // Bodies that were and are contained in the region concern no other rank.
   if (is_known && !removed && (flags_[id] & kCrosses) == 0 && is_within(box)) return;
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
   before.ranks_of(moved.told, ranks_before_);
@@ -303,7 +305,7 @@ void RankScene::tell(const Moved& moved, const Regions& before, const Regions& n
 }
 
 Status RankScene::receive(std::span<const Parcel> parcels) {
-  // What is gone first: a name may come anew in the same breath.
+  // Apply removals first: a name may be added again in the same exchange.
   take_gone<BodyRecord>(parcels, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(state().keys.key_of(id));
     flags_[id] = 0;
@@ -313,7 +315,7 @@ Status RankScene::receive(std::span<const Parcel> parcels) {
   return apply_changes();
 }
 
-/// Of a body that is here another one has told a new pose, or that it belongs here.
+/// For a body that is here already, another rank has sent a new pose, or that it belongs here now.
 void RankScene::take(const BodyNews<BodyRecord>& news) {
   for (std::size_t i = 0; i < news.names.size(); ++i) {
     const std::uint32_t id = table_.find(news.names[i]);
@@ -339,7 +341,7 @@ Status RankScene::apply_changes() {
   if (status == Status::ok && !changes_.names.empty()) {
     status = add_bodies(changes_.names, changes_.fresh);
   }
-  // The boxes of what came or moved tell whether it crosses.
+  // Whether new and moved bodies cross follows from their boxes.
   if (status == Status::ok) status = refresh();
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < changes_.names.size(); ++i) {
@@ -356,9 +358,9 @@ Status RankScene::apply_changes() {
   return Status::ok;
 }
 
-// ---- what touches
+// ---- contacts
 
-/// Of two boxes of which one lies within the region the rank reports the pair without a look.
+/// If one of the boxes is contained in the region, this rank reports the pair without another test.
 bool RankScene::reports(ObjectId a, ObjectId b) const noexcept {
   if (alone_) return true;
   if (((flags_[a] | flags_[b]) & kReplicated) != 0) return ((flags_[a] | flags_[b]) & kOwned) != 0;
@@ -367,7 +369,7 @@ bool RankScene::reports(ObjectId a, ObjectId b) const noexcept {
   return is_within({at, at});
 }
 
-/// What came is merged in, and what is gone left out, so that few changes cost little.
+/// Merges new bodies in and leaves removed ones out, so that few changes cost little.
 void RankScene::sort_names() {
   if (!has_lost_ && came_.empty()) return;
   std::erase_if(by_name_, [this](const NamedId& one) {
@@ -395,7 +397,7 @@ void RankScene::sort_names() {
 
 Status RankScene::collide(ContactLevel level) {
   sort_names();
-  // Contacts that remember nothing: what was here before may be elsewhere now.
+  // Let these contacts remember nothing: their bodies may have been on other ranks.
   contacts_.clear();
   const Status status = scene_.collide(level, contacts_);
   if (status != Status::ok) return status;
@@ -428,7 +430,7 @@ void RankScene::compare_contacts() {
   });
 }
 
-/// What the next call is to know of this one.
+/// Stores in the flags the state of this frame, which the next collide reads.
 void RankScene::settle_flags() {
   for (std::uint8_t& flags : flags_) {
     const bool settled = (flags & (kOwned | kCrosses)) == kOwned;

@@ -1,5 +1,8 @@
 #pragma once
 
+// One rank of a ClusterScene: the bodies that it holds, their migration to and from other ranks,
+// and its contacts. Used by cluster_scene.cpp and cluster_queries.cpp.
+
 #include <winnow/core/object_filter.h>
 #include <winnow/pipeline/cluster_scene.h>
 #include "pipeline/cluster/contact_events.h"
@@ -18,13 +21,13 @@ namespace winnow {
 
 struct SceneState;
 
-/// All that a body is: how ranks tell each other, and how it is kept. Without gaps.
+/// All data of a body, as ranks send and store it. Without padding.
 struct BodyRecord {
   Pose pose{};
   ShapeId shape{};
   ObjectFilter filter{};
   Motion motion = Motion::dynamic;
-  std::uint8_t is_new = 0;  ///< since the last `collide`
+  std::uint8_t is_new = 0;  ///< added since the last `collide`
   std::uint8_t spare[6] = {};
 
   [[nodiscard]] BodyDefinition definition(BodyName name) const noexcept {
@@ -33,8 +36,9 @@ struct BodyRecord {
 };
 static_assert(sizeof(BodyRecord) == 80);
 
-/// What one rank holds: a scene of the bodies that belong to it, copies of those of others that its
-/// region meets, and what is on every rank. Throws std::bad_alloc where memory is refused.
+/// The bodies of one rank of a ClusterScene: a scene of the bodies that belong to it, of copies
+/// (ghosts) of bodies of other ranks whose boxes overlap its region, and of replicated bodies.
+/// Throws std::bad_alloc if memory is refused.
 class RankScene {
  public:
   RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
@@ -42,88 +46,89 @@ class RankScene {
   RankScene(const RankScene&) = delete;
   RankScene& operator=(const RankScene&) = delete;
 
-  /// False for options out of range.
+  /// False if the options are out of range.
   [[nodiscard]] bool is_good() const noexcept;
 
-  // What the rank is told. Refused calls change nothing.
+  // Changes by the caller. A refused call changes nothing.
 
-  /// Whether bodies may be added, as far as this rank knows.
+  /// Checks a batch, except for names on other ranks.
   [[nodiscard]] Status check(const ClusterSceneBatch& batch);
-  /// Adds bodies that were checked. They belong to this rank until they are settled.
+  /// Adds checked bodies. They belong to this rank until the next `send`.
   [[nodiscard]] Status insert(std::span<const BodyName> names, std::span<const BodyRecord> bodies);
-  /// Adds bodies that were checked, and that are on every rank.
+  /// Adds checked bodies that are on every rank.
   [[nodiscard]] Status replicate(const ClusterSceneBatch& batch);
-  /// Whether replicated bodies of these names may have new poses.
+  /// Checks whether replicated bodies with these names may get new poses.
   [[nodiscard]] Status check_replicated(std::span<const BodyName> names,
                                         std::span<const Pose> poses);
-  /// Gives those for which the last `check_replicated` was `ok` their poses.
+  /// Moves the bodies of the last `check_replicated` that returned `ok`.
   [[nodiscard]] Status move_replicated(std::span<const Pose> poses);
   [[nodiscard]] Status move(std::span<const Key> keys, const PoseView& poses);
   [[nodiscard]] Status move(std::span<const BodyName> names, const PoseView& poses);
   [[nodiscard]] Status remove(std::span<const BodyName> names);
 
-  // How bodies go where they belong, and copies to where they are met.
+  // Migration: each body goes to the rank that it belongs to, and copies go to the other ranks
+  // whose regions its box overlaps.
 
-  /// Boxes as poses are. Before bodies are sent.
+  /// Updates the boxes for the current poses. Call before `send`.
   [[nodiscard]] Status refresh();
-  /// Tells other ranks what was removed, and nothing else.
+  /// Prepares only the removals for other ranks.
   void send_removals(const Regions& regions);
-  /// Tells other ranks what they hold from now on and what no more, of bodies that changed, or of
-  /// all where regions did.
+  /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
+  /// or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
   void pack(std::vector<Parcel>& parcels) { outbox_.pack(rank_, parcels); }
-  /// Takes what others tell, and drops what this rank holds no more.
+  /// Applies parcels of other ranks, and removes what this rank holds no longer.
   [[nodiscard]] Status receive(std::span<const Parcel> parcels);
 
-  // What touches.
+  // Contacts.
 
-  /// Finds contacts, and what is known of their events.
+  /// Finds contacts, and the events that this rank can decide without others.
   [[nodiscard]] Status collide(ContactLevel level);
   [[nodiscard]] ContactEvents& events() noexcept { return events_; }
   [[nodiscard]] const ContactEvents& events() const noexcept { return events_; }
-  /// Puts events into the contacts, once they are certain.
+  /// Writes the events to the contacts, after all ranks have agreed on them.
   void show_events();
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
 
   [[nodiscard]] RankCounts counts() const noexcept;
-  /// Shares the work of the last `collide` among the bodies that made it; forgotten by `send`.
+  /// Distributes the work of the last `collide` over the bodies that caused it. `send` resets it.
   void measure_work();
-  /// Boxes of the bodies that belong here, and the work of each: 1 where it was not measured.
+  /// Boxes of the bodies that belong to this rank, and the work of each; 1 if it was not measured.
   [[nodiscard]] CutWork cut_work();
 
   [[nodiscard]] std::size_t size() const noexcept { return owned_; }
   [[nodiscard]] Status bodies(std::span<ClusterBody> bodies) const;
-  /// All bodies that belong here.
+  /// Returns all bodies that belong to this rank.
   void records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const;
   [[nodiscard]] Status key_of(BodyName name, Key& key) const noexcept;
   [[nodiscard]] std::span<const ClusterBody> arrived() const noexcept { return arrived_; }
   [[nodiscard]] std::span<const BodyName> departed() const noexcept { return departed_; }
-  /// Names of removed bodies, since the last call of this.
+  /// Returns the names of bodies that were removed since the last call.
   [[nodiscard]] std::vector<BodyName> take_removed() { return std::exchange(removed_, {}); }
   [[nodiscard]] Bytes bytes() const noexcept;
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
-  /// Whether a shape may stand at a pose.
+  /// Checks whether a shape and a pose are valid.
   [[nodiscard]] Status check(ShapeId shape, const Pose& pose) const noexcept;
-  /// Of a shape that may.
+  /// Box around a valid shape at a valid pose.
   [[nodiscard]] Aabb box_around(ShapeId shape, const Pose& pose) const noexcept;
 
  private:
-  /// What is known of a body, by the id of its key.
+  /// State of a body, indexed by the id of its key.
   enum Flag : std::uint8_t {
-    kOwned = 1,        // belongs here
-    kCrosses = 2,      // its box does not lie within this rank's region
-    kMoved = 4,        // in moved_
-    kRemoved = 8,      // to be told to others and dropped
-    kReplicated = 16,  // on every rank
-    kNew = 32,         // since the last collide
-    kSettled = 64,     // belonged here at the last collide, and lay within
+    kOwned = 1,        // belongs to this rank
+    kCrosses = 2,      // its box is not contained in this rank's region
+    kMoved = 4,        // is in moved_
+    kRemoved = 8,      // to be removed here and on other ranks
+    kReplicated = 16,  // is on every rank
+    kNew = 32,         // added since the last collide
+    kSettled = 64,     // at the last collide belonged to this rank and did not cross
   };
-  /// A body that others may have to be told of.
+  /// A body that other ranks may need to be sent.
   struct Moved {
     Key key;
-    Aabb told;         // its box when they last were; empty: they know nothing of it
-    bool has_changed;  // and not regions alone
+    Aabb told;         // the box last sent; empty if there is none
+    bool has_changed;  // false if only the regions changed
   };
   struct NamedId {
     BodyName name;
@@ -175,8 +180,7 @@ class RankScene {
   std::vector<BodyName> departed_;
   Outbox<BodyRecord> outbox_;
   BodyChanges<Pose, BodyRecord> changes_;
-  // The order of pairs: all bodies by name, those that came since it was made, and what
-  // `selection_` looks at.
+  // Order of pairs: all bodies by name, bodies added since then, and the tables for `selection_`.
   std::vector<NamedId> by_name_;
   std::vector<NamedId> came_;
   bool has_lost_ = false;

@@ -71,8 +71,8 @@ void Regions::ranks_of(const ShapeRay& ray, std::vector<std::uint32_t>& ranks) c
   std::sort(ranks.begin(), ranks.end());
 }
 
-/// Each side gets the part of the ray that reaches it, and a little more. Comparisons are such that
-/// NaN, of infinities, is within.
+/// Each side gets the part of the ray that reaches it, enlarged by `slack`. The comparisons are
+/// written so that NaN, which infinities cause, counts as intersecting.
 void Regions::add_ranks(std::int32_t side, const ShapeRay& ray, double low, double high,
                         std::vector<std::uint32_t>& ranks) const {
   constexpr double kSlack = 1e-9;

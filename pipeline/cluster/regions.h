@@ -13,55 +13,57 @@
 
 namespace winnow {
 
-/// The point that two overlapping boxes share and whose rank reports them: on each axis the larger
-/// of the two low corners (as Dittrich and Seeger 2000 do without duplicates in a spatial join).
+/// Reference point of two overlapping boxes: on each axis the larger of the two low corners. The
+/// rank whose region contains it reports the pair (Dittrich and Seeger 2000 avoid duplicates in a
+/// spatial join in this way).
 [[nodiscard]] inline Vec3f meeting_point(const Vec3f& low_a, const Vec3f& low_b) noexcept {
   return low_a.max(low_b);
 }
 
-/// The middle of a box, a point of it also where it reaches to infinity.
+/// Returns the centre of a box, or some point of it if it is infinite.
 [[nodiscard]] inline Vec3f centre_of(const Aabb& box) noexcept {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Vec3f centre;
   for (int axis = 0; axis < 3; ++axis) {
     const float low = box.min[axis];
     const float high = box.max[axis];
-    // Halves do not overflow; the sum of two small ones may round out of the box.
+    // Halving first avoids overflow; the sum of two small halves may round to a point outside of
+    // the box.
     const bool finite = low != -infinity && high != infinity;
     centre[axis] = std::clamp(finite ? low * 0.5F + high * 0.5F : 0.0F, low, high);
   }
   return centre;
 }
 
-/// True if a box lies within another, borders included.
+/// True if `box` is contained in `region`, borders included.
 [[nodiscard]] inline bool contains(const Aabb& region, const Aabb& box) noexcept {
   return region.min.x() <= box.min.x() && box.max.x() <= region.max.x() &&
          region.min.y() <= box.min.y() && box.max.y() <= region.max.y() &&
          region.min.z() <= box.min.z() && box.max.z() <= region.max.z();
 }
 
-/// Which rank has which part of space: half-open boxes that leave nothing out.
+/// The region of each rank: half-open boxes that partition space.
 class Regions {
  public:
-  /// As the cuts say; none for one rank, which then has all of space.
+  /// Regions given by cuts. Without cuts there is one rank, which has all of space.
   explicit Regions(std::span<const RegionCut> cuts = {});
 
-  /// The rank of a point. O(depth of the cuts).
+  /// Returns the rank whose region contains a point. O(depth of the cuts).
   [[nodiscard]] std::uint32_t owner(const Vec3f& point) const noexcept;
-  /// The ranks whose regions a box meets, ascending; of an empty box none. O(ranks that it meets *
+  /// Returns the ranks whose regions a box overlaps, ascending; none for an empty box. O(ranks *
   /// depth).
   void ranks_of(const Aabb& box, std::vector<std::uint32_t>& ranks) const;
-  /// The ranks whose regions a valid ray meets, or passes by so closely that rounding could tell
-  /// otherwise; ascending. O(ranks that it meets * depth).
+  /// Returns the ranks whose regions a valid ray intersects, or misses by no more than rounding
+  /// errors, ascending. O(ranks * depth).
   void ranks_of(const ShapeRay& ray, std::vector<std::uint32_t>& ranks) const;
-  /// The closed box of all floats in a rank's region.
+  /// The closed box of all floats in the region of a rank.
   [[nodiscard]] const Aabb& of(std::uint32_t rank) const noexcept { return boxes_[rank]; }
 
  private:
   [[nodiscard]] std::int32_t root() const noexcept { return cuts_.empty() ? ~0 : 0; }
   void set_boxes(std::int32_t side, const Aabb& box);
   void add_ranks(std::int32_t side, const Aabb& box, std::vector<std::uint32_t>& ranks) const;
-  /// Of the part of a ray from t = low to t = high.
+  /// Adds the ranks of the part of a ray from t = low to t = high.
   void add_ranks(std::int32_t side, const ShapeRay& ray, double low, double high,
                  std::vector<std::uint32_t>& ranks) const;
 

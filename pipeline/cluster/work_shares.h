@@ -10,8 +10,8 @@
 
 namespace winnow {
 
-/// By its longest edge. A pair is the work of the smaller body: copies of the larger one meet it
-/// wherever it goes.
+/// Compares boxes by their longest edge. The work of a pair is charged to the smaller body, because
+/// copies of the larger one follow it to any rank.
 [[nodiscard]] inline bool is_larger(const Aabb& box, const Aabb& than) noexcept {
   const auto edge = [](const Aabb& of) {
     const Vec3f edges = of.max - of.min;
@@ -20,9 +20,9 @@ namespace winnow {
   return edge(box) > edge(than);
 }
 
-/// Shares a rank's work among the bodies that belong to it, in proportion to counts, each at least
-/// 1: copies that the rank holds are shared among all. `counts` and the result are by id, and so is
-/// `is_owned`.
+/// Distributes the work of a rank over the bodies that belong to it, in proportion to `counts`,
+/// each at least 1. So all of them share the work for the rank's copies. `counts`, the result and
+/// `is_owned` are indexed by id.
 template <typename IsOwned>
 [[nodiscard]] std::vector<std::uint32_t> shares_of(std::span<const std::uint64_t> counts,
                                                    IsOwned&& is_owned, std::uint64_t work) {

@@ -1,3 +1,6 @@
+// CompositePool: adds, scales, refits and removes meshes, height fields and compounds, and forwards
+// the functions of MidPhase to the other files here.
+
 #include <winnow/pipeline/composite_pool.h>
 
 #include "core/hooks/stage_scope.h"
@@ -16,7 +19,7 @@ namespace winnow {
 namespace mid {
 namespace {
 
-/// Of a list whose entries know those before and behind them.
+/// Insertion into and removal from a doubly linked list.
 template <typename Entry>
 void put_first(Entry*& first, Entry* entry) noexcept {
   entry->next = first;
@@ -29,7 +32,8 @@ void take_out(Entry*& first, Entry* entry) noexcept {
   if (entry->next != nullptr) entry->next->previous = entry->previous;
 }
 
-// A child's tree is made of degenerate triangles: two vertices each, the corners of its box.
+// Builds the tree of a compound: one degenerate triangle per child, with two opposite corners of
+// the child's box as vertices.
 [[nodiscard]] Status plant(const Compound& compound, std::pmr::memory_resource* memory) noexcept {
   Column<std::uint32_t> corners(memory);
   const std::size_t count = compound.count;
@@ -44,7 +48,7 @@ void take_out(Entry*& first, Entry* entry) noexcept {
                               std::span<const std::uint32_t>(corners.data(), corners.size()));
 }
 
-/// The box of a shape where it stands, turned.
+/// Box of a shape at a pose.
 [[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Mat& rotation,
                             const Vec& position) noexcept {
   if (!id.is_composite()) {
@@ -83,7 +87,7 @@ bool SharedMesh::find_corners() noexcept {
   for (std::uint32_t slot = 0; slot < view.triangle_count; ++slot) {
     const std::uint32_t active = view.triangle[slot] >> kActiveEdgeShift;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      // On edge k and on the one before.
+      // Edges that start or end at corner k.
       const std::uint32_t both = 1U << k | 1U << (k + 2) % 3;
       const std::uint32_t vertex = corner_of(view, k, slot);
       if ((active & both) != 0) active_corners[vertex / 32] |= 1U << vertex % 32;
@@ -220,7 +224,7 @@ Status Composites::fit(Compound& compound) noexcept {
   if (compound.tree != nullptr) compound.tree->~TriangleMesh();
   compound.tree = nullptr;
   if (compound.count <= kFlatChildren || !Box::of(compound.bounds).is_finite()) return Status::ok;
-  // Behind the compound is room for it.
+  // new_compound allocated room for the tree behind the compound.
   compound.tree = new (&compound + 1) TriangleMesh(memory);
   const Status status = plant(compound, memory);
   if (status == Status::ok) return status;

@@ -1,4 +1,5 @@
-// Meshes that several ids share are saved once; everything else is added as it was added first.
+// Saving and loading a CompositePool. A mesh shared by several ids is saved once. All other shapes
+// are saved as the arguments that they were added with.
 
 #include <winnow/pipeline/composite_pool.h>
 
@@ -17,8 +18,8 @@ namespace {
 constexpr std::string_view kCompositesMagic = "WINNOWCP";
 constexpr std::uint32_t kCompositesVersion = 1;
 
-/// A mesh entry: the number of the mesh that it shares, which is one more than all before it where
-/// the mesh itself follows, and its scale.
+/// Writes each mesh entry: the index of its shared mesh, the mesh itself if the index is new, and
+/// its scale.
 void put_meshes(ByteWriter& out, const mid::Places<mid::MeshEntry>& meshes,
                 Column<const mid::SharedMesh*>& known) {
   for (const mid::MeshEntry& entry : meshes.entries) {
@@ -60,11 +61,11 @@ void put_composites(ByteWriter& out, const mid::Composites& all,
     if (compound != nullptr) put_children(out, *compound);
   }
   put_ids(out, all.one_sided);
-  // Pools that have none are saved as they were before there were solids.
+  // Written only if there are solids: older snapshots end here.
   if (!all.solid.empty()) put_ids(out, all.solid);
 }
 
-/// A mesh with its first user, or a field, that `all` has no place for yet.
+/// Loads a mesh with one user, or a field. The caller adds it to the tables of `all`.
 [[nodiscard]] Status read_shared(std::span<const std::byte> saved, const Execution& execution,
                                  mid::Composites& all, mid::SharedMesh*& shared) {
   shared = all.new_mesh();
@@ -85,7 +86,7 @@ void put_composites(ByteWriter& out, const mid::Composites& all,
   return status;
 }
 
-/// Reads composites into a pool that has none.
+/// Reads a snapshot into an empty pool.
 class CompositesReader {
  public:
   CompositesReader(ByteReader& in, CompositePool& pool, mid::Composites& all,
@@ -210,7 +211,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
   if (!in.ok()) return logged(status_of(in), "CompositePool::load");
   CompositePool fresh(shapes_, memory_);
   Status status = Status::ok;
-  // Also of what is empty: a pool that has been used has seen changes, which are counted on.
+  // Also replaces a used pool by an empty one: `revision` must increase then.
   if (!in.rest().empty() || state_ != nullptr) {
     mid::Composites* const all = fresh.state();
     status = all == nullptr ? Status::out_of_memory : Status::ok;

@@ -1,5 +1,9 @@
 #pragma once
 
+// Storage of a CompositePool, and the functions that its members forward to: `expand` (expand.cpp,
+// search.cpp), `smooth` (smooth.cpp), `reduce` (reduce.cpp), and the traversals of queries
+// (visits.cpp, rays.cpp).
+
 #include <winnow/core/column.h>
 #include <winnow/pipeline/composite_pool.h>
 #include "pipeline/shapes/frame.h"
@@ -14,20 +18,21 @@
 
 namespace winnow::mid {
 
-/// Triangles that one id or several scaled ones refer to, in a list of all.
+/// A mesh that is used by one or more ids, which differ in scale. Element of a linked list of all
+/// meshes.
 struct SharedMesh {
   explicit SharedMesh(std::pmr::memory_resource* memory) noexcept
       : mesh(memory), active_corners(memory) {}
 
-  /// Finds the active corners of a mesh that has been built or fitted anew. False if there is no
-  /// room for them; there always is after the first time.
+  /// Finds the active corners after a build or refit. Returns false if memory is refused, which is
+  /// possible only the first time.
   [[nodiscard]] bool find_corners() noexcept;
   [[nodiscard]] bool is_active(std::uint32_t vertex) const noexcept {
     return (active_corners[vertex / 32] >> vertex % 32 & 1U) != 0;
   }
 
   TriangleMesh mesh;
-  /// A bit for each vertex that is on an active edge of any triangle.
+  /// One bit per vertex: set if the vertex is on an active edge of any triangle.
   Column<std::uint32_t> active_corners;
   std::uint32_t users = 0;
   SharedMesh* previous = nullptr;
@@ -39,39 +44,40 @@ struct MeshEntry {
   double scale[3] = {1.0, 1.0, 1.0};
 };
 
-/// True for what a mesh may be scaled by: products of such factors, their inverses, and squares of
-/// scaled lengths are finite.
+/// True if a mesh may be scaled by this factor. The range keeps products of two factors, their
+/// inverses and squares of scaled lengths finite.
 [[nodiscard]] inline bool is_scale(double factor) noexcept {
   return std::abs(factor) >= 1e-100 && std::abs(factor) <= 1e100;
 }
 
-/// Of a compound: a bit more tells of which of two bodies a part is.
+/// Maximal number of parts of a compound. One more bit of a part number selects body a or b.
 inline constexpr std::uint64_t kMaxParts = std::uint64_t{1} << 31U;
 
-/// So many children are tested one by one; more get a tree.
+/// Up to this many children are tested one by one; more get a tree.
 inline constexpr std::uint32_t kFlatChildren = 16;
 
 /// A compound and its children, in one block of memory.
 ///
-/// The tree of many children is that of a triangle mesh: the box of a child is the box of the
-/// degenerate triangle between its corners, so that every traversal of meshes is one of compounds.
-/// A Partition would prune as well, but its keys, change lists and free places are for objects that
-/// come, move and go; children never do, and scenes have many compounds of few children.
+/// The tree over many children is a TriangleMesh: each child is a degenerate triangle whose
+/// vertices are the corners of the child's box, so that every traversal of meshes also works for
+/// compounds. A Partition is not used: it has keys, change lists and free lists for objects that
+/// move, and children of a compound never do; many scenes have many small compounds.
 ///
-/// Parts are numbered child by child: a convex child is one, a surface has all its triangles.
+/// Parts are numbered child by child: one part per convex child, one per triangle of a surface.
 struct Compound {
   std::uint32_t count = 0;
   double radius = 0.0;
-  /// Of all children, in the compound's frame.
+  /// Box of all children, in the frame of the compound.
   Aabb bounds;
   const CompoundChild* children = nullptr;
   Aabb* boxes = nullptr;
-  /// By child, and how many parts there are; null if no child is a surface: child i is part i then.
+  /// First part of each child, then the number of parts. Null if no child is a surface: then child
+  /// i is part i.
   const std::uint32_t* first_part = nullptr;
-  /// Null for few children, or where one reaches to infinity.
+  /// Null if there are few children, or if one of them is unbounded.
   TriangleMesh* tree = nullptr;
   std::size_t bytes = 0;
-  /// In a list of those with surfaces.
+  /// Links of the list of compounds that have surfaces as children.
   Compound* previous = nullptr;
   Compound* next = nullptr;
 
@@ -79,7 +85,7 @@ struct Compound {
   [[nodiscard]] std::uint32_t parts() const noexcept {
     return has_surfaces() ? first_part[count] : count;
   }
-  /// The child that a part belongs to.
+  /// Returns the child that a part belongs to.
   [[nodiscard]] std::uint32_t child_of(std::uint32_t part) const noexcept {
     if (first_part == nullptr) return part;
     const std::uint32_t* const after = std::upper_bound(first_part, first_part + count, part);
@@ -87,7 +93,7 @@ struct Compound {
   }
 };
 
-/// Entries of one kind of shape with their free places. Entry must be false where it is free.
+/// Entries of one kind of shape, and a free list. A free entry must convert to false.
 template <typename Entry>
 struct Places {
   explicit Places(std::pmr::memory_resource* memory) noexcept : entries(memory), free(memory) {}
@@ -95,7 +101,7 @@ struct Places {
   Column<Entry> entries;
   Column<std::uint32_t> free;
 
-  /// Makes sure that `put` and a later `take` need no memory.
+  /// Reserves memory so that the next `put` and its later `take` cannot fail.
   [[nodiscard]] Status prepare() noexcept {
     if (!free.empty()) return Status::ok;
     const std::size_t count = entries.size() + 1;
@@ -121,7 +127,7 @@ struct Places {
   [[nodiscard]] std::size_t size() const noexcept { return entries.size() - free.size(); }
 };
 
-/// Ids of shapes that were told something of, sorted.
+/// A sorted set of shape ids.
 class IdSet {
  public:
   explicit IdSet(std::pmr::memory_resource* memory) noexcept : bits_(memory) {}
@@ -130,20 +136,20 @@ class IdSet {
   [[nodiscard]] bool has(ShapeId id) const noexcept {
     return !bits_.empty() && std::binary_search(bits_.begin(), bits_.end(), id.bits);
   }
-  /// Adds an id that is not there. False if memory is refused.
+  /// Adds an id that is not in the set. Returns false if memory is refused.
   [[nodiscard]] bool add(ShapeId id) noexcept {
     const std::ptrdiff_t place = place_of(id);
     if (!bits_.push_back(id.bits)) return false;
     std::rotate(bits_.begin() + place, bits_.end() - 1, bits_.end());
     return true;
   }
-  /// Takes an id out that is there.
+  /// Removes an id that is in the set.
   void remove(ShapeId id) noexcept {
     std::uint32_t* const at = bits_.begin() + place_of(id);
     std::copy(at + 1, bits_.end(), at);
     bits_.set_size(bits_.size() - 1);
   }
-  /// To be saved and read.
+  /// The ids as a column, for snapshots.
   [[nodiscard]] Column<std::uint32_t>& bits() noexcept { return bits_; }
   [[nodiscard]] const Column<std::uint32_t>& bits() const noexcept { return bits_; }
 
@@ -155,7 +161,7 @@ class IdSet {
   Column<std::uint32_t> bits_;
 };
 
-/// What a CompositePool holds.
+/// State of a CompositePool.
 struct Composites {
   Composites(const ShapePool& pool, std::pmr::memory_resource* memory) noexcept;
   ~Composites();
@@ -171,25 +177,26 @@ struct Composites {
     return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
   }
 
-  /// Null if memory is refused.
+  /// Returns null if memory is refused.
   [[nodiscard]] SharedMesh* new_mesh() noexcept;
-  /// One user less; with the last one it is given back.
+  /// Removes one user; deletes the mesh if it was the last one.
   void release(SharedMesh* shared) noexcept;
-  /// How many a shape has: triangles of a surface, holes of a field included; 1 of convex shapes.
+  /// Returns the number of parts: triangles of a surface, including holes of a field; 1 for a
+  /// convex shape.
   [[nodiscard]] std::uint32_t parts(ShapeId id) const noexcept;
   [[nodiscard]] double radius(ShapeId id) const noexcept;
   Status new_compound(std::span<const CompoundChild> children, Compound*& made) noexcept;
-  /// Finds the boxes of its children, and what follows from them. Without memory for a tree it has
-  /// none.
+  /// Updates the boxes of the children and everything that depends on them. If memory for a tree is
+  /// refused, the compound has none.
   Status fit(Compound& compound) noexcept;
-  /// The same of all compounds with a child that `is_changed(id)` is true of.
+  /// As above, for all compounds with a child for which `is_changed(id)` is true.
   template <typename IsChanged>
   void fit_users(IsChanged&& is_changed) noexcept {
     for (Compound* compound = first_of_surfaces; compound != nullptr; compound = compound->next) {
       if (has_child(*compound, is_changed)) (void)fit(*compound);
     }
   }
-  /// True if a surface is a child of a compound.
+  /// True if the surface is a child of a compound.
   [[nodiscard]] bool is_child(ShapeId surface) const noexcept {
     const auto is_this = [&](ShapeId id) { return id == surface; };
     const Compound* compound = first_of_surfaces;
@@ -203,8 +210,8 @@ struct Composites {
   Places<MeshEntry> meshes;
   Places<HeightField*> fields;
   Places<Compound*> compounds;
-  IdSet one_sided;  ///< surfaces whose triangles have a front
-  IdSet solid;      ///< meshes that have an inside
+  IdSet one_sided;  ///< surfaces with one-sided triangles
+  IdSet solid;      ///< solid meshes
   SharedMesh* first_mesh = nullptr;
   Compound* first_of_surfaces = nullptr;
   std::uint64_t revision = 0;
@@ -218,33 +225,36 @@ struct Composites {
   }
 };
 
-/// See MidPhase::expand. `all` may be null: there are no composite shapes then. O(pairs of bodies +
-/// pairs of primitives, each found in a traversal of O(log n + found)).
+/// See MidPhase::expand. If `all` is null, there are no composite shapes. O(pairs of bodies + pairs
+/// of primitives); each traversal is O(log n + found).
 ///
-/// Fixed chunks of pairs of bodies are searched as tasks, which write numbers to shared room; then
-/// what they found is counted, and the same chunks write it out where it belongs. Neither depends
-/// on how many threads there are.
+/// Tasks search fixed chunks of body pairs and write numbers to a shared arena. Then the results
+/// are counted, and tasks for the same chunks write them to their final positions. Neither step
+/// depends on the number of threads.
 Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
               std::span<const BodyPair> pairs, const PairMargins& margins,
               const Execution& execution, PrimitivePairs& out);
 
 /// See MidPhase::smooth.
 ///
-/// A contact of a triangle is one with an edge or a corner if that is what lies farthest along the
-/// contact's normal. Where a neighbour continues the surface beyond, the surface as a whole has no
-/// edge there, and only the face's normal makes sense. Then:
-/// - shapes that are apart keep their distance, its bound and their points, and get the normal;
-/// - so do shapes that only their rounding lets touch, with the point of a sphere moved below its
-///   centre, so that it does not turn;
-/// - others are clipped against the triangle along the normal, and the depth is that of the
-///   clipped points, at least what it was. It is as it was where nothing is left of them, and where
-///   it would be several times what it is for any contact of the same bodies: they are beside the
-///   surface then, not above it.
-/// No contact is lost: the distance to a face's plane is never more than that to the face. Contacts
-/// of triangles of two meshes stay as they are: which face's normal is meant is not known. Which
-/// edges are active is known for the front of a surface only; on its back concave edges, which look
-/// convex from there, are taken for internal ones too, so that a floor is flat whichever way its
-/// triangles are wound.
+/// A triangle touches with an edge or a corner if that feature is its farthest point along the
+/// contact normal. If a neighbouring triangle continues the surface behind the feature, it is not
+/// an edge of the surface as a whole (an internal edge), and only the normal of the face makes
+/// sense. Then:
+/// - Shapes that are apart keep their distance, its error bound and their points, and get the
+///   normal of the face.
+/// - Shapes that touch only because of their rounding do so too. The point of a sphere is moved
+///   below its centre, so that the contact exerts no torque.
+/// - Other shapes are clipped against the triangle along the normal. The depth becomes the depth of
+///   the clipped points, but at least the previous one. If no point is left, or if the depth would
+///   be several times the depth of all other contacts of the two bodies, the contact is not
+///   changed: the body is then beside the surface, not above it.
+///
+/// No contact is lost, because the distance to the plane of a face is at most the distance to the
+/// face. Contacts of two triangles (mesh against mesh) are not changed: it is ambiguous which
+/// normal to use. Active edges are computed only for the front of a surface. On its back, where
+/// concave edges look convex, concave edges also count as internal, so that a floor is flat for
+/// either winding.
 void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
             const Execution& execution, NarrowResult& result) noexcept;
 
@@ -252,8 +262,7 @@ void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMarg
 Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
               const PairMargins& margins, const Execution& execution, ContactRegions& out);
 
-/// See MidPhase::visit, visit_rays, place, visit_ray, visit_pairs, visit_near_pairs and visit_near.
-/// `id` is there, `pose` is valid.
+/// See the members of MidPhase with the same names. `id` must exist and `pose` must be valid.
 void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
            const PrimitiveVisitor& visitor);
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,

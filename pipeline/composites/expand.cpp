@@ -1,3 +1,7 @@
+// Expands pairs of bodies to pairs of primitives (MidPhase::expand). Search (search.cpp) finds the
+// pairs of one chunk of body pairs; this file runs the chunks as tasks, and copies the results to
+// PrimitivePairs.
+
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/search.h"
 
@@ -9,15 +13,15 @@ namespace {
 
 constexpr std::size_t kPairsPerTask = 32;
 
-/// What the search of a chunk tells the task that writes out what it found. Made of words, as all
-/// of the scratch is.
+/// Results of the search of one chunk, for the task that writes them out. Consists of words, like
+/// all data in the scratch column.
 struct ChunkRecord {
   std::uint32_t primitive_block;
   std::uint32_t pair_block;
   std::uint32_t primitives;
   std::uint32_t triangles;
   std::uint32_t pairs;
-  // How many the chunks before this one found.
+  // Totals of all earlier chunks.
   std::uint32_t first_primitive;
   std::uint32_t first_triangle;
   std::uint32_t first_pair;
@@ -51,7 +55,7 @@ class Expansion {
   void write_triangle(const PlacedBody& body, std::uint32_t number, std::size_t at,
                       std::uint32_t triangle) noexcept;
 
-  // A body whose shape has been removed touches nothing.
+  // The shape of a body may have been removed: then the body has no pairs.
   [[nodiscard]] bool is_there(std::uint32_t body) const noexcept {
     if (body >= bodies_.shapes.size() || body >= bodies_.poses.size()) return false;
     const ShapeId shape = bodies_.shapes[body];
@@ -68,7 +72,7 @@ class Expansion {
   [[nodiscard]] ChunkRecord* records() const noexcept {
     return reinterpret_cast<ChunkRecord*>(out_.scratch.data());
   }
-  /// How many primitives each pair of bodies has.
+  /// Number of primitives of each pair of bodies.
   [[nodiscard]] std::uint32_t* primitive_counts() const noexcept {
     const std::uint64_t records =
         WordArena::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t));
@@ -99,13 +103,13 @@ Status Expansion::run(const Execution& execution) noexcept {
 }
 
 bool Expansion::search_all(const Execution& execution) noexcept {
-  // Each chunk fills one block of both kinds at least, if it finds anything.
+  // A chunk that finds anything uses at least one block for primitives and one for pairs.
   std::uint64_t blocks = 2 * chunks_;
   while (true) {
     const std::uint64_t words = (head_ + blocks) * WordArena::kBlock;
     if (!std::in_range<std::size_t>(words)) return false;
     if (!out_.scratch.resize(static_cast<std::size_t>(words))) return false;
-    // All that has been reserved, so that a call like the last one needs no second run.
+    // Use all reserved memory, so that a repeated call does not have to search twice.
     blocks = out_.scratch.capacity() / WordArena::kBlock - head_;
     WordArena arena(this->blocks(), blocks);
     execution.for_each(chunks_, [&](std::size_t chunk) { search(chunk, arena); });

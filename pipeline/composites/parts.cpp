@@ -1,3 +1,5 @@
+// Traversal of the parts of shapes for queries; see parts.h.
+
 #include "pipeline/composites/parts.h"
 
 #include <winnow/core/rotation.h>
@@ -14,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A float box about the origin of a shape, brought to its place.
+/// Moves a float box about the origin of a shape to its position, rounded outward.
 PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
   PreciseBox result;
   for (int i = 0; i < 3; ++i) {
@@ -37,7 +39,7 @@ PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcep
     box.min = k == 0 ? corner : Vector3d(box.min.cwiseMin(corner));
     box.max = k == 0 ? corner : Vector3d(box.max.cwiseMax(corner));
   }
-  // Of the rotation, and of the sums below.
+  // Rounding errors of the rotation and of the sums below.
   const Vector3d position = Vector3d::Map(pose.position);
   const double slack = triangle.rounding +
                        mid::kSlack * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
@@ -108,8 +110,8 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
     visitor.visit(visitor.context, ConvexPart{placed.shape, placed.pose}, limit);
     return;
   }
-  // What reaches to infinity need not reach farther than the shape, whose box takes a look at all
-  // children of a compound.
+  // If the sweep is unbounded, clip it to the box of the shape. Computed only then, because the box
+  // of a compound visits all children.
   const auto is_infinite = [](double end) { return std::isinf(end); };
   if (std::any_of(sweep.min, sweep.min + 3, is_infinite) ||
       std::any_of(sweep.max, sweep.max + 3, is_infinite)) {

@@ -1,5 +1,8 @@
 #pragma once
 
+// Traversal of the convex parts of any shape for the queries (scene queries, sensors, times of
+// impact): a convex shape has itself as its only part; for a composite shape it calls MidPhase.
+
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
@@ -14,44 +17,44 @@
 
 namespace winnow {
 
-/// A box in double, in the axes of the world.
+/// A box in double, in world axes.
 struct PreciseBox {
   Eigen::Vector3d min;
   Eigen::Vector3d max;
 
-  /// Grown by `by` to all sides.
+  /// Returns the box enlarged by `by` on every side.
   [[nodiscard]] PreciseBox grown(double by) const noexcept;
   [[nodiscard]] BoxSweep standing() const noexcept;
 };
 
-/// Any shape where it stands.
+/// Any shape at a pose.
 struct PlacedShape {
   ShapeId shape;
   Pose pose;
 };
 
-/// A convex shape that a question is about: of a body, of a part of one, or a point.
+/// A convex shape in a query: a whole body, a primitive of a body, or a point.
 struct ConvexPart {
   ShapeId shape;
   Pose pose;
   std::uint32_t part = kWholeShape;
-  /// Triangles and balls that are not in the pool.
+  /// Null, or the shape itself if it is not in the pool.
   const TriangleShape* triangle = nullptr;
   const SphereShape* ball = nullptr;
   /// Added to the rounding of `triangle`.
   double thickness = 0.0;
-  /// Of `triangle`: see Primitive::front.
+  /// Facing of `triangle`; see Primitive::front.
   int front = 0;
 };
 
-/// The tables of a pool in which two parts are to be found, wherever they came from.
+/// Shape tables in which two parts can be looked up, whether or not they are in the pool.
 class PartTables {
  public:
   explicit PartTables(const ShapePool& pool) noexcept;
   PartTables(const PartTables&) = delete;
   PartTables& operator=(const PartTables&) = delete;
 
-  /// The id in `tables` of the part that is number `slot`, 0 or 1.
+  /// Stores a part in slot 0 or 1 and returns its id in `tables`.
   [[nodiscard]] ShapeId put(std::size_t slot, const ConvexPart& part) noexcept;
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
 
@@ -62,7 +65,7 @@ class PartTables {
   SphereShape balls_[2];
 };
 
-/// Traverses the parts of shapes, be they composite or their own only part.
+/// Traverses the parts of shapes; a convex shape is its own only part.
 class PartTraversal {
  public:
   PartTraversal(const ShapePool& shapes, const MidPhase* composites) noexcept
@@ -70,13 +73,13 @@ class PartTraversal {
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] bool contains(ShapeId shape) const noexcept;
-  /// No point of the shape is farther from its own origin; infinite for a half-space.
+  /// Upper bound on the distance of points of the shape from its origin; infinite for a half-space.
   [[nodiscard]] double radius(ShapeId shape) const noexcept {
-    // In place, so that scenes which ask for this alone link no composite shapes.
+    // Inline, so that scenes that use only this function do not link composite shapes.
     return shape.is_composite() ? composites_->radius(shape)
                                 : mid::radius_of(shapes_.tables(), shape);
   }
-  /// True if a solid holds a point of the other; see MidPhase::holds.
+  /// True if a solid contains a point of the other shape; see MidPhase::holds.
   [[nodiscard]] bool holds(const PlacedShape& solid, const PlacedShape& other) const {
     return solid.shape.is_composite() &&
            composites_->holds(solid.shape, solid.pose, other.shape, other.pose);
@@ -84,19 +87,19 @@ class PartTraversal {
   [[nodiscard]] bool holds(const PlacedShape& solid, const double point[3]) const {
     return solid.shape.is_composite() && composites_->holds(solid.shape, solid.pose, point);
   }
-  /// Contains the shape where it stands.
+  /// Returns a box that contains the shape.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
   [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;
 
-  /// Calls visit(part, limit) for every part that the sweep may meet, roughly in order; it gives
-  /// back the limit of t to go on with, below zero to end.
+  /// Calls visit(part, limit) for every part that the sweep may hit, roughly in order of time.
+  /// `visit` returns the limit of t for the rest of the traversal; a negative limit ends it.
   template <typename Visit>
   void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
     traverse(placed, sweep, sweep.max_t, false, visitor(visit));
   }
-  /// Calls meet(ray, part, hit, limit) for triangles that a ray meets for certain, and
-  /// look(ray, part, limit) for all other parts that it may meet up to its limit, of a composite
-  /// shape. See RayVisitor.
+  /// For a composite shape, calls meet(ray, part, hit, limit) for triangles that a ray certainly
+  /// hits, and look(ray, part, limit) for all other parts that it may hit up to its limit. See
+  /// RayVisitor.
   template <typename Meet, typename Look>
   void met_by_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
                    Meet&& meet, Look&& look) const {
@@ -105,7 +108,7 @@ class PartTraversal {
     composites_->visit_rays(placed.shape, placed.pose, rays, limits,
                             {&Meeting::call_meet, &Meeting::call_look, &meeting});
   }
-  /// The same of one ray, and a mesh that `place` made ready.
+  /// As above, for one ray and a mesh prepared by `place`.
   template <typename Meet, typename Look>
   void met_by_ray(const RaySurface& surface, const ShapeRay& ray, double limit, Meet&& meet,
                   Look&& look) const {
@@ -118,8 +121,8 @@ class PartTraversal {
   [[nodiscard]] bool place(const PlacedShape& placed, RaySurface& surface) const {
     return composites_->place(placed.shape, placed.pose, surface);
   }
-  /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it says
-  /// false. False, and nothing is shown, if these are no two meshes.
+  /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it returns
+  /// false. Returns false, without a call, if the shapes are not two meshes.
   template <typename Visit>
   bool pairs(const PlacedShape& a, const PlacedShape& b, Visit&& visit) const {
     using Visitor = std::remove_reference_t<Visit>;
@@ -132,8 +135,8 @@ class PartTraversal {
          &visit});
   }
   /// Calls visit(a, b, limit) for pairs of parts of two meshes that may be within `limit` of each
-  /// other, as `met` does; `normal` is that of a NearPairVisitor. False, and nothing is shown, if
-  /// they cannot be taken so.
+  /// other. `visit` returns the new limit, as in `met`; for `normal` see NearPairVisitor. Returns
+  /// false, without a call, if the shapes are not two meshes or MidPhase does not support them.
   template <typename Visit>
   bool near_pairs(const PlacedShape& a, const PlacedShape& b, double limit, const double* normal,
                   Visit&& visit) const {
@@ -146,7 +149,8 @@ class PartTraversal {
          },
          &visit, normal});
   }
-  /// Calls visit(part, limit) for every part that may be within `limit` of a box, as `met` does.
+  /// Calls visit(part, limit) for every part that may be within `limit` of a box; `visit` returns
+  /// the new limit, as in `met`.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
     traverse(placed, from.standing(), limit, true, visitor(visit));
@@ -191,20 +195,20 @@ class PartTraversal {
   const MidPhase* composites_;
 };
 
-/// True of a triangle that lies as it is given, about the part's position.
+/// True if `triangle` has no rounding and its pose has no rotation.
 [[nodiscard]] bool stands_unturned(const ConvexPart& part) noexcept;
 
-/// True if what the box is about stands behind a part, which is a one-sided triangle.
+/// True if the part is a one-sided triangle and the centre of the box is behind it.
 [[nodiscard]] bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept;
 
 [[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
 
-/// A shape's pose at the origin.
+/// Returns the pose with its position set to the origin.
 [[nodiscard]] Pose at_origin(const Pose& pose) noexcept;
 
-/// A shape's pose as seen from a position.
+/// Returns the pose relative to a position.
 [[nodiscard]] Pose relative(const Pose& pose, const double position[3]) noexcept;
 
 }  // namespace winnow

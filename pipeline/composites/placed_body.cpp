@@ -1,3 +1,5 @@
+// Transforms and primitives of a PlacedBody; see placed_body.h.
+
 #include "pipeline/composites/placed_body.h"
 
 #include "pipeline/shapes/extent.h"
@@ -7,8 +9,8 @@
 namespace winnow::mid {
 namespace {
 
-/// Most surfaces stand as they were made, and a ray through one costs little more than its
-/// rotation.
+/// Most surfaces are not rotated, and computing a rotation would be a large part of the cost of a
+/// ray.
 bool is_identity(const Quaternion& turn) noexcept {
   return turn[0] == 1.0 && turn[1] == 0.0 && turn[2] == 0.0 && turn[3] == 0.0;
 }
@@ -130,7 +132,7 @@ Box PlacedBody::box_in(const PlacedBody& other, double margin) const noexcept {
   if (kind == Kind::convex) return box_of(part(0), other, margin);
   const Vec offset = other.to_local * finite(position - other.position);
   if (!bounds.is_finite()) {
-    // A box that is infinite along one axis is so along all of them once it is turned.
+    // A box that is unbounded along one axis becomes unbounded along all axes by a rotation.
     return {Vec::Constant(-kInfinity), Vec::Constant(kInfinity)};
   }
   const Box box = box_under(bounds, other.to_local * to_world, offset, 0.0);
@@ -206,8 +208,8 @@ std::uint8_t PlacedBody::active(std::uint32_t number) const noexcept {
     }
     return static_cast<std::uint8_t>(bits);
   }
-  // Corners of a height field are active at the border alone: ridges that end at a corner, and
-  // holes, are not looked for.
+  // Corners of a height field are active only at the border of the field. Ridges that end at a
+  // corner, and holes, are not detected.
   bits = field->active_edges(number);
   for (std::uint32_t k = 0; k < 3; ++k) {
     if ((bits & (1U << k | 1U << (k + 2) % 3)) != 0) bits |= 8U << k;

@@ -1,5 +1,6 @@
-// A ray and the triangles of a surface, in the surface's own frame: neither the surface nor its
-// triangles are moved.
+// Rays against meshes, height fields and compounds (MidPhase::visit_rays and visit_ray). Rays are
+// transformed to the frame of the surface; the surface and its triangles are not transformed.
+// Intersections are computed by pipeline/mesh (mesh_rays.h, height_grid.h).
 
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/placed_body.h"
@@ -14,7 +15,7 @@
 namespace winnow::mid {
 namespace {
 
-/// A normal of a surface in its own frame turned into the world, of length 1.
+/// Transforms a normal from the frame of the surface to the world, and normalises it.
 [[nodiscard]] Vec unit_under(const SurfaceFrame& frame, const Vec& normal) noexcept {
   const Eigen::Map<const Mat> transposed(frame.to_own[0]);
   const auto times = [&](const Vec& of) {
@@ -27,7 +28,7 @@ namespace {
   return times(normal.stableNormalized()).stableNormalized();
 }
 
-/// The power of two that brings x, which is positive, into [1/2, 1).
+/// Returns the power of two that scales a positive x into [1/2, 1).
 [[nodiscard]] double scale_to_one(double x) noexcept {
   constexpr std::uint64_t kMostExponent = 2045;
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;
@@ -39,7 +40,8 @@ namespace {
   return std::ldexp(1.0, -power);
 }
 
-/// a - b + t * d, whose rounding is that of the result and not of the terms.
+/// Returns a - b + t * d with compensated sums: the rounding error is relative to the result, not
+/// to the terms.
 [[nodiscard]] double moved(double a, double b, double t, double d) noexcept {
   const double between = a - b;
   const double back = between - a;
@@ -52,8 +54,8 @@ namespace {
   return sum + (sum_error + step_error + lost);
 }
 
-/// A body and a ray about a place: what is lost of the ray by being made relative is put into where
-/// the body is.
+/// A body and a ray, both relative to `about`. The rounding error of the ray's origin is moved to
+/// the position of the body.
 struct NearBody {
   NearBody(const PlacedBody& placed, const Vec& about, const ShapeRay& of) noexcept
       : ray(of), body(placed) {
@@ -66,7 +68,7 @@ struct NearBody {
   PlacedBody body;
 };
 
-/// A surface that rays come to. Primitives are shown about another place.
+/// A surface as the target of rays. Visitors get primitives relative to `about`.
 struct RayTarget {
   RayTarget(const PlacedBody& placed, const Vec& show_about) noexcept
       : body(placed), about(show_about) {
@@ -89,14 +91,14 @@ struct RayTarget {
   SurfaceFrame frame;
 };
 
-/// A vector in a frame that is turned, added in the order of its columns.
+/// Transforms a vector to the frame of the surface; sums in the order of the columns.
 void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
   const auto& column = frame.to_own;
   for (int i = 0; i < 3; ++i) {
     own[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
   }
 }
-/// The largest coordinate that it has there whatever the signs of its own.
+/// Upper bound on the coordinates of the transformed vector, for any signs of `v`.
 [[nodiscard]] double largest_turned(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -112,9 +114,9 @@ void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Takes one ray into the frame of a surface, as kernels take eight. One that begins far away is
-/// moved to where it comes near the surface. False for one whose numbers are too large or too small
-/// for that.
+/// Transforms one ray to the frame of a surface, like the kernel for eight rays. If the ray starts
+/// far away, its origin is moved along the ray close to the surface. Returns false if its numbers
+/// are too large or too small.
 template <std::uint32_t Room>
 [[nodiscard]] bool place_ray(const SurfaceFrame& frame, const ShapeRay& ray, std::uint32_t lane,
                              SurfaceRayColumns<Room>& own) noexcept {
@@ -125,7 +127,7 @@ template <std::uint32_t Room>
         fastest < kMostRayLength && fastest > 1.0 / kMostRayLength)) {
     return false;
   }
-  // Where it is nearest comes after this much of the way.
+  // The closest approach to the surface's origin is at t = towards / square.
   const double towards = -dot(start, ray.direction);
   const double square = dot(ray.direction, ray.direction);
   double shift = 0.0;
@@ -158,31 +160,31 @@ template <std::uint32_t Room>
   return true;
 }
 
-/// Time of a ray in the frame of a surface, of the caller's.
+/// Converts t of the caller to t of the ray in the frame of a surface ("own" t).
 struct OwnTime {
   double shift;
-  /// One over the stretch, which is a power of two.
+  /// 1 / stretch, a power of two.
   double unit;
 
   [[nodiscard]] double operator()(double t) const noexcept { return (t - shift) * unit; }
-  /// Not less than what rounding makes of it.
+  /// Upper bound of own t, including rounding errors.
   [[nodiscard]] double limit(double t) const noexcept {
     return (*this)(t) + 0x1p-51 * (std::abs(t) + std::abs(shift)) * unit;
   }
-  /// The same for what was met elsewhere, with more room: triangles that the ray grazes may be met
-  /// earlier, by what rounding makes of them, than their boxes.
+  /// As above with a wider bound, for a limit that comes from another surface: by rounding, a
+  /// triangle that the ray grazes may be hit earlier than its box.
   [[nodiscard]] double first_limit(double t, double reach) const noexcept {
     const double most = limit(t);
     return most + 0x1p-20 * (std::abs(most) + reach);
   }
-  /// The own limit to go on with where that in the caller's t became `now`.
+  /// Returns the new own limit after the caller's limit changed from `before` to `now`.
   [[nodiscard]] double after(double before, double now, double own_before) const noexcept {
     if (now < 0.0) return -1.0;
     return now < before ? limit(now) : own_before;
   }
 };
 
-/// Takes rays through a surface, and tells of the triangles that they meet.
+/// Traces up to `Room` rays through a surface and reports the triangles that they hit.
 template <std::uint32_t Room>
 class RayGuides {
  public:
@@ -192,31 +194,31 @@ class RayGuides {
 
   [[nodiscard]] bool is_full() const noexcept { return count_ == Room; }
   void add(std::size_t ray, double limit) noexcept;
-  /// Calls elsewhere(ray) for those that take other ways.
+  /// Traces the added rays. Calls elsewhere(ray) for rays that cannot be transformed to the frame.
   template <typename Elsewhere>
   void go(Elsewhere&& elsewhere);
 
  private:
-  /// Gives back a bit for each that is left to place_ray.
+  /// Transforms the rays with the kernel. Returns one bit for each ray that is left to place_ray.
   [[nodiscard]] std::uint64_t place() noexcept;
   void go_through_mesh();
   void go_through_field(std::uint32_t i);
   [[nodiscard]] OwnTime time(std::uint32_t i) const noexcept { return {own_.shift[i], unit_[i]}; }
-  // Those that show a triangle, or some, give back the own limit to go on with.
+  // Functions that report triangles return the new own limit.
   [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                             double own_before);
   [[nodiscard]] double look(std::uint32_t i, std::uint32_t slot, double own_before);
   [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot, double own_before);
-  /// The limit in the caller's t has become `limit`.
+  /// Sets the limit in the caller's t, and returns the new own limit.
   [[nodiscard]] double after(std::uint32_t i, double limit, double own_before) noexcept;
 
   const RayTarget& target_;
   std::span<const ShapeRay> rays_;
   const RayVisitor& visitor_;
   std::uint32_t count_ = 0;
-  /// As the visitor knows them.
+  /// Indices of the rays that the visitor is called with.
   std::size_t number_[Room];
-  /// In the caller's t, and in own t as they begin.
+  /// Limits in the caller's t, and initial limits in own t.
   double limit_[Room];
   alignas(kRayAlignment<Room>) double own_limit_[Room];
   RayColumns<Room> world_;
@@ -368,11 +370,11 @@ double RayGuides<Room>::after(std::uint32_t i, double limit, double own_before) 
   return time(i).after(before, limit, own_before);
 }
 
-/// Shows all that the box of ray `number` meets: primitives, or children of a compound with
-/// surfaces.
+/// Calls `visitor.look` for all primitives whose boxes ray `number` hits; for a compound that has
+/// surfaces, calls `children` instead.
 void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& visitor,
                  const ChildVisitor& children) {
-  // By this much of its coordinates a box is grown before the tests of boxes, which round them.
+  // Relative growth of the ray's box before the box tests, which round coordinates.
   constexpr double kGrowth = 0x1p-47;
   const Eigen::Map<const Vec> from(near.ray.origin);
   const double grow = kGrowth * from.cwiseAbs().maxCoeff();
@@ -396,7 +398,7 @@ void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& vis
         children);
 }
 
-/// One ray through a mesh that was placed before, its number 0.
+/// One ray, number 0, through a mesh that was prepared by `place`.
 class LoneRay {
  public:
   LoneRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
@@ -411,7 +413,7 @@ class LoneRay {
     const PlacedBody body = PlacedBody::at(all_, surface_.shape, surface_.pose);
     return {body, body.position, ray_};
   }
-  // As those of RayGuides.
+  // As in RayGuides.
   [[nodiscard]] double meet(std::uint32_t slot, const SurfaceHit& found, double own_before);
   [[nodiscard]] double look(std::uint32_t slot, double own_before);
   [[nodiscard]] double after(double limit, double own_before) noexcept {
@@ -479,7 +481,7 @@ void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const d
   guides.go(look);
 }
 
-/// Primitives are shown about a place.
+/// Visitors get primitives relative to `about`.
 void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const ShapeRay> rays,
                    const double* limits, const RayVisitor& visitor) {
   const RayTarget target(surface, about);
@@ -487,8 +489,8 @@ void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const 
   (is_alone ? guide_rays<1> : guide_rays<kRaysAtOnce>)(target, rays, limits, visitor);
 }
 
-/// Ray `number` through a child of a compound with surfaces, both about the compound: gives back
-/// the limit to go on with.
+/// Traces ray `number` through a child of a compound that has surfaces; both are relative to the
+/// compound. Returns the new limit.
 [[nodiscard]] double visit_child(const PlacedBody& child, const ShapeRay& ray, std::size_t number,
                                  double limit, const RayVisitor& visitor) {
   if (!child.is_surface()) {
@@ -515,7 +517,7 @@ void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const 
   return passing.limit;
 }
 
-/// What a child's triangles are met at may be earlier than what its box is, by rounding.
+/// By rounding, a triangle may be hit earlier than the box of its child.
 constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
 }  // namespace

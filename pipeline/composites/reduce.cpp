@@ -1,3 +1,8 @@
+// Contact reduction (MidPhase::reduce): merges the manifolds of each pair of bodies into regions of
+// nearly parallel normals, and chooses the points of each region (manifold/region_points.h). Called
+// by the scene after `smooth`, if SceneOptions::contact_reduction is set.
+// In this file, an answer is the narrow-phase result of one pair of primitives.
+
 #include <winnow/core/rounding.h>
 #include "core/sort/stretches.h"
 #include "pipeline/composites/composites.h"
@@ -17,23 +22,24 @@ namespace {
 constexpr std::size_t kBodiesPerStretch = 64;
 constexpr std::uint32_t kNoRegion = ~0U;
 
-// Unit normals that differ by less are the same; how far outside of a triangle, and over or under
-// its plane, a float position in it may lie, as a share of the size.
+// Unit normals that differ by less count as equal. Relative distance by which a float position in a
+// triangle may be outside of it, or above or below its plane.
 constexpr double kSameFace = 1e-9;
 constexpr double kBesideSlack = 4e-6;
-// How far from the middle of its gap a point may be that has the depth of another one, likewise.
+// Relative distance from the middle of its gap of a point that was given the depth of another one.
 constexpr double kGapSlack = kBesideSlack + kTiedDepth;
 
-// By which points are told apart that are equally far out: off the axes of what is regular.
+// Direction for breaking ties between points that are equally far out; not along a symmetry axis of
+// regular shapes.
 constexpr double kOffCorners[3] = {0.3624, 0.932, 0.65};
 
-/// The triangle of a mesh in a contact along its face's normal: what tells contacts with the face
-/// from those with an edge that neighbours continue, which `smooth` gave the same normal. Of other
-/// contacts nothing, which has them all.
+/// The mesh triangle of a contact along the normal of its face. Distinguishes contacts with the
+/// face from contacts with an internal edge, to which `smooth` gave the same normal. For all other
+/// contacts it is default-constructed: then `has` is always true.
 class FaceOfMesh {
  public:
   FaceOfMesh() noexcept = default;
-  /// `at`: where the triangle stands, measured as contacts will be. `normal`: of the contact,
+  /// `at`: position of the triangle, in the frame of the contacts. `normal`: contact normal,
   /// towards the triangle.
   FaceOfMesh(const TriangleShape& triangle, const Vec& at, const Vec& normal) noexcept
       : normal_(normal) {
@@ -46,8 +52,8 @@ class FaceOfMesh {
 
   [[nodiscard]] bool is_face() const noexcept { return is_face_; }
 
-  /// Whether a contact is over the triangle, and as far from it as it says where they are apart.
-  /// `from`: what its position is measured from.
+  /// True if a contact is over the triangle and, if the shapes are apart, at the distance from it
+  /// that its depth states. `from`: origin of its position.
   [[nodiscard]] bool has(const ContactPoint& contact, const double* from) const noexcept {
     if (!is_face_) return true;
     const Vec at = Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>() +
@@ -57,7 +63,7 @@ class FaceOfMesh {
     return (gap <= 0.0 || std::abs(height - 0.5 * gap) <= kGapSlack * reach(at, 0)) && is_under(at);
   }
 
-  /// Whether a point, seen along the normal, is in the triangle.
+  /// True if the projection of a point along the normal is in the triangle.
   [[nodiscard]] bool is_under(const Vec& at) const noexcept {
     for (int i = 0; i < 3; ++i) {
       const double inward = turn_ * normal_.dot(side_[i].cross(at - corner_[i]));
@@ -78,13 +84,13 @@ class FaceOfMesh {
   bool is_face_ = false;
 };
 
-/// The corners of a primitive's supporting feature along the normal of a region.
+/// Vertices of the supporting feature of a primitive along the normal of a region.
 class SupportCorners {
  public:
   [[nodiscard]] bool is_of(std::uint32_t primitive) const noexcept {
     return primitive == primitive_;
   }
-  /// `from`: what the patch, scaled by `unit`, is measured from.
+  /// `unit` and `from`: scale and origin of the patch.
   void set(std::uint32_t primitive, const Patch& patch, double unit, const double* from) noexcept {
     primitive_ = primitive;
     count_ = patch.count;
@@ -115,11 +121,11 @@ class Reduction {
   [[nodiscard]] Status run(const Execution& execution) noexcept;
 
  private:
-  /// Answers about one pair of bodies that touch, and which region each is of.
+  /// Answers of one pair of bodies that are within the margin, and the region of each.
   struct Members {
     std::span<std::uint32_t> answer;
     std::span<std::uint32_t> region;
-    /// Contacts are no farther apart.
+    /// Contact margin of the pair of bodies.
     double margin;
   };
 
@@ -235,8 +241,8 @@ double Reduction::tie_of(const Members& members) const noexcept {
   return kRegionTie * reach;
 }
 
-// The deepest of those that are of no region yet: of equally deep ones always the same, so that
-// rounding does not choose the normal of a face that rests.
+// Returns the deepest answer without a region. Among nearly equal ones it returns the first, so
+// that rounding does not choose the normal of a resting face.
 std::size_t Reduction::leader_of(const Members& members, double tie) const noexcept {
   double least = kInfinity;
   for (std::size_t i = 0; i < members.answer.size(); ++i) {
@@ -251,8 +257,8 @@ std::size_t Reduction::leader_of(const Members& members, double tie) const noexc
   return leader;
 }
 
-// Gives the leader's region those of no region that are nearly parallel to it. Returns how many
-// there are with itself.
+// Adds to the leader's region all answers without a region whose normals are nearly parallel.
+// Returns their number, including the leader.
 std::size_t Reduction::gather(const Members& members, std::size_t leader, std::uint32_t number,
                               ContactRegion& region) const noexcept {
   const std::uint32_t lead = members.answer[leader];
@@ -300,7 +306,8 @@ void Reduction::choose(const Members& members, std::uint32_t number, double tie,
   region.count = points.choose(region.point);
 }
 
-// Turns with the one primitive that touches those of the other body; if there is none, it stays.
+// Direction for breaking ties. If all pairs of the region share one primitive, it is fixed in the
+// frame of that primitive, else in the world.
 Vec Reduction::direction_of(const Members& members, std::uint32_t number) const noexcept {
   const Vec off = Eigen::Map<const Vec>(kOffCorners);
   const BodyPair* first = nullptr;
@@ -341,10 +348,10 @@ solver::Problem Reduction::problem_of(std::uint32_t answer) const noexcept {
   return problem;
 }
 
-// Of a manifold that is full, corners may have been left out that span the widest area with other
-// manifolds; of one apart, those that are farther than the edge that is nearest. What lies beside a
-// triangle whose neighbours continue the surface is nearer to these: it stays only if it is deeper
-// than all that lies over the region.
+// A full manifold may have dropped corners that, with other manifolds, span the largest area. A
+// manifold of shapes that are apart has only the points near the closest edge. In these cases add
+// all corners. A contact beside its triangle is closer to a neighbouring triangle: add_beside keeps
+// it only if it is deeper than all contacts over the triangles of the region.
 void Reduction::add_contacts(std::uint32_t answer, double margin, const ContactRegion& region,
                              SupportCorners& corners, RegionPoints& points) const noexcept {
   const BodyPair& of = primitives(answer);
@@ -362,7 +369,7 @@ void Reduction::add_contacts(std::uint32_t answer, double margin, const ContactR
   }
 }
 
-// Whether a corner of what stands on the region is over the triangle.
+// True if a supporting vertex of the other primitive is over the triangle.
 bool Reduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
                              const ContactRegion& region, SupportCorners& corners) const noexcept {
   const BodyPair& of = primitives(answer);
@@ -378,8 +385,8 @@ bool Reduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
   return corners.any_over(face);
 }
 
-// All corners of what the two primitives share, seen along the manifold's normal. None is deeper
-// than the manifold.
+// Adds all corners of the intersection of the two supporting features, seen along the normal of the
+// manifold. None gets deeper than the manifold.
 void Reduction::add_corners(std::uint32_t answer, double margin, const FaceOfMesh& face,
                             RegionPoints& points) const noexcept {
   const BodyPair& of = primitives(answer);
@@ -393,7 +400,7 @@ void Reduction::add_corners(std::uint32_t answer, double margin, const FaceOfMes
   const auto scaled = [&](float x) {
     return finite_float(unscaled(problem, static_cast<double>(x)));
   };
-  // Where the features meet deeper than the manifold, it is not about them.
+  // If the features overlap deeper than the manifold, the manifold belongs to other features.
   const double slack = kBesideSlack * unscaled(problem, problem.size);
   if (count == 0 || static_cast<double>(scaled(corners[0].depth) - deepest) > slack) return;
   const std::uint32_t part[2] = {pairs_.part[of.a], pairs_.part[of.b]};

@@ -1,3 +1,7 @@
+// Finds the pairs of primitives of two bodies that may touch (see search.h): children of compounds,
+// triangles of meshes and height fields. Called by expand.cpp; the tree traversals are in
+// pipeline/mesh.
+
 #include "pipeline/composites/search.h"
 
 #include "pipeline/mesh/height_grid.h"
@@ -11,10 +15,10 @@
 namespace winnow::mid {
 namespace {
 
-// A convex shape is its own only part.
+// Number of the only part of a convex shape.
 constexpr std::uint32_t kOnly[1] = {0};
 
-/// What a half-space is in the frame of a mesh.
+/// Finds the triangles of a mesh that are within `margin` of a half-space.
 void find_below(const HalfSpaceShape& shape, const PlacedPart& part, const PlacedBody& surface,
                 double margin, SlotSink& out) noexcept {
   const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
@@ -25,7 +29,7 @@ void find_below(const HalfSpaceShape& shape, const PlacedPart& part, const Place
   mesh_below(*surface.mesh, own_normal.data(), shape.offset - base + margin + noise, out);
 }
 
-/// From the frame of a mesh to that of a part.
+/// Transform from the frame of a mesh to the frame of a part.
 [[nodiscard]] MeshPlacement mesh_in(const PlacedPart& part, const PlacedBody& surface) noexcept {
   MeshPlacement placement;
   const Mat linear = part.rotation.transpose() * surface.to_world;
@@ -37,8 +41,8 @@ void find_below(const HalfSpaceShape& shape, const PlacedPart& part, const Place
   return placement;
 }
 
-/// A plane through a triangle: its normal, not of unit length, and what rounding does to heights
-/// above it, for each unit of length of what is asked.
+/// Plane of a triangle: its normal (not normalised), and the rounding error of heights above it,
+/// per unit of length of the tested points.
 struct TrianglePlane {
   explicit TrianglePlane(const Corners& t) noexcept
       : normal(t.edge[0].cross(t.edge[1])),
@@ -50,7 +54,8 @@ struct TrianglePlane {
   double noise;
 };
 
-// All above or all below `low` and `high`, in units of the plane's normal.
+// True if the heights from `low` to `high` are all above or all below the plane by more than
+// `margin`. Heights are multiplied by the length of the normal.
 [[nodiscard]] bool is_beyond(const TrianglePlane& plane, double low, double high, double scale,
                              double margin) noexcept {
   return std::max(low, -high) > margin * plane.length + plane.noise * scale;
@@ -80,15 +85,15 @@ struct TrianglePlane {
       margin);
 }
 
-/// True if one well-chosen axis shows that a part is farther from a triangle than `margin`: always
-/// the right one for spheres and half-spaces. False proves nothing.
+/// True if one well-chosen axis shows that a part is farther from a triangle than `margin`. Exact
+/// for spheres and half-spaces; conservative for other shapes: false proves nothing.
 [[nodiscard]] bool is_apart(const ShapeTables& tables, const PlacedPart& part,
                             const Corners& triangle, double margin) noexcept {
   if (part.shape.kind() == ShapeKind::half_space) {
     return half_space_apart(tables.half_spaces[part.shape.index()], part, triangle, margin);
   }
-  // The direction from the triangle's closest point to the middle of the part: a triangle's plane
-  // where that is above its inside, and a better axis where it is not.
+  // The direction from the triangle's closest point to the middle of the part: the normal of the
+  // triangle if the middle is above its inside, and a better axis otherwise.
   const Vec from = part.position - triangle.first;
   const Vec axis = direction_to(from + part.middle, triangle.edge[0], triangle.edge[1]);
   const double length = axis.norm();
@@ -103,7 +108,7 @@ struct TrianglePlane {
          enough;
 }
 
-/// The same of two triangles, by their boxes and by both planes.
+/// As above for two triangles: tests their boxes and both planes.
 [[nodiscard]] bool is_apart(const Corners& a, const Corners& b, double margin) noexcept {
   for (int i = 0; i < 3; ++i) {
     const double low = std::min({0.0, a.edge[0][i], a.edge[1][i]});
@@ -136,7 +141,8 @@ void Search::run(const PlacedBody& a, const PlacedBody& b, double margin) noexce
   }
 }
 
-/// Children of a compound with surfaces; a body by itself is its own only one.
+/// Returns the nearby children of a compound that has surfaces; any other body is its own only
+/// child.
 std::span<const std::uint32_t> Search::bodies_near(const PlacedBody& body, const Box& box,
                                                    Room& room) noexcept {
   if (!body.has_surfaces()) return kOnly;
@@ -185,7 +191,7 @@ void Search::parts_surface(const PlacedBody& parts, const PlacedBody& surface,
   }
 }
 
-// The traversal has held triangles of meshes against hulls already.
+// For hulls against meshes, the traversal has already tested each triangle against the hull.
 bool Search::is_left_out(const PlacedPart& part, const Box& about, const PlacedBody& surface,
                          std::uint32_t triangle) const noexcept {
   const bool is_tested =
@@ -207,7 +213,7 @@ void Search::mesh_mesh(const PlacedBody& a, const PlacedBody& b) noexcept {
 
 void Search::take_slots(void* context, SlotPairSink& found) noexcept {
   const PairOfBodies& sides = *static_cast<const PairOfBodies*>(context);
-  // The traversal has tested boxes and planes of both: no test made here would drop more.
+  // The traversal has already tested boxes and both planes: only facing remains to be tested.
   const bool has_front = sides.a.front != 0 || sides.b.front != 0;
   for (std::uint64_t i = 0; i < found.size; ++i) {
     Corners corners[2];
@@ -221,8 +227,8 @@ void Search::take_slots(void* context, SlotPairSink& found) noexcept {
   found.size = 0;
 }
 
-// At least one of them is a height field, which answers boxes so cheaply that a traversal of two
-// trees would gain little.
+// At least one body is a height field. Box queries on it are so cheap that traversing both trees at
+// once would gain little.
 void Search::surfaces(const PlacedBody& a, const PlacedBody& b) noexcept {
   for (const std::uint32_t of_a : triangles_near(b.box_in(a, margin_), a, outer_)) {
     Corners corners[2];
@@ -250,7 +256,7 @@ std::span<const std::uint32_t> Search::collect(Room& room, Find&& find) noexcept
   find(found);
   const auto count = static_cast<std::size_t>(found.size);
   if (count <= kRoom) return {room.data(), count};
-  // The room that all tasks share: not given back before the next call.
+  // Take memory from the arena of all tasks. It is freed only with the arena.
   std::uint32_t* const more = arena_.take(count);
   if (more == nullptr) return {};
   found = {more, count, 0};
@@ -272,7 +278,7 @@ std::span<const std::uint32_t> Search::children_near(const PlacedBody& body, con
   const MeshView& tree = view_of(*compound.tree);
   const std::span<const std::uint32_t> slots = collect(
       room, [&](SlotSink& out) { mesh_overlap(tree, box.min.data(), box.max.data(), out); });
-  // The slots lie in this search's own room, where they are replaced.
+  // The slots are in memory of this search, so they can be replaced in place.
   auto* const children = const_cast<std::uint32_t*>(slots.data());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     children[i] = tree.triangle[slots[i]] & kTriangleNumberMask;
@@ -289,8 +295,8 @@ std::span<const std::uint32_t> Search::triangles_near(const PlacedPart& part,
   }
   const Box box = box_of(part, surface, margin_);
   if (surface.kind != PlacedBody::Kind::mesh) return triangles_near(box, surface, inner_);
-  // A ball about the part as well: of most shapes' boxes it leaves half of the triangles. A hull
-  // itself leaves a quarter.
+  // Also test a bounding sphere: for most shapes it rejects half of the triangles that overlap the
+  // box. Testing a hull itself leaves a quarter.
   const Vec center = surface.to_local * finite(part.position + part.middle - surface.position);
   const double noise = kSlack * (center.lpNorm<1>() + surface.to_local.cwiseAbs().maxCoeff() *
                                                           surface.position.lpNorm<1>());

@@ -9,15 +9,15 @@
 
 namespace winnow::mid {
 
-/// Finds the primitives of pairs of bodies that may touch: one task's search. What it finds goes to
-/// an arena, as numbers within the bodies, to be written out once all tasks have counted.
+/// Finds the primitives of a chunk of body pairs that may touch. Writes them to an arena as numbers
+/// within the bodies; expand.cpp copies them out when all tasks have counted theirs.
 class Search {
  public:
   Search(const ShapeTables& tables, WordArena& arena) noexcept;
 
-  /// Primitives no farther apart than `margin`, and some more. They are written to `primitives()`
-  /// as numbers with kSecond set for those of b, pairs to `pairs()` as two numbers of this search's
-  /// primitives.
+  /// Finds all pairs of primitives that are no farther apart than `margin`, and some more.
+  /// Primitives are appended to `primitives()` by number, with kSecond set for body b; pairs are
+  /// appended to `pairs()` as two indices into the primitives of this search.
   void run(const PlacedBody& a, const PlacedBody& b, double margin) noexcept;
 
   static constexpr std::uint32_t kSecond = 1U << 31U;
@@ -41,7 +41,7 @@ class Search {
     const PlacedBody& b;
   };
 
-  /// Of bodies that are no compounds with surfaces.
+  /// Bodies that are not compounds with surfaces.
   void run(const PlacedBody& a, const PlacedBody& b) noexcept;
   [[nodiscard]] std::span<const std::uint32_t> bodies_near(const PlacedBody& body, const Box& box,
                                                            Room& room) noexcept;
@@ -63,7 +63,7 @@ class Search {
   template <typename Find>
   [[nodiscard]] std::span<const std::uint32_t> collect(Room& room, Find&& find) noexcept;
 
-  /// Whether one of two triangles stands behind the other, which is one-sided.
+  /// True if one of the triangles is one-sided and the other is behind it.
   [[nodiscard]] static bool any_is_behind(const PlacedBody& a, const Corners& of_a,
                                           const PlacedBody& b, const Corners& of_b) noexcept;
 
@@ -73,19 +73,19 @@ class Search {
                                         std::uint32_t flag) noexcept;
 
   const ShapeTables& tables_;
-  /// Of this pair of bodies.
+  /// Margin of the current pair of bodies.
   double margin_ = 0.0;
   WordArena& arena_;
   WordWriter primitives_;
   WordWriter pairs_;
   std::uint64_t triangles_ = 0;
-  /// Primitives before those of this pair of bodies.
+  /// Number of primitives before the current pair of bodies.
   std::uint64_t before_ = 0;
-  /// Where a primitive was used last, so that few are written twice.
+  /// Recently added primitives of each body, so that few are written twice.
   std::array<Memory, kRemembered> memory_[2];
   Room outer_;
   Room inner_;
-  /// Children of compounds with surfaces.
+  /// Children of compounds that have surfaces.
   Room children_[2];
 };
 

@@ -1,3 +1,8 @@
+// Corrects contacts at internal edges of meshes and height fields, and contacts from behind
+// one-sided triangles (MidPhase::smooth; composites.h describes the method). Called by the scene
+// after the narrow phase and before `reduce`.
+// In this file, an answer is the narrow-phase result of one pair of primitives.
+
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/contact_types.h>
 #include "pipeline/composites/composites.h"
@@ -15,26 +20,26 @@
 namespace winnow::mid {
 namespace {
 
-/// What a contact with a triangle is.
+/// Kind of a contact with a triangle.
 enum class EdgeContact : std::uint8_t {
-  /// With the face, or with an edge or corner that the surface really has.
+  /// With the face, or with an active edge or corner: not changed.
   real,
-  /// With the face, but the normal is off by more than rounding of unit vectors.
+  /// With the face, but the normal differs from the face's by more than rounding of unit vectors.
   nearly_face,
-  /// With an edge or corner that neighbours continue.
+  /// With an internal edge or corner, where a neighbouring triangle continues the surface.
   internal,
 };
 
-// As a share of the longest edge: corners whose heights differ by less are equally far along the
-// normal.
+// Heights of corners along the normal that differ by less than this share of the longest edge count
+// as equal.
 constexpr double kLevel = 1e-6;
 constexpr double kSameNormal = 1e-13;
-// Normals that lean to the back of a triangle by less lie along it.
+// A normal whose component towards the back of a triangle is smaller counts as parallel to it.
 constexpr double kBackNormal = 1e-9;
 
-/// `active`: see PrimitivePairs::active_edges. `away`: unit, from the triangle to the other shape.
-/// `face` is set to the triangle's unit normal on the side of `away`. Triangles without a normal
-/// have real contacts only.
+/// `active`: see PrimitivePairs::active_edges. `away`: unit vector from the triangle to the other
+/// shape. Sets `face` to the triangle's unit normal on the side of `away`. Contacts of degenerate
+/// triangles are always real.
 [[nodiscard]] EdgeContact classify(const TriangleShape& triangle, std::uint8_t active,
                                    const Vec& away, Vec& face) noexcept {
   Vec corner[3];
@@ -42,7 +47,7 @@ constexpr double kBackNormal = 1e-9;
   const Vec edge[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
   const Vec normal = edge[0].cross(edge[1]);
   const double length = normal.norm();
-  // NaN fails too.
+  // Also false for NaN.
   if (!(length > 0.0 && length < kInfinity)) return EdgeContact::real;
   const double rise = normal.dot(away) / length;
   face = normal / (rise < 0.0 ? -length : length);
@@ -58,7 +63,7 @@ constexpr double kBackNormal = 1e-9;
   for (int i = 0; i < 3; ++i) highest += top - height[i] <= level ? 1 : 0;
   if (highest == 3) return EdgeContact::nearly_face;
   for (int i = 0; i < 3; ++i) {
-    // On an active edge of another triangle. Those of this one are asked below.
+    // The corner is on an active edge of another triangle. Edges of this triangle are tested below.
     const bool is_own = (active >> i & 1U) != 0 || (active >> (i + 2) % 3 & 1U) != 0;
     const bool is_active = (active >> (3 + i) & 1U) != 0;
     if (highest == 1 && top - height[i] <= level && is_active && !is_own) return EdgeContact::real;
@@ -67,11 +72,11 @@ constexpr double kBackNormal = 1e-9;
     const int next = (i + 1) % 3;
     if ((active >> i & 1U) == 0) continue;
     const bool ends[2] = {top - height[i] <= level, top - height[next] <= level};
-    // An edge of which both ends are highest, or one end that alone is.
+    // Either both ends of the edge are highest, or one end is the only highest corner.
     if (ends[0] && ends[1]) return EdgeContact::real;
     if (highest != 1 || (!ends[0] && !ends[1])) continue;
-    // A corner belongs to the edge if the other shape is beyond the edge. Seen from the face's
-    // side that `away` is on, edges may run either way.
+    // The contact of one corner belongs to the edge if the other shape is outside the edge. Uses
+    // the inward direction, because seen from `away` the corners may be clockwise.
     const Vec inward = corner[(i + 2) % 3] - corner[i];
     const Vec along = edge[i] / edge[i].norm();
     if ((inward - along * along.dot(inward)).dot(away) < 0.0) return EdgeContact::real;
@@ -79,14 +84,14 @@ constexpr double kBackNormal = 1e-9;
   return EdgeContact::internal;
 }
 
-/// A triangle of a mesh and another shape, which overlap.
+/// An overlapping pair of a mesh triangle and another shape.
 struct FacePair {
   const ShapeTables& tables;
   ShapeId a;
   const Pose& pose_a;
   ShapeId b;
   const Pose& pose_b;
-  /// The mesh's triangle is b.
+  /// True if the mesh triangle is b.
   bool second;
 };
 
@@ -94,17 +99,17 @@ struct FacePair {
 struct FaceContacts {
   ContactPoint points[kManifoldPoints];
   std::uint32_t count = 0;
-  /// Of the first point, the deepest; and what rounding may have done to it.
+  /// Depth of the first, deepest, point, and its rounding error.
   double depth = 0.0;
   double noise = 0.0;
 };
 
-// The relative error of a float depth, and how far outside of a triangle a float position in it may
-// lie, as a share of the size.
+// Relative error of a float depth, and relative distance by which a float position in a triangle
+// may be outside of it.
 constexpr double kFloatError = 1.2e-7;
 constexpr double kFloatSlack = 1e-6;
 
-/// If a point, seen along the triangle's normal, is in the triangle.
+/// True if the projection of a point along the triangle's normal is in the triangle.
 [[nodiscard]] bool is_over(const solver::Core& triangle, const Vec& normal, const float* point,
                            double size) noexcept {
   const Vec at = Eigen::Map<const Eigen::Vector3f>(point).cast<double>() - triangle.center;
@@ -115,18 +120,18 @@ constexpr double kFloatSlack = 1e-6;
     least = std::min(least, beside);
     most = std::max(most, beside);
   }
-  // On the same side of all edges, whichever way they run.
+  // Inside: on the same side of all edges, for either winding.
   return std::min(-least, most) <= kFloatSlack * size;
 }
 
-/// To the caller's units, at most the largest float.
+/// Converts to the caller's units, limited to the largest float.
 [[nodiscard]] float scaled(float x, double unit) noexcept {
   return finite_float(static_cast<double>(x) * unit);
 }
 
-/// Clips the feature of the other shape that lies farthest along `normal` (the face's, from a to b)
-/// against the triangle. The depth is at least `least`. False if the feature is not over the
-/// triangle, where its depth would be made up, or if it is deeper than `most`.
+/// Clips the supporting feature of the other shape along `normal` (face normal, from a to b)
+/// against the triangle. The depth is at least `least`. Returns false if the feature is not over
+/// the triangle, where its depth would be meaningless, or if it is deeper than `most`.
 [[nodiscard]] bool clip_to_face(const FacePair& pair, const Vec& normal, double margin,
                                 double least, double most, FaceContacts& out) noexcept {
   solver::Problem problem;
@@ -154,12 +159,13 @@ constexpr double kFloatSlack = 1e-6;
 constexpr std::size_t kAnswersPerTask = 256;
 constexpr std::size_t kTasksPerWave = 16;
 
-// Times as deep as any contact of the same bodies is before smoothing: a point on a seam may be,
-// since the shortest way out of each triangle is over the seam.
+// Limit of the new depth, relative to the deepest contact of the same bodies before smoothing. A
+// point on a seam may get deeper, because the shortest way out of each of the triangles leads
+// across the seam.
 constexpr double kMostDeeper = 4.0;
 
-/// Writes to a NarrowResult, in waves of chunks: room for the contacts of a wave is made before its
-/// tasks write, and what they do not need of it is taken back.
+/// Corrects the contacts of a NarrowResult in waves of chunks. Memory for the contacts of a wave is
+/// reserved before its tasks write; unused memory is reclaimed after the wave.
 class Smoothing {
  public:
   Smoothing(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
@@ -175,30 +181,30 @@ class Smoothing {
  private:
   struct Found {
     EdgeContact contact = EdgeContact::real;
-    /// From a to b, along the triangle's normal.
+    /// From a to b, along the normal of the triangle.
     Vec normal;
-    /// How far the normal was off.
+    /// Error of the previous normal, as a length.
     double off = 0.0;
     bool is_deep = false;
-    /// From behind a one-sided triangle: no contact.
+    /// The contact comes from behind a one-sided triangle and is dropped.
     bool is_gone = false;
   };
   struct Chunk {
     std::size_t begin;
     std::size_t end;
-    /// Contacts from there on; how many were written.
+    /// First contact of this chunk, and the number of contacts written.
     std::size_t base = 0;
     std::size_t used = 0;
     bool has_room = false;
-    /// To be clipped once there is room.
+    /// Answers to clip when memory is reserved.
     std::bitset<kAnswersPerTask> is_deep{};
-    /// To be dropped.
+    /// Answers to drop.
     std::bitset<kAnswersPerTask> is_gone{};
-    /// How deep they may become.
+    /// For each answer to clip, depth of the deepest answer of the same bodies and kinds.
     std::array<float, kAnswersPerTask> most{};
   };
-  /// Answers [first, end) about one pair of bodies, of one pair of kinds, and the depth of the
-  /// deepest before smoothing.
+  /// Answers [first, end) of one pair of bodies and one pair of kinds, and the depth of the deepest
+  /// one before smoothing.
   struct Together {
     std::size_t first = 0;
     std::size_t end = 0;
@@ -221,7 +227,7 @@ class Smoothing {
   void clip(Chunk& chunk, std::size_t i) noexcept;
   void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
-  /// One that may have internal edges.
+  /// True for a triangle that may have internal edges.
   [[nodiscard]] bool is_mesh_triangle(std::uint32_t primitive) const noexcept {
     const ShapeId shape = pairs_.shapes[primitive];
     return shape.kind() == ShapeKind::triangle &&
@@ -242,7 +248,7 @@ class Smoothing {
   const PairMargins& margins_;
   const NarrowResult& result_;
   NarrowColumns columns_;
-  /// The answers that the last wave's end parts from each other.
+  /// The group of answers that continues across the end of the last wave.
   Together spanning_;
 };
 
@@ -271,13 +277,14 @@ void Smoothing::run_wave(const Execution& execution, std::span<Chunk> wave) noex
     const bool has_room = room == from || columns_.contacts.grow(room);
     for (Chunk& chunk : wave) chunk.has_room = has_room;
   }
-  // The next wave finds smoothed distances in this one.
+  // Do this before distances change: the group may continue in the next wave.
   if (wave.back().end < result_.size()) find_together(wave.back().end, spanning_);
   execution.for_each(wave.size(), [&](std::size_t k) { finish(wave[k]); });
   if (has_contacts()) close_gaps(wave, from);
 }
 
-// Everything that needs no room and changes no distance, and how much room the rest needs.
+// First pass: does everything that needs no memory and changes no distance, and counts the contacts
+// that the second pass may write.
 void Smoothing::look(Chunk& chunk) noexcept {
   Together bodies = spanning_;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
@@ -298,8 +305,8 @@ void Smoothing::look(Chunk& chunk) noexcept {
   }
 }
 
-// Finds the answers about the same bodies and kinds as answer i, which lie next to each other. The
-// run bounds them: which kinds come next depends on other bodies.
+// Finds the answers of the same bodies and kinds as answer i, which are consecutive. They end with
+// the run, because the kinds of the next run depend on other bodies.
 void Smoothing::find_together(std::size_t i, Together& bodies) const noexcept {
   if (i >= bodies.first && i < bodies.end) return;
   bodies = {i, i + 1, -columns_.distance[i]};
@@ -321,7 +328,7 @@ void Smoothing::find_together(std::size_t i, Together& bodies) const noexcept {
   while (bodies.first > begin && take(bodies.first - 1)) --bodies.first;
 }
 
-// Distances change only here: no other task reads them.
+// Second pass: only here distances change. No other task reads them.
 void Smoothing::finish(Chunk& chunk) noexcept {
   if (chunk.is_deep.none() && chunk.is_gone.none()) return;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
@@ -355,7 +362,7 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   Found found;
   if (!(columns_.distance[i] <= margin(i))) return found;
   if (has_contacts() && columns_.contact_count[i] == 0) return found;
-  // Which of the two is the triangle of a mesh. Edges of other triangles are all active.
+  // Find which of the two is the mesh triangle. All edges of other triangles are active.
   const BodyPair& bodies = pair(i);
   const bool second = is_mesh_triangle(bodies.b);
   const ShapeId triangle = pairs_.shapes[second ? bodies.b : bodies.a];
@@ -388,7 +395,7 @@ Smoothing::Found Smoothing::find(std::size_t i) const noexcept {
   return found;
 }
 
-// Unit; zero of what has none.
+// Returns the unit normal of the front of a one-sided triangle; zero for any other primitive.
 Vec Smoothing::front_of(std::uint32_t primitive) const noexcept {
   const ShapeId shape = pairs_.shapes[primitive];
   if (shape.kind() != ShapeKind::triangle) return Vec::Zero();
@@ -402,8 +409,9 @@ Vec Smoothing::front_of(std::uint32_t primitive) const noexcept {
   return (bits & PrimitivePairs::kClockwise) != 0 ? Vec(-normal) : normal;
 }
 
-// Of a contact whose normal leads to the back of a one-sided triangle. Shapes that touch are pushed
-// out to its front; what is apart, or would be behind the other of two, is no contact.
+// Handles a contact whose normal points to the back of a one-sided triangle; returns false for any
+// other. Overlapping shapes are pushed out to the front. There is no contact if the shapes are
+// apart, or if the corrected normal would point to the back of the other triangle.
 bool Smoothing::turn_to_front(std::size_t i, Found& found) const noexcept {
   const BodyPair& bodies = pair(i);
   const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
@@ -426,7 +434,8 @@ void Smoothing::drop(std::size_t i) noexcept {
   if (has_contacts()) columns_.contact_count[i] = 0;
 }
 
-// The side of the triangle's plane on which less of the other shape is in the way.
+// Orients `face` to the side of the triangle's plane to which the other shape has the shorter way
+// out.
 void Smoothing::choose_side(const BodyPair& bodies, bool second, Vec& face) const noexcept {
   const std::uint32_t triangle = second ? bodies.b : bodies.a;
   const std::uint32_t other = second ? bodies.a : bodies.b;
@@ -442,7 +451,8 @@ void Smoothing::set_normal(std::size_t i, const Vec& normal) noexcept {
   for (int axis = 0; axis < 3; ++axis) columns_.normal[axis][i] = normal[axis];
 }
 
-// The point of a sphere that is its deepest along the normal, so that the contact does not turn it.
+// Moves the contact to the point of a sphere that is deepest along the normal, so that the contact
+// exerts no torque on it.
 void Smoothing::lower_sphere(std::size_t i, const Vec& normal) noexcept {
   const BodyPair& bodies = pair(i);
   const double distance = columns_.distance[i];
@@ -490,7 +500,7 @@ void Smoothing::clip(Chunk& chunk, std::size_t i) noexcept {
 }
 
 void Smoothing::take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept {
-  // Where memory was refused, as many as there were.
+  // If memory was refused, keep at most as many contacts as there were.
   std::size_t at = columns_.contact_first[i];
   std::size_t count = std::min<std::size_t>(points.size(), columns_.contact_count[i]);
   if (chunk.has_room) {

@@ -1,4 +1,4 @@
-// What lies within meshes that are solids.
+// Tests whether points are inside solid meshes; see solids.h.
 
 #include "pipeline/composites/solids.h"
 
@@ -17,8 +17,8 @@ namespace {
   return same(0, 1) || same(1, 2) || same(2, 0);
 }
 
-/// Times the surface of a mesh runs around a point: 1 inside, 0 outside, and more where it covers
-/// itself. Everything in the mesh's own frame.
+/// Computes the winding number of a mesh about a point: 1 inside, 0 outside, larger where the mesh
+/// overlaps itself. Works in the frame of the mesh.
 class Winding {
  public:
   Winding(const PlacedBody& body, const Vec& at) noexcept : body_(body), at_(at) {
@@ -26,11 +26,11 @@ class Winding {
     slack_ = kRaySlack * (at.cwiseAbs().maxCoeff() + corner.maxCoeff());
   }
 
-  /// A ray to any side leaves the solid once more than it enters it, if it begins inside. One that
-  /// meets an edge, or a triangle where that is in doubt, tells nothing: then another one does. On
-  /// the surface all are in doubt.
+  /// A ray from an inside point leaves the solid once more than it enters it. A ray is inconclusive
+  /// if it hits an edge, or a triangle within rounding errors: then the next direction is tried. If
+  /// all directions are inconclusive, as for points on the surface, the solid angle decides.
   [[nodiscard]] bool is_inside() noexcept {
-    // To no side that edges are likely to share; the largest component is in [1/2, 1).
+    // Directions that are unlikely to be parallel to edges. The largest component is in [1/2, 1).
     static constexpr double kWays[][3] = {{0.2718, 0.5312, 0.8147},    {-0.6180, 0.9134, -0.3090},
                                           {0.9058, -0.1270, -0.4142},  {-0.3219, -0.7321, 0.6324},
                                           {0.0975, 0.2785, -0.5469},   {-0.9575, -0.2113, 0.1576},
@@ -74,8 +74,8 @@ class Winding {
     (void)body_.own_corners(slot, corner);
     crossings_ += comes_from_behind(ray_, corner) ? 1 : -1;
   }
-  /// 4 pi times the winding number (van Oosterom, Strackee, "The solid angle of a plane triangle",
-  /// 1983). O(n).
+  /// Solid angle of the mesh: 4 pi times the winding number (van Oosterom, Strackee, "The solid
+  /// angle of a plane triangle", 1983). O(n).
   [[nodiscard]] double solid_angle() const noexcept {
     double sum = 0.0;
     for (std::uint32_t slot = 0; slot < body_.mesh->triangle_count; ++slot) {
@@ -100,7 +100,7 @@ class Winding {
   bool in_doubt_ = false;
 };
 
-/// Of a mesh that is a solid; the point is in the world.
+/// `body` is a solid mesh; `point` is in world coordinates.
 [[nodiscard]] bool is_in_mesh(const PlacedBody& body, const Vec& point) noexcept {
   const Vec own = body.to_local * (point - body.position);
   const bool in_box = (own.array() >= body.bounds.min.array()).all() &&
@@ -108,8 +108,8 @@ class Winding {
   return in_box && Winding(body, own).is_inside();
 }
 
-/// Calls look(child) for the children of a compound with surfaces, or the only body that there is,
-/// until it says true; gives back whether it did.
+/// Calls look(body) for each child of a compound that has surfaces, or for the body itself, until
+/// it returns true. Returns whether it did.
 template <typename Look>
 [[nodiscard]] bool any_body(const PlacedBody& body, Look&& look) {
   if (!body.has_surfaces()) return look(body);
@@ -125,8 +125,8 @@ template <typename Look>
   });
 }
 
-/// A point of what is no compound with surfaces. False for what no solid holds: half-spaces, and
-/// triangles of holes.
+/// Finds a point of part `number`. `body` must not be a compound that has surfaces. Returns false
+/// for shapes that no solid can contain: half-spaces, and triangles of holes.
 [[nodiscard]] bool find_point(const PlacedBody& body, std::uint32_t number, Vec& point) noexcept {
   if (body.is_surface()) {
     Corners corners{};
@@ -143,8 +143,8 @@ template <typename Look>
   return part.shape.kind() != ShapeKind::half_space;
 }
 
-/// One point of each body that another is made of: of a surface one corner, of other compounds one
-/// of each child.
+/// Calls look(point) for one point of each connected piece of a body, until it returns true: a
+/// vertex of a surface, a point of each child of other compounds.
 template <typename Look>
 [[nodiscard]] bool any_point(const PlacedBody& body, Look&& look) {
   return any_body(body, [&](const PlacedBody& one) {

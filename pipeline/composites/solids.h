@@ -6,13 +6,13 @@
 
 namespace winnow::mid {
 
-/// Whether the triangles of a mesh bound what is inside: `invalid_shape` unless every edge is that
-/// of two triangles, which run along it in opposite ways, and the volume that they enclose is
-/// positive, that is if corners run counter-clockwise seen from outside. Vertices at the same place
-/// count as one; triangles that are segments do not count. `out_of_memory`. O(n log n).
+/// Checks that the triangles of a mesh enclose a volume. `invalid_shape` unless each edge is shared
+/// by exactly two triangles that traverse it in opposite directions, and the enclosed volume is
+/// positive (corners counter-clockwise seen from outside). Vertices at the same place count as one;
+/// triangles that are segments are skipped. `out_of_memory`. O(n log n).
 [[nodiscard]] Status check_solid(const Composites& all, ShapeId mesh) noexcept;
 
-/// See MidPhase::holds. Ids are there, poses are valid.
+/// See MidPhase::holds. Ids must exist, poses must be valid.
 [[nodiscard]] bool holds(const Composites& all, ShapeId id, const Pose& pose,
                          const double point[3]) noexcept;
 [[nodiscard]] bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,

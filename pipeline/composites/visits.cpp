@@ -1,3 +1,7 @@
+// Traversals of composite shapes for queries (MidPhase::visit, visit_pairs, visit_near_pairs and
+// visit_near): the primitives that a moving box may hit, or that are near a box. Rays are in
+// rays.cpp; the tree traversals are in pipeline/mesh.
+
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/placed_body.h"
 #include "pipeline/mesh/box_measures.h"
@@ -11,11 +15,11 @@
 namespace winnow::mid {
 namespace {
 
-/// Makes primitives, in the world, of the numbers that a traversal finds.
+/// Converts the numbers that a traversal finds to primitives in the world, and visits them.
 struct Guide {
   const PlacedBody& body;
   const PrimitiveVisitor& visitor;
-  /// For children that are bodies by themselves.
+  /// Called instead if the children are bodies of their own.
   ChildVisitor children;
 
   [[nodiscard]] double show(std::uint32_t number, double limit) const {
@@ -25,7 +29,7 @@ struct Guide {
     return visitor.visit(visitor.context, primitive, limit);
   }
 
-  // The triangles of a compound's tree are its children.
+  // The triangles of a compound's tree stand for its children.
   static double show_slots(void* context, const std::uint32_t* slots, std::uint32_t count,
                            double limit) {
     const Guide& guide = *static_cast<const Guide*>(context);
@@ -43,7 +47,7 @@ struct Guide {
   }
 };
 
-/// Passes primitives on, and keeps the limit that came back last.
+/// Forwards primitives to a visitor and stores the last limit that it returned.
 struct LimitKeeper {
   const PrimitiveVisitor& to;
   double limit;
@@ -57,7 +61,7 @@ struct LimitKeeper {
   }
 };
 
-/// The same of pairs.
+/// As Guide, for pairs.
 struct PairGuide {
   const PlacedBody& a;
   const PlacedBody& b;
@@ -76,12 +80,12 @@ struct PairGuide {
   }
 };
 
-/// The same of pairs the nearest first; limits are lengths of mesh a.
+/// As PairGuide, nearest pairs first. Limits are lengths in the frame of mesh a.
 struct NearPairGuide {
   const PlacedBody& a;
   const PlacedBody& b;
   const NearPairVisitor& visitor;
-  /// In the world.
+  /// In world units.
   double limit;
   float direction[3] = {0.0F, 0.0F, 0.0F};
 
@@ -101,14 +105,14 @@ struct NearPairGuide {
   }
 };
 
-/// Shows children in ascending order of a measure, which is infinite for those not to be shown.
+/// Visits children in ascending order of a measure. Skips children whose measure is infinite.
 template <typename Measure>
 void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   const Compound& compound = *guide.body.compound;
   double last = -1.0;
   std::uint32_t last_child = 0;
   while (limit >= 0.0) {
-    // The next after the last one shown, by measure and number. No room is needed for an order.
+    // Find the next child by measure, then number. This needs no memory for a sorted list.
     double best = kInfinity;
     std::uint32_t child = compound.count;
     for (std::uint32_t i = 0; i < compound.count; ++i) {
@@ -124,7 +128,7 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   }
 }
 
-/// A box of the world in a frame at the body's position: grown by what rounding of either may take.
+/// Returns a world box in a frame at the position of the body, grown by the rounding errors.
 [[nodiscard]] Box box_in(const PlacedBody& body, const BoxSweep& sweep,
                          const Mat& to_local) noexcept {
   const Eigen::Map<const Vec> min(sweep.min);
@@ -133,8 +137,8 @@ void show_in_order(const Guide& guide, double limit, Measure&& measure) {
   return box_under(box, to_local, Vec::Zero(), 0.0);
 }
 
-/// Shows a child to a visitor that is shown the primitives of a body, by `go(child, limit)` or, if
-/// it is convex, at once; gives back the limit to go on with.
+/// Visits a child of a compound: calls `go` with a visitor for the primitives of a surface, or
+/// visits the primitive of a convex child. Returns the new limit.
 template <typename Go>
 [[nodiscard]] double visit_child(const PlacedBody& child, double limit,
                                  const PrimitiveVisitor& visitor, Go&& go) {
@@ -152,11 +156,11 @@ template <typename Go>
 void visit(const PlacedBody& body, const BoxSweep& sweep, const PrimitiveVisitor& visitor,
            const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
-  // What is never met is met at infinity: not before any limit.
+  // A box that is never hit has time infinity, which must be later than any limit.
   const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
   Box box = box_in(body, sweep, body.to_local);
   const Vec direction = body.to_local * Eigen::Map<const Vec>(sweep.direction);
-  // Rounding of the direction shifts the box, as far as it gets, by a share of where it gets.
+  // Rounding of the direction moves the box by a share of the distance that it travels.
   if (body.bounds.is_finite()) {
     const Vec noise = Vec::Constant(4.0 * kSlack *
                                     (body.bounds.min.cwiseAbs() + body.bounds.max.cwiseAbs() +
@@ -201,7 +205,7 @@ bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b
   if (first.kind != PlacedBody::Kind::mesh || second.kind != PlacedBody::Kind::mesh) return false;
   PairGuide guide{first, second, visitor};
   const PlacedMesh placed(first, second, 0.0);
-  // Few, so that it ends soon after a visitor has seen enough.
+  // Small, so that the traversal ends soon after the visitor returns false.
   constexpr std::uint32_t kRoom = 2 * kMeshFanout;
   std::uint32_t slots[2][kRoom];
   SlotPairSink found{slots[0], slots[1], kRoom, 0, &PairGuide::show_slots, &guide};
@@ -232,7 +236,7 @@ namespace {
 void visit_near(const PlacedBody& body, const BoxSweep& from, double limit,
                 const PrimitiveVisitor& visitor, const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
-  // Turned, but in the lengths of the world.
+  // Rotated to the frame of the body, but in world lengths.
   const Box box = box_in(body, from, body.rotation.transpose());
   if (body.kind == PlacedBody::Kind::mesh) {
     mesh_near(*body.mesh, body.all.mesh(body.id)->scale, box.min.data(), box.max.data(), limit,

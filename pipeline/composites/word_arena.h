@@ -5,9 +5,9 @@
 
 namespace winnow::mid {
 
-/// Room made before tasks start, handed to them in blocks of words. Where it is not enough it
-/// counts on, so that who made it knows how much it takes. How much is taken does not depend on the
-/// order of tasks, only where things lie does.
+/// Memory reserved before tasks start, which hands out blocks of words to them. If it is exhausted
+/// it only counts, so that the caller can reserve enough and repeat. The total does not depend on
+/// the order of tasks; only the position of blocks does.
 class WordArena {
  public:
   static constexpr std::uint32_t kBlock = 256;
@@ -18,7 +18,7 @@ class WordArena {
 
   WordArena(std::uint32_t* words, std::uint64_t blocks) noexcept : words_(words), blocks_(blocks) {}
 
-  /// Consecutive blocks with room for so many words; null if there are not enough.
+  /// Returns consecutive blocks for `words` words, or null if there are not enough.
   [[nodiscard]] std::uint32_t* take(std::uint64_t words) noexcept {
     const std::uint64_t count = blocks_for(words);
     const std::uint64_t first = next_.fetch_add(count, std::memory_order_relaxed);
@@ -39,8 +39,8 @@ class WordArena {
   std::atomic<std::uint64_t> next_{0};
 };
 
-/// Words that one task writes one after another, in blocks of which each begins with the number of
-/// the next.
+/// Appends the words of one task. Uses a linked list of blocks: each block begins with the index of
+/// the next one.
 class WordWriter {
  public:
   explicit WordWriter(WordArena& arena) noexcept : arena_(arena) {}
@@ -71,7 +71,7 @@ class WordWriter {
   std::uint64_t size_ = 0;
 };
 
-/// Reads them again.
+/// Reads the words that a WordWriter wrote.
 class WordReader {
  public:
   WordReader(const std::uint32_t* words, std::uint32_t first_block) noexcept

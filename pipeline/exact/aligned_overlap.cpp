@@ -1,3 +1,7 @@
+// Exact overlap test for axis-aligned shapes: AlignedPair for boxes, cylinders and their roundings,
+// `over_plane` for half-spaces, FlatTriangle and `point_on_triangle` for triangles.
+// exact_overlap.cpp calls it before the general methods.
+
 #include "pipeline/exact/aligned_overlap.h"
 
 #include "pipeline/exact/exact_vector.h"
@@ -10,14 +14,14 @@ namespace {
 
 constexpr int kNoAxis = -1;
 
-/// Which axis of a frame each axis of the world is, and whether it is its opposite.
+/// Maps each world axis to an axis of a frame, and whether it points the opposite way.
 struct QuarterTurns {
   int axis[3];
   int sign[3];
 };
 
-/// False if the frame is turned by anything but quarters of a turn: those are quaternions of one,
-/// two or four components that are alike but for signs, of whatever length.
+/// Returns false unless the orientation consists of quarter turns. Those are the quaternions, of
+/// any length, with one, two or four nonzero components of equal magnitude.
 [[nodiscard]] bool quarter_turns(const Pose& pose, QuarterTurns& turns) noexcept {
   const double* q = pose.orientation;
   const double most =
@@ -48,9 +52,9 @@ struct QuarterTurns {
   return true;
 }
 
-/// A shape along the axes of the world: a box, or a cylinder about one of them, and a rounding.
+/// A rounded box, or a rounded cylinder about a world axis, aligned with the world axes.
 struct AlignedShape {
-  /// Of a cylinder's core across its axis the radius.
+  /// For a cylinder, the radius in the two directions orthogonal to its axis.
   double half[3];
   int round = kNoAxis;
   double rounding;
@@ -61,7 +65,7 @@ void set_lengths(const QuarterTurns& turns, const double (&local)[3],
   for (int k = 0; k < 3; ++k) shape.half[k] = local[turns.axis[k]];
 }
 
-/// False for other kinds, and where the frame is not aligned.
+/// Returns false for other kinds and for frames that are not aligned.
 [[nodiscard]] bool align(const ShapeTables& tables, ShapeId id, const Pose& pose,
                          AlignedShape& shape) noexcept {
   if (id.kind() == ShapeKind::sphere) {
@@ -99,12 +103,12 @@ void set_lengths(const QuarterTurns& turns, const double (&local)[3],
   return x.sign() < 0 ? -x : x;
 }
 
-/// The part of a number that is above zero.
+/// max(x, 0).
 [[nodiscard]] Dyadic above_zero(const Dyadic& x) noexcept {
   return x.sign() > 0 ? x : Dyadic();
 }
 
-/// Two aligned shapes, one of them `between` from the other.
+/// Two aligned shapes and the distance of their positions along each world axis.
 class AlignedPair {
  public:
   AlignedPair(const AlignedShape& a, const AlignedShape& b, const Pose& pose_a,
@@ -135,7 +139,7 @@ class AlignedPair {
     return fits_dyadic(4, lengths.bits() + kSums);
   }
 
-  /// How far apart the cores are along an axis of the world.
+  /// Gap between the cores along world axis `k`; negative if they overlap there.
   [[nodiscard]] Dyadic gap(int k) const noexcept {
     return away_[k] - (Dyadic(a_.half[k]) + b_.half[k]);
   }
@@ -152,8 +156,8 @@ class AlignedPair {
     return verdict_of(compare(square, rounding_ * rounding_));
   }
 
-  /// One or two cylinders about an axis: in the plane across it, a point and a box, or a disc at
-  /// the point, and along the axis two segments.
+  /// One or two cylinders about the same axis. Orthogonal to the axis this is a disc against a
+  /// point or a box (as Minkowski difference); along the axis, two segments.
   [[nodiscard]] ExactVerdict about_an_axis() const noexcept {
     const int axis = a_.round == kNoAxis ? b_.round : a_.round;
     Dyadic square;
@@ -175,14 +179,14 @@ class AlignedPair {
       const Dyadic reach = radius + rounding_;
       return verdict_of(compare(square, reach * reach));
     }
-    // The sign of (root of square - radius)^2 + along^2 - rounding^2.
+    // The sign of (sqrt(square) - radius)^2 + along^2 - rounding^2.
     const Dyadic rest = square + radius * radius + along * along - rounding_ * rounding_;
     const Dyadic twice = radius + radius;
     return verdict_of(rest.sign() < 0 ? -1 : compare(rest * rest, twice * twice * square));
   }
 
-  /// Each cylinder is, at a height along the axis across both, as wide as a chord of its disc: they
-  /// meet where both chords reach the other's segment.
+  /// At a height along the axis orthogonal to both cylinders, the section of each is as wide as a
+  /// chord of its disc. They touch if at some height both chords reach the other's segment.
   [[nodiscard]] ExactVerdict of_crossed_cylinders() const noexcept {
     const auto reach = [](const AlignedShape& disc, const AlignedShape& other, const Dyadic& away) {
       const Dyadic radius = disc.half[other.round];
@@ -194,7 +198,7 @@ class AlignedPair {
     const int least = std::min(reach_a.sign(), reach_b.sign());
     if (least < 0) return ExactVerdict::separated;
     const Dyadic& height = away_[3 - a_.round - b_.round];
-    // The sign of height - root of reach_a - root of reach_b.
+    // The sign of height - sqrt(reach_a) - sqrt(reach_b).
     const Dyadic rest = height * height - reach_a - reach_b;
     const int sign = rest.sign() < 0 ? -1 : compare(rest * rest, Dyadic(4.0) * reach_a * reach_b);
     return verdict_of(std::max(sign, -least));
@@ -206,11 +210,11 @@ class AlignedPair {
   Dyadic away_[3];
 };
 
-/// Of a half-space and a shape that is aligned.
+/// A half-space and an aligned shape.
 [[nodiscard]] ExactVerdict over_plane(const HalfSpaceShape& half_space, const Pose& pose,
                                       const AlignedShape& shape, const Pose& shape_pose) noexcept {
   QuarterTurns turns;
-  // A normal that is but nearly along an axis has length 1, too.
+  // A normal that is only nearly parallel to an axis can also have length 1, so count the zeros.
   const bool is_across = std::count(half_space.normal, half_space.normal + 3, 0.0) == 2;
   if (!is_across || !quarter_turns(pose, turns)) return ExactVerdict::undecided;
   int k = 0;
@@ -222,7 +226,7 @@ class AlignedPair {
   return verdict_of((height - half_space.offset - shape.half[k] - shape.rounding).sign());
 }
 
-/// Where a plane across an axis of the world is cut, relative to a point of it.
+/// A point in the plane orthogonal to a world axis.
 struct PlanePoint {
   Dyadic x[2];
 };
@@ -239,12 +243,13 @@ struct PlanePoint {
   return p.x[0] * q.x[1] - p.x[1] * q.x[0];
 }
 
-/// A triangle that lies in a plane across an axis of the world, as those of level floors do, and
-/// the part of an aligned shape's core that is farthest along that axis: a rectangle, which may be
-/// a segment or a point, or a disc, about the origin.
+/// A triangle orthogonal to a world axis, as on level floors, and the section of an aligned shape's
+/// core that is extreme along that axis: a rectangle (possibly a segment or a point) or a disc,
+/// centred at the origin.
 class FlatTriangle {
  public:
-  /// False if it does not lie so, or its numbers span too far.
+  /// Returns false if the triangle is not orthogonal to an axis or the exponents span too wide a
+  /// range.
   [[nodiscard]] bool place(const TriangleShape& triangle, const Pose& pose,
                            const AlignedShape& shape, const Pose& shape_pose) noexcept {
     QuarterTurns turns;
@@ -279,7 +284,7 @@ class FlatTriangle {
     return fits_dyadic(4, lengths.bits() + kSums);
   }
 
-  /// Undecided where the shape reaches through the plane.
+  /// Undecided if the shape reaches through the plane.
   [[nodiscard]] ExactVerdict verdict() const noexcept {
     if (height_.sign() > 0) return ExactVerdict::separated;
     const int turn = cross(vertex_[1] - vertex_[0], vertex_[2] - vertex_[0]).sign();
@@ -301,7 +306,8 @@ class FlatTriangle {
     }
     for (int i = 0; i < 3; ++i) {
       const PlanePoint side = vertex_[(i + 1) % 3] - vertex_[i];
-      // How far the origin is outside of the side, and how far the rectangle reaches back.
+      // Distance of the origin outside the side, and how far the rectangle extends towards it (both
+      // times the side's length).
       const Dyadic inside = cross(vertex_[i], side);
       const Dyadic out = turn > 0 ? -inside : inside;
       const Dyadic reach = half_[0] * magnitude(side.x[1]) + half_[1] * magnitude(side.x[0]);
@@ -329,14 +335,14 @@ class FlatTriangle {
 
   int axis_ = 0;
   bool is_disc_ = false;
-  /// Of the shape above the plane.
+  /// Height of the shape over the plane.
   Dyadic height_;
   Dyadic half_[2];
   PlanePoint vertex_[3];
 };
 
-/// A point and a triangle in any plane. Points asked for what is nearest to them lie on corners of
-/// terrains, each of which is one of many triangles. Undecided of triangles without area.
+/// A point and a triangle in any plane. Closest-point queries often give points on corners of
+/// terrains, each shared by several triangles. Undecided for triangles without area.
 [[nodiscard]] ExactVerdict point_on_triangle(const TriangleShape& triangle, const Pose& pose,
                                              const Pose& point_pose) noexcept {
   QuarterTurns turns;
@@ -377,7 +383,7 @@ class FlatTriangle {
   return flat.place(triangle, pose, shape, shape_pose) ? flat.verdict() : ExactVerdict::undecided;
 }
 
-/// Half-spaces and triangles are taken first.
+/// Half-spaces and triangles are moved to the first place.
 [[nodiscard]] bool is_flat(ShapeId id) noexcept {
   return id.kind() == ShapeKind::half_space || id.kind() == ShapeKind::triangle;
 }

@@ -6,12 +6,14 @@
 
 namespace winnow {
 
-/// The verdict about spheres, capsules, boxes, cylinders, and half-spaces across one of their axes,
-/// whose frames are turned by nothing or by quarters of a turn: what is stacked, or lies on a grid,
-/// touches in every frame. They are products of segments and discs along the axes of the world, so
-/// that closed forms of degree 4 at most decide; undecided for everything else, and for rounded
-/// cylinders whose axes cross. Triangles that lie across an axis are decided where no more than
-/// touched, and in any plane against a point. O(1), some 100 ns.
+/// Exact verdict for spheres, capsules, boxes, cylinders and half-spaces (with a normal along an
+/// axis of their frame) whose orientations are multiples of quarter turns: stacked or grid-aligned
+/// shapes touch exactly in every frame. The cores are products of segments and discs along the
+/// world axes, so that closed forms of degree 4 at most decide.
+///
+/// Returns `undecided` for all other shapes and orientations, and for rounded cylinders with
+/// orthogonal axes. A triangle orthogonal to an axis is decided only if the shapes are disjoint or
+/// touch; a triangle in any plane is decided against a point. O(1).
 [[nodiscard]] ExactVerdict aligned_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                            ShapeId b, const Pose& pose_b) noexcept;
 

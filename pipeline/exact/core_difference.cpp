@@ -1,3 +1,6 @@
+// Exact vertices and support points of the cores of convex shapes, and of the Minkowski difference
+// of two of them. Used by exact_gjk.cpp and exact_overlap.cpp.
+
 #include "pipeline/exact/core_difference.h"
 
 #include <algorithm>
@@ -13,13 +16,13 @@ void set_point(CoreVertices& core, std::uint32_t i, double x, double y, double z
   core.own[2][i] = z;
 }
 
-/// Adds a polygon of 16 corners inscribed in a disc, four of them on the circle, the others inside
-/// of it by their rounding. A disc without radius is a point.
+/// Adds a polygon of 16 corners inscribed in a disc: four corners are on the circle, the others
+/// inside it by their rounding. A disc without radius is a point.
 void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
-  // Cosines of multiples of 22.5 degrees, less a few units in the last place.
+  // Cosines of multiples of 22.5 degrees, minus a few units in the last place.
   constexpr double kShare[5] = {1.0, 0.92387953251128596, 0.70710678118654702, 0.38268343236508945,
                                 0.0};
-  constexpr double kSmallest = 0x1p-900;  // below it products are not rounded by a share of them
+  constexpr double kSmallest = 0x1p-900;  // below it, the error of a product is not relative
   if (disc.radius == 0.0) return set_point(core, core.count++, 0.0, 0.0, disc.z);
   const int step = disc.radius < kSmallest ? 4 : 1;
   for (int k = 0; k < 4; k += step) {
@@ -32,8 +35,8 @@ void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
   }
 }
 
-/// The hull of discs at both ends of the z axis, the upper one not larger: a segment if they have
-/// no radius.
+/// The convex hull of discs at both ends of the z axis, the upper one not larger; a segment if they
+/// have no radius.
 void set_axis(CoreVertices& core, double half_length, double low_radius, double high_radius,
               double rounding) noexcept {
   core.count = 0;
@@ -59,12 +62,12 @@ struct Bounds {
   double upper;
 };
 
-/// Bounds of the product of a vertex with a direction that is rounded to 2^-51 of itself (or to
-/// what double can hold).
+/// Bounds on the dot product of a vertex with a direction whose components have a relative error of
+/// 2^-51 (or the absolute error of underflow).
 [[nodiscard]] Bounds product_bounds(const CoreVertices& core, std::uint32_t i,
                                     const RoundedDirection& direction) noexcept {
   constexpr double kError = 0x1p-49;
-  // More than underflow loses, and no subnormal, which would be slow to add.
+  // Exceeds the error of underflow, but is not subnormal, because adding subnormals is slow.
   constexpr double kUnderflow = 0x1p-1000;
   double value = 0.0;
   double size = 0.0;
@@ -83,7 +86,7 @@ struct Bounds {
   return {value - error, value + error};
 }
 
-/// At least the height of every point of the core along `direction`.
+/// Upper bound on the height of the core's points along `direction`.
 [[nodiscard]] Dyadic core_height_bound(const CoreVertices& core,
                                        const ExactVector& direction) noexcept {
   Dyadic height;

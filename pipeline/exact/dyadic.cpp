@@ -1,3 +1,6 @@
+// Dyadic: conversion, comparison, and the arithmetic of long numbers. Arithmetic of short numbers
+// is inline in the header.
+
 #include "pipeline/exact/dyadic.h"
 
 #include <algorithm>
@@ -12,7 +15,8 @@ __extension__ using Unsigned = unsigned __int128;
 
 constexpr int kBits = 64;
 
-/// The digit that counts 2^exponent: rounded down, also below zero.
+/// Index of the digit that contains 2^exponent: exponent / 64, rounded down for negative exponents,
+/// too.
 [[nodiscard]] int place_of(int exponent) noexcept {
   return exponent >= 0 ? exponent / kBits : -((kBits - 1 - exponent) / kBits);
 }
@@ -56,7 +60,7 @@ const Dyadic& Dyadic::with_digits(Dyadic& room) const noexcept {
   room.size_ = 3;
   room.digit_[0] = static_cast<std::uint64_t>(low);
   room.digit_[1] = static_cast<std::uint64_t>(low >> kBits);
-  // What the shift pushes out of 128 bits.
+  // The bits that the shift moves out of 128 bits.
   room.digit_[2] = shift == 0 ? 0 : static_cast<std::uint64_t>(magnitude >> (2 * kBits - shift));
   room.trim();
   return room;

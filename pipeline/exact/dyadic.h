@@ -1,22 +1,16 @@
 #pragma once
 
+// Arbitrary-precision binary numbers for exact predicates. exact_vector.h builds vectors and
+// rotations from them; exact_gjk.cpp, exact_overlap.cpp and exact_hull.cpp compute with these.
+
 #include <bit>
 #include <cstdint>
 
 namespace winnow {
 
-/// A number m * 2^e with integers m and e: what sums, differences and products of doubles are,
-/// without rounding, overflow or underflow. Short ones, of at most 125 bits, are such a pair: what
-/// comes of coordinates that are small integers times a power of two, or of two factors, stays one.
-/// The others have digits of 64 bits, whose exponents are multiples of 64, so that sums need no
-/// shifts; zeros at both ends are dropped.
-///
-/// (Sums of doubles, as by Shewchuk 1997, would do for well scaled input; but a quaternion of a
-/// half turn from a library has components of 6e-17, and products of a dozen of them leave the
-/// range of double.)
-///
-/// Room for kDyadicDigits; who computes makes sure by `lowest_bit` and `highest_bit` of the input
-/// that no result needs more (an operation that would leaves zero, never memory out of bounds).
+/// Number of 64-bit digits in a Dyadic. Callers use `lowest_bit` and `highest_bit` of the input to
+/// ensure that no result needs more. An operation whose result would not fit returns zero and never
+/// writes out of bounds.
 inline constexpr int kDyadicDigits = 96;
 
 /// The magnitude of a finite double, as magnitude * 2^exponent.
@@ -33,10 +27,21 @@ struct DoubleParts {
   int exponent;
 };
 
+/// A number m * 2^e with integers m and e: exact sums, differences and products of doubles, without
+/// rounding, overflow or underflow.
+///
+/// Short numbers, with a mantissa of at most 125 bits, store m and e. Coordinates that are small
+/// integers times a power of two, and products of two factors, stay short. Long numbers have digits
+/// of 64 bits with exponents that are multiples of 64, so that sums need no shifts; zero digits at
+/// both ends are dropped.
+///
+/// (Expansions, as in Shewchuk 1997, would suffice for well scaled input. But a quaternion of a
+/// half turn from a library has components of 6e-17, and products of a dozen of them leave the
+/// range of double.)
 class Dyadic {
  public:
   Dyadic() noexcept {}  // NOLINT: digits beyond size_ are never read
-  /// Of a finite double.
+  /// From a finite double.
   Dyadic(double value) noexcept;  // NOLINT(google-explicit-constructor)
   Dyadic(const Dyadic& other) noexcept { *this = other; }
   Dyadic& operator=(const Dyadic& other) noexcept;
@@ -62,35 +67,36 @@ class Dyadic {
   /// Sign of a - b.
   friend int compare(const Dyadic& a, const Dyadic& b) noexcept;
 
-  /// Exponents of the lowest and the highest bit that is set; not for zero.
+  /// Exponents of the lowest and the highest bit that is set; not defined for zero.
   [[nodiscard]] int lowest_bit() const noexcept;
   [[nodiscard]] int highest_bit() const noexcept;
 
-  /// The number times 2^exponent as a double, to 2^-51 of itself as long as that is in range.
+  /// Returns the number times 2^exponent as a double. The relative error is at most 2^-51 if the
+  /// result is in range.
   [[nodiscard]] double scaled(int exponent) const noexcept;
 
-  /// A number whose square is at least a number >= 0 and at most 2^-50 of it larger; the root
-  /// itself if that has 50 bits.
+  /// Upper bound on the square root of a number >= 0: its square exceeds the number by a factor of
+  /// at most 1 + 2^-50. Exact if the root has at most 50 bits.
   friend Dyadic root_above(const Dyadic& square) noexcept;
 
  private:
   __extension__ using Wide = __int128;
 
-  /// A short number.
+  /// Makes a short number.
   Dyadic(Wide mantissa, int exponent) noexcept : mantissa_(mantissa), exponent_(exponent) {}
 
   [[nodiscard]] bool is_short() const noexcept { return size_ == 0; }
-  /// True of short numbers of 63 bits, whose products are short; of no long ones.
+  /// True for short numbers whose mantissa fits 63 bits, so that products of two of them are short.
   [[nodiscard]] bool is_word() const noexcept {
     constexpr int kMost = 62;
     return is_short() && mantissa_ >> kMost == mantissa_ >> 127U;
   }
-  /// True of what a short number may have as its mantissa.
+  /// True if `mantissa` fits a short number.
   [[nodiscard]] static bool fits(Wide mantissa) noexcept {
     constexpr int kMost = 125;
     return mantissa >> kMost == mantissa >> 127U;
   }
-  /// Makes exponents of two short numbers alike; false if one then fits no more.
+  /// Brings two short numbers to a common exponent; returns false if one then no longer fits.
   [[nodiscard]] static bool align(Wide& a, Wide& b, int shift) noexcept {
     constexpr int kMostShift = 125;
     Wide& larger = shift >= 0 ? a : b;
@@ -112,7 +118,7 @@ class Dyadic {
     if (!align(x, y, a.exponent_ - b.exponent_) || !fits(x + y)) return long_sum(a, b, subtract);
     return without_zeros(x + y, a.exponent_ < b.exponent_ ? a.exponent_ : b.exponent_);
   }
-  /// The short number whose mantissa is odd or zero.
+  /// Makes the short number with an odd (or zero) mantissa.
   [[nodiscard]] static Dyadic without_zeros(Wide mantissa, int exponent) noexcept {
     while ((mantissa & 1) == 0 && mantissa != 0) {
       const auto low = static_cast<std::uint64_t>(mantissa);
@@ -130,25 +136,25 @@ class Dyadic {
 
   [[nodiscard]] static Dyadic long_product(const Dyadic& a, const Dyadic& b) noexcept;
   [[nodiscard]] static Dyadic long_sum(const Dyadic& a, const Dyadic& b, bool subtract) noexcept;
-  /// The same number with digits, in `room` if it has none; not for zero.
+  /// Returns this number if it has digits, else its conversion to digits in `room`. Not for zero.
   [[nodiscard]] const Dyadic& with_digits(Dyadic& room) const noexcept;
-  /// Sign of |a| - |b|; of numbers with digits.
+  /// Sign of |a| - |b|, for numbers with digits.
   static int compare_magnitudes(const Dyadic& a, const Dyadic& b) noexcept;
   static void add_magnitudes(const Dyadic& a, const Dyadic& b, Dyadic& result) noexcept;
-  /// |a| > |b|.
+  /// Requires |a| > |b|.
   static void subtract_magnitudes(const Dyadic& a, const Dyadic& b, Dyadic& result) noexcept;
   [[nodiscard]] int top() const noexcept { return exponent_ + size_; }
   [[nodiscard]] std::uint64_t digit_at(int place) const noexcept {
     const int i = place - exponent_;
     return i >= 0 && i < size_ ? digit_[i] : 0;
   }
-  /// Of digits that are not all zero.
+  /// Drops zero digits at both ends; requires a nonzero digit.
   void trim() noexcept;
 
-  Wide mantissa_ = 0;          // of short numbers, odd or zero: mantissa_ * 2^exponent_
-  std::int32_t exponent_ = 0;  // of others: digit_[i] counts 2^(64 * (exponent_ + i))
-  std::int32_t size_ = 0;      // digits; 0 of short numbers, zero among them
-  bool negative_ = false;      // of numbers with digits
+  Wide mantissa_ = 0;          // short numbers: mantissa_ * 2^exponent_, odd or zero
+  std::int32_t exponent_ = 0;  // long numbers: digit_[i] has weight 2^(64 * (exponent_ + i))
+  std::int32_t size_ = 0;      // number of digits; 0 for short numbers, including zero
+  bool negative_ = false;      // sign of long numbers
   std::uint64_t digit_[kDyadicDigits];
 };
 

@@ -1,3 +1,6 @@
+// Exact GJK on the Minkowski difference of two cores, without rounding: decides whether the origin
+// is outside, on the boundary or inside. exact_overlap.cpp calls `locate_origin`.
+
 #include "pipeline/exact/exact_gjk.h"
 
 namespace winnow {
@@ -9,7 +12,8 @@ struct ExactSimplex {
   ExactVector point[4];
 };
 
-/// True if the origin projects into the interior of the segment; then `toward` leads there.
+/// Returns whether the origin projects into the interior of the segment; then `toward` is a
+/// direction to it.
 [[nodiscard]] bool segment_faces(const ExactVector& a, const ExactVector& b,
                                  ExactVector& toward) noexcept {
   const ExactVector edge = b - a;
@@ -31,7 +35,7 @@ struct ExactSimplex {
   return true;
 }
 
-/// Points of a simplex by the bits of a mask.
+/// The points of a simplex selected by a bit mask.
 struct Face {
   int count = 0;
   int index[4] = {};
@@ -77,13 +81,13 @@ void keep(ExactSimplex& s, unsigned mask) noexcept {
   s.size = kept;
 }
 
-/// Keeps the smallest face of the simplex that contains its point nearest to the origin, which is
-/// one that contains the newest point. `toward` becomes a direction from that nearest point to the
-/// origin, zero if they are the same: the origin then lies in the relative interior of the face.
+/// Reduces the simplex to the smallest face that contains the point nearest to the origin; this
+/// face contains the newest point. `toward` becomes a direction from the nearest point to the
+/// origin, or zero if they coincide: the origin then lies in the relative interior of the face.
 ///
-/// Tries faces by dimension; one is the nearest if the origin projects into its interior and the
-/// other points lie behind the plane through it (Johnson's conditions: Gilbert, Johnson and
-/// Keerthi, 1988), so no distances are compared.
+/// Tests faces by increasing dimension. A face is the nearest if the origin projects into its
+/// interior and the other points are behind the plane through it (Johnson's conditions, in GJK:
+/// Gilbert, Johnson and Keerthi 1988), so that no distances are compared.
 void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   const unsigned newest = 1U << (simplex.size - 1);
   for (int count = 1; count <= 3; ++count) {
@@ -96,7 +100,7 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   toward = ExactVector{};
 }
 
-/// Sign of (squared distance of the origin from the face that keep_nearest_face kept) - `square`.
+/// Sign of (squared distance of the origin from the face left by keep_nearest_face) - `square`.
 [[nodiscard]] int compare_square_distance(const ExactSimplex& face, const Dyadic& square) noexcept {
   const ExactVector& a = face.point[0];
   if (face.size == 1) return compare(dot(a, a), square);
@@ -111,9 +115,9 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   return compare(height * height, square * dot(normal, normal));
 }
 
-/// The algorithm of Gilbert, Johnson and Keerthi (1988), exactly: descends towards the origin until
-/// the simplex contains it (true) or `is_outside(direction, height)` says that it never will.
-/// Without rounding each step comes strictly nearer, so no simplex returns and it ends.
+/// GJK (Gilbert, Johnson and Keerthi 1988) in exact arithmetic: descends towards the origin until
+/// the simplex contains it (returns true) or `is_outside(direction, height)` proves that it never
+/// will. Each step gets strictly closer, so that no simplex recurs and the loop terminates.
 template <typename Outside>
 [[nodiscard]] bool descend(const CoreDifference& difference, const Outside& is_outside,
                            ExactVector direction, ExactSimplex& simplex) noexcept {
@@ -127,7 +131,7 @@ template <typename Outside>
   return true;
 }
 
-/// Any direction at right angles to `line`, near `hint` if that is not along it.
+/// A direction orthogonal to `line`, near `hint` if `hint` is not parallel to `line`.
 [[nodiscard]] ExactVector across(const ExactVector& line, const ExactVector& hint) noexcept {
   ExactVector side = cross(cross(line, hint), line);
   if (!is_zero(side)) return side;
@@ -135,7 +139,8 @@ template <typename Outside>
   return cross(line, is_upright ? ExactVector{{1.0, 0.0, 0.0}} : ExactVector{{0.0, 0.0, 1.0}});
 }
 
-/// True if no point of the difference lies strictly beyond the plane through the origin.
+/// Returns whether no point of the difference is strictly beyond the plane through the origin with
+/// normal `direction`. `vertex` becomes the support point.
 [[nodiscard]] bool supports(const CoreDifference& difference, const ExactVector& direction,
                             ExactVector& vertex) noexcept {
   Dyadic height;
@@ -143,28 +148,30 @@ template <typename Outside>
   return height.sign() <= 0;
 }
 
-/// The origin lies inside a segment of the difference along `line`. A supporting plane contains the
-/// line, so this is a question in the plane across it: turn from the farthest point found to the
-/// farthest one beyond it until a half plane is free of points, or they surround the line. No point
-/// is met twice.
+/// Decides the case that the origin is in the interior of a segment of the difference along `line`.
+/// A supporting plane would contain the line, so that the problem is two-dimensional, in the plane
+/// orthogonal to the line: rotate a half-plane from each support point to the next, until it
+/// contains no points (touching) or the points surround the line (overlapping). No point is visited
+/// twice.
 [[nodiscard]] ExactVerdict turn_about(const CoreDifference& difference, const ExactVector& line,
                                       const ExactVector& hint) noexcept {
   ExactVector first;
   if (supports(difference, across(line, hint), first)) return ExactVerdict::touching;
   ExactVector last = first;
-  // By half a turn in all at most: a point beyond that lies on the other side of the first one.
+  // The total rotation is at most half a turn: a point beyond that is on the other side of the
+  // first one.
   while (dot(line, cross(first, last)).sign() >= 0) {
     if (supports(difference, cross(line, last), last)) return ExactVerdict::touching;
   }
   return ExactVerdict::overlapping;
 }
 
-/// The origin lies in the relative interior of `face`, a simplex of the difference: is it on the
-/// boundary of the whole?
+/// The origin is in the relative interior of `face`, a simplex of the difference. Decides whether
+/// it is on the boundary of the difference.
 [[nodiscard]] ExactVerdict boundary_or_inside(const CoreDifference& difference,
                                               const ExactSimplex& face,
                                               const ExactVector& hint) noexcept {
-  // The newest point, and so the farthest one along a direction.
+  // The origin is a support point and therefore on the boundary.
   if (face.size == 1) return ExactVerdict::touching;
   if (face.size == 4) return ExactVerdict::overlapping;
   if (face.size == 2) return turn_about(difference, face.point[1] - face.point[0], hint);
@@ -183,7 +190,8 @@ template <typename Outside>
   ExactSimplex simplex;
   bool apart = false;
   const auto is_outside = [&](const ExactVector& d, const Dyadic& height) {
-    // The plane of the first direction often settles it; later ones have more digits.
+    // Only the first direction's plane is tested: it often decides, and later directions have more
+    // digits.
     if (simplex.size == 0) {
       apart = height.sign() < 0 && compare(height * height, square * dot(d, d)) > 0;
       return apart;

@@ -5,8 +5,9 @@
 
 namespace winnow {
 
-/// Where the origin is to the difference of two cores, which is in range, rounded by `rounding`:
-/// exactly, never undecided. `direction` is tried first.
+/// Locates the origin relative to the Minkowski difference of two cores, dilated by `rounding`.
+/// Exact, never undecided. Requires difference.in_range(). `direction` is the first search
+/// direction.
 [[nodiscard]] ExactVerdict locate_origin(const CoreDifference& difference, const Dyadic& rounding,
                                          const ExactVector& direction) noexcept;
 

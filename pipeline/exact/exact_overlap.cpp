@@ -1,3 +1,6 @@
+// Exact overlap test of two shapes: chooses a method by kind (aligned_overlap, half-spaces, exact
+// GJK, separating planes). Called by solver/solver.cpp.
+
 #include "pipeline/exact/exact_overlap.h"
 
 #include "pipeline/exact/aligned_overlap.h"
@@ -10,7 +13,8 @@
 namespace winnow {
 namespace {
 
-/// Sign of rest - p sqrt(square_p) - q sqrt(square_q), p and q >= 0: squared twice.
+/// Sign of rest - p sqrt(square_p) - q sqrt(square_q), with p and q >= 0, computed by squaring
+/// twice.
 [[nodiscard]] int sign_less_roots(const Dyadic& rest, const Dyadic& p, const Dyadic& square_p,
                                   const Dyadic& q, const Dyadic& square_q) noexcept {
   if (rest.sign() < 0) return -1;
@@ -23,13 +27,14 @@ namespace {
 
 [[nodiscard]] int normal_bits(const HalfSpaceShape& half_space) noexcept {
   BitSpan span;
-  span.include(1.0);  // it is added to terms without it
+  span.include(1.0);  // it is added to terms without the normal
   for (const double x : half_space.normal) span.include(x);
   return span.bits();
 }
 
-/// The half-space against the rounded core of any other shape. A stored normal is a unit vector to
-/// rounding only: its length, and a disc's radius across it, are roots that are decided by squares.
+/// A half-space against the rounded core of any other shape. A stored normal is a unit vector only
+/// up to rounding: its length, and a disc's radius projected on it, are roots, which are compared
+/// by squaring.
 [[nodiscard]] ExactVerdict half_space_verdict(const HalfSpaceShape& half_space,
                                               const Pose& half_space_pose, const CoreVertices& core,
                                               const Pose& core_pose) noexcept {
@@ -45,7 +50,7 @@ namespace {
     return ExactVerdict::undecided;
   }
 
-  // All terms are times the squares of both quaternions' lengths.
+  // All terms are multiplied by the squared lengths of both quaternions.
   const Dyadic core_square = square_length(core_pose.orientation);
   const Dyadic scale = core_square * square_length(half_space_pose.orientation);
   const ExactVector normal =
@@ -67,7 +72,7 @@ namespace {
   return verdict_of(sign);
 }
 
-/// Half-spaces always overlap, unless their normals are opposite.
+/// Two half-spaces always overlap unless their normals are opposite.
 [[nodiscard]] ExactVerdict half_spaces_verdict(const HalfSpaceShape& a, const Pose& pose_a,
                                                const HalfSpaceShape& b,
                                                const Pose& pose_b) noexcept {
@@ -83,15 +88,16 @@ namespace {
   const ExactVector normal_b = scaled_rotation(pose_b.orientation) * exact_vector(b.normal);
   const bool opposite = is_zero(cross(normal_a, normal_b)) && dot(normal_a, normal_b).sign() < 0;
   if (!opposite) return ExactVerdict::overlapping;
-  // The ratio of the normals' lengths, by which the second offset counts, is that of two products.
+  // The second offset is multiplied by the ratio of the normals' lengths. For opposite normals this
+  // is a ratio of dot products.
   const Dyadic along = dot(normal_b, normal_b);
   const Dyadic reach = dot(normal_a, between) - square_length(pose_a.orientation) * a.offset;
   const Dyadic other = square_length(pose_b.orientation) * b.offset;
   return verdict_of(compare(reach * along + dot(normal_a, normal_b) * other, 0.0));
 }
 
-/// The axis by which the search begins. Any will do, so digits that are small beside the largest
-/// are dropped; +x for none.
+/// The initial search direction. Any direction is valid, so small digits are dropped; +x if `axis`
+/// is zero or not finite.
 [[nodiscard]] ExactVector first_direction(const double axis[3]) noexcept {
   const double largest = std::max({std::fabs(axis[0]), std::fabs(axis[1]), std::fabs(axis[2])});
   const double sum = axis[0] + axis[1] + axis[2];
@@ -120,11 +126,11 @@ namespace {
   return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
 }
 
-/// The least height of the difference of two rounded cores along the directions that it is shown,
-/// both ways: below zero it proves them apart.
+/// The minimum, over the directions passed to `look` and their opposites, of the height of the
+/// Minkowski difference of two rounded cores. A negative minimum proves that they are disjoint.
 class LeastHeight {
  public:
-  /// `direction` is not zero, and shown first.
+  /// `direction` is not zero; it is tested first.
   LeastHeight(const CoreDifference& difference, const Dyadic& rounding,
               const ExactVector& direction) noexcept
       : difference_(difference), rounding_(rounding), least_(height_along(direction)) {
@@ -153,10 +159,10 @@ class LeastHeight {
   Dyadic least_;
 };
 
-/// Pairs whose numbers span too far for the search, by planes alone: those that `direction` and the
-/// axes of both frames are normal to, and products of two axes. They decide all of boxes without
-/// rounding (Gottschalk, "Separating axis theorem", 1996), flat ones included, which are what is
-/// left of thick ones; of others only that they are apart.
+/// Separating-axis test (SAT) for pairs whose numbers span too wide a range for exact GJK. Tests
+/// `direction`, the axes of both frames and their cross products. For boxes without rounding, flat
+/// ones included, this is complete (Gottschalk, "Separating axis theorem", 1996); for other pairs
+/// it can only prove that they are disjoint.
 [[nodiscard]] ExactVerdict verdict_by_planes(const CoreDifference& difference,
                                              const Dyadic& rounding, const ExactVector& direction,
                                              bool are_boxes) noexcept {
@@ -172,8 +178,8 @@ class LeastHeight {
   return verdict_of(-least.sign());
 }
 
-/// Cylinders and cones, between a bound from outside along the direction given and polygons
-/// inscribed in their discs: decided where one of them suffices, or both meet.
+/// Cylinders and cones: an outer bound along `direction` and inner polygons inscribed in their
+/// discs. Decided if one of the two suffices, or if both touch.
 [[nodiscard]] ExactVerdict bounded_verdict(const CoreDifference& difference, const Dyadic& rounding,
                                            const ExactVector& direction) noexcept {
   const Dyadic length = root_above(dot(direction, direction));

@@ -5,45 +5,45 @@
 
 namespace winnow {
 
-/// What exact arithmetic says about a pair.
+/// Result of an exact overlap test.
 enum class ExactVerdict : unsigned char {
   /// No point in common.
   separated,
-  /// The boundaries touch, the interiors do not meet.
+  /// The boundaries touch, the interiors are disjoint.
   touching,
-  /// They share more than a boundary point.
+  /// The interiors overlap.
   overlapping,
-  /// A kind whose contact is not a rational predicate (cylinders, cones, those known
-  /// by a support function), or numbers beyond the
-  /// range in which products of doubles are exact.
+  /// Not decided: the contact of the pair is not a rational predicate (cylinders, cones, shapes
+  /// given by a support function), or the exponents of the input span too wide a range.
   undecided,
 };
 
-/// Of the sign of a distance.
+/// Converts the sign of a distance to a verdict.
 [[nodiscard]] constexpr ExactVerdict verdict_of(int sign) noexcept {
   return sign > 0   ? ExactVerdict::separated
          : sign < 0 ? ExactVerdict::overlapping
                     : ExactVerdict::touching;
 }
 
-/// Whether two valid shapes at valid poses share a point, without any rounding: every double of the
-/// shapes and poses is taken as the number it is, and a quaternion as the rotation of its exact
-/// normalisation. `axis` is a direction (any length, in the axes of the world, from a to b) along
-/// which the shapes are closest or overlap least, as far as double can tell: tried first.
+/// Decides without rounding whether two valid shapes at valid poses overlap. Each double of the
+/// shapes and poses is taken as the exact number it stores, and a quaternion as the rotation of its
+/// exact normalisation. `axis` is tested first: a direction (any length, world axes, from a to b)
+/// along which the shapes are closest or overlap least according to the search in double.
 ///
-/// Cores are hulls of points, and so is the set of their differences: the algorithm of Gilbert,
-/// Johnson and Keerthi (1988) without rounding descends to its point nearest to the origin,
-/// whatever the dimension and however the shape's faces were merged. Without rounding radii that is
-/// a yes or no, and where the origin is on the boundary of what was found, a supporting plane is
-/// sought; with them the square of the distance, a rational number, is compared. Coordinates are
-/// multiplied by the squares of both quaternions' lengths, so that there are only sums and
-/// products. Half-spaces by the lowest point of the other. Shapes whose frames are aligned by
-/// closed forms. Other cylinders and cones are decided where `axis` proves that they are apart,
-/// where polygons inscribed in their discs overlap, or where both touch. Pairs whose numbers span
-/// more than some 1e200 are decided where they are boxes without rounding, or where one of a few
-/// planes proves them apart. For pairs whose sign double cannot tell: 5 to 100 microseconds, more
-/// for large hulls, whose vertices are first sifted in double; next to nothing where
-/// `aligned_overlap` decides.
+/// Methods: axis-aligned shapes by closed forms (aligned_overlap). Half-spaces by the lowest point
+/// of the other shape. All others by GJK (Gilbert, Johnson and Keerthi 1988) in exact arithmetic on
+/// the Minkowski difference of the cores, which are convex hulls of points. Without rounding radii,
+/// GJK decides whether the origin is in the difference; if it is on the boundary of the last
+/// simplex, a supporting plane is searched. With rounding radii, the squared distance, a rational
+/// number, is compared with the squared radius. Coordinates are multiplied by the squared lengths
+/// of both quaternions, so that only sums and products are needed.
+///
+/// Other cylinders and cones are decided only if `axis` separates them, if polygons inscribed in
+/// their discs overlap, or if both bounds touch. Pairs whose numbers span more than about 1e200 are
+/// decided only if both are boxes without rounding, or if one of a few planes separates them.
+///
+/// Costs O(vertices) per GJK step; products in double exclude most vertices of large hulls. The
+/// solver calls this only if the sign is uncertain in double.
 [[nodiscard]] ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b,
                                          const double axis[3]) noexcept;

@@ -46,7 +46,7 @@ struct ExactVector {
   return a.x[0].sign() == 0 && a.x[1].sign() == 0 && a.x[2].sign() == 0;
 }
 
-/// A direction in double, its largest component about 1.
+/// A direction in double, scaled so that its largest component is about 1.
 struct RoundedDirection {
   explicit RoundedDirection(const ExactVector& direction) noexcept {
     int top = std::numeric_limits<int>::min();
@@ -72,7 +72,7 @@ struct ExactMatrix {
   return {{dot(m.row[0], v), dot(m.row[1], v), dot(m.row[2], v)}};
 }
 
-/// The transpose of m times v.
+/// transpose(m) * v.
 [[nodiscard]] inline ExactVector transposed_times(const ExactMatrix& m,
                                                   const ExactVector& v) noexcept {
   ExactVector result;
@@ -87,7 +87,7 @@ struct ExactMatrix {
   return Dyadic(q[0]) * q[0] + Dyadic(q[1]) * q[1] + Dyadic(q[2]) * q[2] + Dyadic(q[3]) * q[3];
 }
 
-/// The rotation of a quaternion times the square of its length: a polynomial, no division.
+/// The rotation matrix of a quaternion times its squared length: a polynomial without division.
 [[nodiscard]] inline ExactMatrix scaled_rotation(const double q[4]) noexcept {
   const Dyadic w(q[0]);
   const Dyadic x(q[1]);
@@ -109,8 +109,8 @@ struct ExactMatrix {
            {{two * (xz - wy), two * (yz + wx), ww - xx - yy + zz}}}};
 }
 
-/// Bits between the lowest and the highest that any of some numbers has: what a polynomial of them
-/// needs is that times its degree, and a few for the sums.
+/// Number of bits between the lowest and the highest bit of a set of numbers. A polynomial of
+/// degree d in them needs d times as many, plus a few for the sums.
 class BitSpan {
  public:
   void include(double value) noexcept {
@@ -131,15 +131,15 @@ class BitSpan {
   int high_ = std::numeric_limits<int>::min();
 };
 
-/// Bits of the rotation of a pose times the square of its quaternion's length.
+/// Bits of a pose's rotation matrix times the squared length of its quaternion.
 [[nodiscard]] inline int rotation_bits(const Pose& pose) noexcept {
   BitSpan span;
   for (const double q : pose.orientation) span.include(q);
   return 2 * span.bits() + 2;
 }
 
-/// True if polynomials of this degree in numbers of so many bits fit a Dyadic, with digits to spare
-/// for sums and for ends that fill no digit.
+/// Returns whether polynomials of this degree in numbers of this many bits fit a Dyadic, with room
+/// for sums and for partly filled digits at both ends.
 [[nodiscard]] inline bool fits_dyadic(int degree, int bits) noexcept {
   constexpr int kSpare = 256;
   return degree * bits + kSpare <= 64 * kDyadicDigits;

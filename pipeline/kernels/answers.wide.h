@@ -1,42 +1,43 @@
 #pragma once
 
-// What kernels compute of the pairs in their lanes, and how it is written to the columns of a job.
+// The results that kernels compute for the pairs in their lanes, the functions that write them to
+// the columns of a job, and the loops of kernels over a job. Included by nearly all kernels.
 
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "simd/lanes/compress.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// ContactLevel, as a template argument.
+/// ContactLevel as a template argument.
 enum Level : int { kBoolean, kDistance, kManifold };
 
-/// The distance from 1 to the next number.
+/// Machine epsilon: the distance from 1 to the next number.
 template <typename T>
 inline constexpr T kEpsilon = sizeof(T) == sizeof(double) ? T(0x1p-52) : T(0x1p-23F);
 
-/// Levels distance and manifold; as the columns of NarrowJob say.
+/// Results at levels distance and manifold, as described at the columns of NarrowJob.
 template <typename T>
 struct AnswerLanes {
   Lanes<T> distance;
   Lanes<T> error_bound;
   Vec3<T> normal;
-  /// Read at level distance only.
+  /// Used at level distance only.
   Vec3<T> point;
 };
 
-/// One contact point per lane, for the lanes of a mask.
+/// One contact point per lane, for the lanes in the mask.
 template <typename T>
 struct ContactLanes {
   Vec3<T> position;
   Lanes<T> depth;
-  /// Whole numbers below 2^24: the halves of ContactPoint::feature.
+  /// Integers below 2^24: the two halves of ContactPoint::feature.
   Lanes<T> feature_a;
   Lanes<T> feature_b;
   Mask16 lanes;
 };
 
-/// Lanes of sizes whose squares neither overflow nor lose digits. `square` is a sum of squares of
-/// all lengths that matter.
+/// The lanes in which lengths are in a range that can be squared without overflow or loss of
+/// digits. `square` is the sum of the squares of all lengths that matter.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_range(const Lanes<T>& square) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
@@ -44,18 +45,18 @@ template <typename T>
          (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
-/// Whether lanes are the first pass of level boolean, which is in float: what it is not sure about
-/// is left to double.
+/// True in the first pass of level boolean, which computes in float; pairs that it cannot decide
+/// are left to double.
 template <typename T>
 inline constexpr bool kFirstPass = sizeof(T) == sizeof(float);
 
-/// Eight bits as the lowest bits of eight bytes.
+/// Spreads eight bits to the lowest bits of eight bytes.
 [[gnu::always_inline]] inline std::uint64_t bytes_of_bits(Mask16 bits) {
   const std::uint64_t low = (bits & 0x7FU) * 0x02040810204081ULL & 0x0101010101010101ULL;
   return low | static_cast<std::uint64_t>(bits >> 7U & 1U) << 56U;
 }
 
-/// Level boolean.
+/// Writes the results of level boolean.
 template <typename T>
 [[gnu::always_inline]] inline void write_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                  Mask16 overlap) {
@@ -90,7 +91,7 @@ template <typename T>
   }
 }
 
-/// Levels distance and manifold, all but contacts.
+/// Writes the results of levels distance and manifold except the contacts.
 template <int L, typename T>
 [[gnu::always_inline]] inline void write_answer(const NarrowJob& job, const PairBlock<T>& block,
                                                 const AnswerLanes<T>& answer) {
@@ -106,7 +107,7 @@ template <int L, typename T>
   }
 }
 
-/// Appends the lanes' pairs to the list of those without an answer.
+/// Appends the pairs in `lanes` to the list of uncertified pairs.
 template <typename T>
 [[gnu::always_inline]] inline std::uint32_t write_uncertified(const NarrowJob& job,
                                                               const PairBlock<T>& block,
@@ -115,8 +116,8 @@ template <typename T>
   return size;
 }
 
-/// Columns contact_first and contact_count, of the masks of lanes that have a first, second, ...
-/// point.
+/// Writes columns contact_first and contact_count. lanes[p] are the lanes that have a contact point
+/// number p.
 template <int Points, typename T>
 [[gnu::always_inline]] inline void write_contact_runs(const NarrowJob& job,
                                                       const PairBlock<T>& block,
@@ -143,7 +144,7 @@ template <int Points, typename T>
   }
 }
 
-/// The lanes' numbers as floats; what comes after them is unspecified.
+/// Converts to float. If there are fewer lanes than floats, the remaining floats are unspecified.
 template <typename T>
 [[gnu::always_inline]] inline Floats as_floats(const Lanes<T>& v) {
   if constexpr (Lanes<T>::kCount == 1) {
@@ -153,7 +154,7 @@ template <typename T>
   }
 }
 
-/// A contact's columns: position x, y, z, depth, feature of a, feature of b.
+/// The columns of a contact: position x, y, z, depth, feature of a, feature of b.
 struct ContactRegisters {
   Floats column[6];
 };
@@ -164,7 +165,7 @@ template <typename T>
            as_floats(point.depth), as_floats(point.feature_a), as_floats(point.feature_b)}};
 }
 
-/// Appends the contacts in the lanes.
+/// Appends the contacts in `lanes`.
 [[gnu::always_inline]] inline void append_contacts(ContactWriter& out, Mask16 lanes,
                                                    const ContactRegisters& c) {
   for (int k = 0; k < 3; ++k) compress_store(lanes, c.column[k], out.position[k] + out.size);
@@ -173,7 +174,7 @@ template <typename T>
   out.size += count(lanes);
 }
 
-/// Two points per lane.
+/// Appends up to two points per lane.
 [[gnu::always_inline]] inline void append_zipped(ContactWriter& out, const Mask16 (&lanes)[2],
                                                  const ContactRegisters (&c)[2]) {
   ContactRegisters zipped;
@@ -181,7 +182,7 @@ template <typename T>
   append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
 }
 
-/// Any number of points per lane.
+/// Appends any number of points per lane.
 template <int Points>
 inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
                                 const ContactRegisters (&columns)[Points]) {
@@ -202,8 +203,9 @@ inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points
   out.size = size;
 }
 
-/// Contacts of the pairs in the lanes, pair after pair; a lane that has a point has all before it.
-/// Lanes of pairs that are not certified or not of the job must not be in the masks.
+/// Writes the contacts of the pairs in the lanes, pair after pair. A lane that has point p must
+/// have all points before it. Masks must not contain lanes of pairs that are uncertified or beyond
+/// the job's count.
 template <int Points, typename T>
 [[gnu::always_inline]] inline void write_contacts(NarrowJob& job, const PairBlock<T>& block,
                                                   const ContactLanes<T> (&points)[Points]) {
@@ -223,9 +225,9 @@ template <int Points, typename T>
   }
 }
 
-/// The kernels of a pair kind, from a class with a template
-/// `Mask16 block<T, L>(NarrowJob&, const PairBlock<T>&)` that answers the pairs of a block and
-/// returns the lanes that it could not certify.
+/// Answers a job with a class of one pair kind. The class has a template `Mask16 block<T,
+/// L>(NarrowJob&, const PairBlock<T>&)` that answers the pairs of a block and returns the lanes
+/// that it could not certify.
 template <typename Kind, typename T, int L>
 std::uint32_t answer_job(NarrowJob& job) {
   std::uint32_t uncertified = 0;
@@ -237,8 +239,8 @@ std::uint32_t answer_job(NarrowJob& job) {
   return uncertified;
 }
 
-/// Level boolean: what float is sure about, and then the rest in double. A block of float lanes
-/// takes as long as one of double, for twice as many pairs.
+/// Level boolean in two passes: float first, which handles twice as many pairs per block, then
+/// double for the pairs that float could not decide.
 template <typename Kind, NarrowKernel in_double>
 std::uint32_t answer_sure_first(NarrowJob& job) {
   if (job.count <= Doubles::kCount) return in_double(job);
@@ -258,7 +260,7 @@ std::uint32_t answer_sure_first(NarrowJob& job) {
     for (std::uint32_t i = 0; i < part.count; ++i) pairs[i] = job.pairs[index[i]];
     const std::uint32_t count = answer_job<Kind, double, kBoolean>(part);
     for (std::uint32_t i = 0; i < part.count; ++i) job.overlap[index[i]] = overlap[i];
-    // No more are left than were read, so what is still to be read is not written over.
+    // At most as many indices are written as have been read, so unread entries are not overwritten.
     for (std::uint32_t i = 0; i < count; ++i) left[i] = index[left[i]];
     for (std::uint32_t i = 0; i < count; ++i) job.uncertified[uncertified++] = left[i];
   }

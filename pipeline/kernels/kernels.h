@@ -1,7 +1,8 @@
 #pragma once
 
-// What the narrow phase hands to its kernels, and which kernels there are. Plain structs: kernel
-// files include this.
+// The interface between the narrow phase and its SIMD kernels: the job that a kernel answers, and
+// the list of pair kinds that have kernels. Only plain structs, because kernel files, which are
+// compiled once per instruction set, include this.
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contact_types.h>
@@ -12,10 +13,11 @@
 
 namespace winnow {
 
-/// At most so many pairs per job.
+/// The largest number of pairs in a job.
 inline constexpr std::uint32_t kJobPairs = 512;
 
-/// Kernels write contact points by whole vectors: the last of them may reach this far beyond.
+/// Kernels write contact points as whole vectors: they may write up to this many elements beyond
+/// the last contact.
 inline constexpr std::uint32_t kContactSlack = 16;
 
 /// Contact points in the order in which they are written, one column per member.
@@ -23,47 +25,48 @@ struct ContactWriter {
   float* position[3];
   float* depth;
   std::uint64_t* feature;
-  /// Points so far. There is room for kManifoldPoints per pair of the job, and for kContactSlack
-  /// more.
+  /// Number of points so far. There must be room for kManifoldPoints per pair of the job, plus
+  /// kContactSlack.
   std::uint32_t size;
 };
 
-/// A run of pairs of one kind and where their answers go: element i of every column for pairs[i].
-/// All pairs are in the kinds' order: the shape of `a` is of the smaller kind.
+/// Consecutive pairs of one kind, and the columns for their answers: element i of every column
+/// belongs to pairs[i]. In every pair the shape of `a` is of the smaller kind.
 struct NarrowJob {
   const BodyPair* pairs;
   std::uint32_t count;
-  /// By body.
+  /// Indexed by body.
   const ShapeId* shapes;
   const Pose* poses;
-  /// Whether poses fill more than the nearer caches: kernels ask memory for them ahead.
+  /// True if the poses do not fit in the nearer caches: kernels then prefetch them.
   bool has_many_bodies;
   const ShapeTables* tables;
-  /// Contacts are made of pairs that are no farther apart.
+  /// A pair gets contacts if it is at most this far apart.
   double margin;
-  /// A margin for each pair, readable up to a multiple of 16; null: `margin` for all.
+  /// A margin for each pair, readable up to a multiple of 16; null if `margin` is for all pairs.
   const double* margins;
 
-  /// Level boolean: 1 where the shapes share a point.
+  /// Level boolean: 1 if the shapes share a point, else 0.
   std::uint8_t* overlap;
-  /// Levels distance and manifold. Distance is negative by the penetration depth, and <= 0 exactly
-  /// where the shapes share a point. At level manifold a pair farther apart than the margin may
-  /// have any lower bound of its distance that is above the margin.
+  /// Levels distance and manifold. Negative by the penetration depth, and <= 0 exactly if the
+  /// shapes share a point. At level manifold, if a pair is farther apart than the margin, this may
+  /// be any lower bound of its distance that is above the margin.
   double* distance;
   /// The true distance is within distance +- error_bound.
   double* error_bound;
-  /// Unit vectors from a to b, in the axes of the world.
+  /// Unit vectors from a to b, in world axes.
   double* normal[3];
-  /// Level distance: the point of a, relative to the position of body a, in the axes of the world.
-  /// That of b is distance * normal farther.
+  /// Level distance: the closest point on a, relative to the position of body a, in world axes. The
+  /// closest point on b is point + distance * normal.
   double* point[3];
-  /// Level manifold: points of pair i are contacts[contact_first[i] .. + contact_count[i]).
+  /// Level manifold: the contacts of pair i are [contact_first[i], contact_first[i] +
+  /// contact_count[i]).
   std::uint32_t* contact_first;
   std::uint32_t* contact_count;
   ContactWriter contacts;
 
-  /// Room for `count` indices of pairs that the kernel could not certify. Nothing of theirs needs
-  /// to have been written.
+  /// Room for `count` indices of pairs that the kernel could not certify. The other columns of
+  /// these pairs are unspecified.
   std::uint32_t* uncertified;
 
   [[nodiscard]] double margin_of(std::uint32_t pair) const {
@@ -71,19 +74,20 @@ struct NarrowJob {
   }
 };
 
-/// Answers a job; returns the number of uncertified pairs.
+/// Answers a job and returns the number of uncertified pairs.
 using NarrowKernel = std::uint32_t (*)(NarrowJob& job);
 
-/// The kernels of one pair kind. What is not in `uncertified` has the right sign and a bound of at
-/// most 1e-12 x (sizes + |distance|), or 1e-9 where cylinders, cones, ellipsoids and tapered
-/// capsules meet more than spheres and half-spaces, or 4e-7 of a program's own sets.
+/// The kernels of one pair kind. An answer that is not in `uncertified` has the right sign and an
+/// error bound of at most 1e-12 x (sizes + |distance|); 1e-9 for pairs with a cylinder, cone,
+/// ellipsoid or tapered capsule, unless the other shape is a sphere or half-space; 4e-7 for user
+/// shapes.
 struct NarrowKernels {
-  /// By kernel_index of the level.
+  /// Indexed by kernel_index of the level.
   NarrowKernel of_level[3];
 };
 
-/// The kinds of pairs that have kernels, as WINNOW_X(a, b): their table is `a_b_kernels()`, which a
-/// kernel file defines as WINNOW_KERNEL_TABLE(a_b_kernels).
+/// The pair kinds that have kernels, as WINNOW_X(a, b). The table of a pair kind is
+/// `a_b_kernels()`, which a kernel file defines as WINNOW_KERNEL_TABLE(a_b_kernels).
 #define WINNOW_NARROW_KERNELS(WINNOW_X)      \
   WINNOW_X(sphere, sphere)                   \
   WINNOW_X(sphere, capsule)                  \
@@ -155,12 +159,13 @@ struct NarrowKernels {
 WINNOW_NARROW_KERNELS(WINNOW_DECLARE_PAIR)
 #undef WINNOW_DECLARE_PAIR
 
-/// Where the kernel of a level stands in NarrowKernels. Level pairs has none.
+/// Index of the kernel of a level in NarrowKernels. Level `pairs` has no kernel.
 [[nodiscard]] constexpr std::uint32_t kernel_index(ContactLevel level) noexcept {
   return static_cast<std::uint32_t>(level) - static_cast<std::uint32_t>(ContactLevel::boolean);
 }
 
-/// The active kernels of a pair kind, a <= b; null where the solver answers.
+/// Returns the linked kernels of a pair kind, a <= b, for the active instruction set; null if there
+/// are none and the solver must answer.
 [[nodiscard]] const NarrowKernels* narrow_kernels(ShapeKind a, ShapeKind b) noexcept;
 
 }  // namespace winnow

@@ -1,8 +1,8 @@
 #pragma once
 
-// How a program gets the kernels of those kinds of shapes alone that it makes: what makes a shape
-// of a kind (pipeline/kinds/) links the kernels of its pairs with itself and with all kinds before
-// it in that order, and nothing else names them.
+// Makes a program contain only the kernels of the kinds of shapes that it creates. The function
+// that creates a shape of a kind (pipeline/kinds/) links the kernels of the pairs of that kind with
+// itself and with all kinds before it in the order below; nothing else refers to the kernels.
 //
 // The order: sphere, box, half_space, capsule, triangle, hull, cylinder, cone, ellipsoid,
 // tapered_capsule, support.
@@ -11,13 +11,13 @@
 
 namespace winnow {
 
-/// From now on narrow_kernels knows those of a pair kind, a <= b.
+/// Registers the kernels of a pair kind, a <= b, for narrow_kernels(). Thread-safe.
 void link_kernels(ShapeKind a, ShapeKind b, const NarrowKernels& (*kernels)() noexcept) noexcept;
 
 }  // namespace winnow
 
-/// In the file of a kind: defines `link_kernels_of_<kind>()`, which links those of the pairs that
-/// WINNOW_PAIRS(WINNOW_X) names as WINNOW_X(a, b).
+/// For the file of a kind: defines `link_kernels_of_<kind>()`, which links the kernels of the pairs
+/// that WINNOW_PAIRS(WINNOW_X) lists as WINNOW_X(a, b).
 #define WINNOW_DEFINE_LINK(kind, WINNOW_PAIRS) \
   WINNOW_PAIRS(WINNOW_DEFINE_PAIR_KERNELS)     \
   namespace {                                  \

@@ -1,23 +1,24 @@
 #pragma once
 
-// Kernels of kinds that have closed forms: a pair alone is answered by the same templates with
-// numbers that stand alone.
+// Kernel tables for pair kinds with closed forms. A job with one pair runs the same templates with
+// scalars instead of SIMD lanes.
 
 #include "pipeline/kernels/answers.wide.h"
 #include "simd/lanes/alone.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The kernels in double of a kind whose classes answer a pair alone, too. Two pairs of boxes take
-/// longer one after the other than in lanes.
+/// The kernel in double of a kind whose class also supports scalars. Only a job with a single pair
+/// uses them.
 template <typename Kind, int L>
 std::uint32_t answer_one_or_many(NarrowJob& job) {
   return job.count == 1 ? answer_job<Kind, Alone, L>(job) : answer_job<Kind, double, L>(job);
 }
 
-/// Of kinds whose classes answer a pair alone, too; up to a level, as what makes several contacts
-/// may need more lanes than one. `SureFirst`: level boolean goes over the pairs in float first,
-/// which is no gain where loading them takes longer than the answer.
+/// The kernel table of a kind whose class also supports scalars. `MostAlone`: kManifold if a single
+/// manifold is computed with scalars too; some algorithms for several contacts need more than one
+/// lane. `SureFirst`: level boolean makes a first pass in float, which does not pay if loading the
+/// shapes takes longer than the test.
 template <typename Kind, int MostAlone = kManifold, bool SureFirst = true>
 constexpr NarrowKernels closed_form_kernels_of() {
   constexpr NarrowKernel boolean = [] {

@@ -1,6 +1,7 @@
 #pragma once
 
-// The points that a program gives of its own convex sets, and which of them count as one.
+// Support points of user shapes, and the tolerance up to which several of them count as one
+// feature.
 
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kernels/single_vectors.wide.h"
@@ -8,7 +9,8 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// As SupportShape says of points that are not finite or beyond the radius.
+/// Enforces the contract of SupportShape: a point that is not finite becomes 0, a point beyond the
+/// radius the nearest one within.
 static inline void bring_within(double radius, double* point) {
   double most = 0.0;
   for (int k = 0; k < 3; ++k)
@@ -21,7 +23,7 @@ static inline void bring_within(double radius, double* point) {
   for (int k = 0; k < 3; ++k) point[k] = share[k] * reach;
 }
 
-/// The point that a program gives of its own set along a unit direction; 0 of a set that is gone.
+/// Calls the user's support function for a unit direction. Returns 0 for a shape that was removed.
 static inline void own_point(const SupportShape& shape, const double (&direction)[3],
                              double (&point)[3]) {
   for (double& x : point) x = 0.0;
@@ -29,7 +31,8 @@ static inline void own_point(const SupportShape& shape, const double (&direction
   if (!(dot3(point, point) <= shape.radius * shape.radius)) bring_within(shape.radius, point);
 }
 
-/// The same along any direction, times `scale`. Most are of unit length, as far as rounding goes.
+/// Returns the support point for a direction of any length, times `scale`. Most callers pass a unit
+/// vector, for which nothing is divided.
 template <typename T>
 static inline void own_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),
@@ -53,8 +56,9 @@ static inline double own_width(const SupportShape& shape, const double* d, doubl
   return dot3(d, high) - dot3(d, low);
 }
 
-/// Farthest points in directions off by kSampleTilt that are no farther from each other count as
-/// one, as those of a ball do: by the widths along two directions across. Times `scale`.
+/// Support points for directions within kSampleTilt of the normal that are no farther apart than
+/// this count as one point, as on a ball. Computed from the widths along two directions across the
+/// normal, times `scale`.
 static inline double apart_of_samples(const SupportShape& shape, const double (*across)[3],
                                       double scale) {
   const double width[2] = {own_width(shape, across[0], scale), own_width(shape, across[1], scale)};

@@ -1,8 +1,7 @@
 #pragma once
 
-// Pairs of a job into lanes: the loop over blocks of one pair per lane, the difference of the
-// positions, orientations, and the numbers of the shapes in the order in which the structs hold
-// them.
+// Loads the pairs of a job into SIMD lanes, one pair per lane: the loop over blocks of pairs,
+// differences of positions, rotations, and the parameters of shapes in the order of their structs.
 
 #include "pipeline/kernels/fetch_ahead.wide.h"
 #include "simd/lanes/rows.h"
@@ -10,10 +9,10 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The pairs in the lanes of Lanes<T>.
+/// As many pairs as Lanes<T> has lanes.
 template <typename T>
 struct PairBlock {
-  /// One per lane. Lanes from `count` on repeat the job's last pair.
+  /// One pair per lane. Lanes from `count` on repeat the job's last pair.
   const BodyPair* pairs;
   /// Index in the job of the pair in lane 0.
   std::uint32_t first;
@@ -22,8 +21,8 @@ struct PairBlock {
   [[nodiscard]] Mask16 lanes() const { return lanes_below(count); }
 };
 
-/// Calls body(block) for all pairs of the job. Loads of a block do not depend on the one before, so
-/// misses of the nearer caches overlap without being asked for ahead.
+/// Calls body(block) for all pairs of the job. The loads of a block do not depend on the block
+/// before, so that misses of the nearer caches overlap without a prefetch.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
   constexpr std::uint32_t lanes = Lanes<T>::kCount;
@@ -42,7 +41,7 @@ template <typename T, typename Body>
   }
 }
 
-/// The margin of each pair of a block.
+/// Returns the margin of each pair of a block.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> margins_of(const NarrowJob& job, const PairBlock<T>& block) {
   if (job.margins == nullptr) return Lanes<T>(static_cast<T>(job.margin));
@@ -53,14 +52,14 @@ template <typename T>
   return Lanes<T>::load(each);
 }
 
-/// A plain struct of doubles as an array of them.
+/// Views a plain struct of doubles as an array.
 template <typename Plain>
 [[gnu::always_inline]] inline const double* numbers(const Plain& plain) {
   static_assert(sizeof(Plain) % sizeof(double) == 0);
   return reinterpret_cast<const double*>(&plain);
 }
 
-/// Which body of a pair.
+/// Selects one body of a pair.
 struct SideA {
   [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.a; }
 };
@@ -68,7 +67,7 @@ struct SideB {
   [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.b; }
 };
 
-/// Numbers of type T from rows of doubles: `load(first_lane, out)` fills eight lanes.
+/// Converts rows of doubles to type T: `load(first_lane, out)` fills eight lanes.
 template <typename T, int Count, typename Load>
 [[gnu::always_inline]] inline void in_precision(Load&& load, Lanes<T> (&out)[Count]) {
   if constexpr (sizeof(T) == sizeof(double)) {
@@ -82,7 +81,8 @@ template <typename T, int Count, typename Load>
   }
 }
 
-/// Columns of the pairs' rows of doubles: row(lane) is where that of the pair in a lane begins.
+/// Loads `Count` columns from one row of doubles per pair: row(lane) is the address of the row of
+/// the pair in that lane.
 template <int Count, typename T, typename Row>
 [[gnu::always_inline]] inline void load_columns(Row&& row, Lanes<T> (&out)[Count]) {
   static_assert(1 <= Count && Count <= 4);
@@ -111,7 +111,7 @@ template <int Count, typename T, typename Row>
   }
 }
 
-/// Position of b less that of a, subtracted in double.
+/// Position of b minus position of a, subtracted in double.
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> load_offset(const NarrowJob& job, const PairBlock<T>& block) {
   const auto position_of = [&](std::uint32_t body) { return numbers(job.poses[body]); };
@@ -131,8 +131,9 @@ template <typename T>
   }
 }
 
-/// A quaternion of any length and the factor 2 / |q|^2 that makes its products those of a rotation:
-/// NaN if the quaternion is not finite, or so short or long that squares leave T's range.
+/// A quaternion of any length and the factor 2 / |q|^2 that turns its products into the elements of
+/// a rotation matrix. The factor is NaN if the quaternion is not finite, or so short or long that
+/// squares leave T's range.
 template <typename T>
 struct Turn {
   Lanes<T> w;
@@ -151,21 +152,21 @@ template <typename Side, typename T>
   return {q[0], {q[1], q[2], q[3]}, scale};
 }
 
-/// The local z axis in the axes of the world.
+/// The local z axis in world axes.
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> axis_z(const Turn<T>& q) {
   return {(q.v.x * q.v.z + q.w * q.v.y) * q.scale, (q.v.y * q.v.z - q.w * q.v.x) * q.scale,
           Lanes<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
 }
 
-/// A rotation as the images of the local axes.
+/// A rotation given by the images of the local axes.
 template <typename T>
 struct Rotation {
   Vec3<T> x;
   Vec3<T> y;
   Vec3<T> z;
 
-  /// From the body's axes to those of the world.
+  /// Rotates from the body's axes to the world's.
   [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const {
     return x * v.x + y * v.y + z * v.z;
   }
@@ -208,7 +209,7 @@ struct BoxLanes {
   Lanes<T> rounding;
 };
 
-/// Of cylinders and cones, which hold the same numbers.
+/// Cylinders and cones, which have the same parameters.
 template <typename T>
 struct SpunLanes {
   Lanes<T> radius;
@@ -230,7 +231,7 @@ struct HalfSpaceLanes {
   Lanes<T> offset;
 };
 
-/// The numbers of the pairs' shapes, `Count` of each, which `table` holds.
+/// Loads the parameters of the pairs' shapes, `Count` doubles each, from `table`.
 template <typename Side, int Count, typename T, typename Shape>
 [[gnu::always_inline]] inline void load_shapes(const NarrowJob& job, const PairBlock<T>& block,
                                                const Shape* table, Lanes<T> (&out)[Count]) {

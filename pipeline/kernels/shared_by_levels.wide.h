@@ -1,7 +1,8 @@
 #pragma once
 
-// What the levels have in common is called, not copied, where lanes are so many registers that all
-// of it lies in memory anyway: tens of kilobytes for each level of each number type.
+// Marks code that all levels share. On SSE4.2 it is called, not inlined: with few registers its
+// data is in memory anyway, and inlining would add tens of kilobytes of code per level and number
+// type.
 #if defined(WINNOW_ISA_IS_sse42)
 #define WINNOW_SHARED_BY_LEVELS [[gnu::noinline]]
 #else

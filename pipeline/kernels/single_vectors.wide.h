@@ -15,7 +15,7 @@ static inline void cross3(const double* a, const double* b, double* r) {
   r[1] = a[2] * b[0] - a[0] * b[2];
   r[2] = a[0] * b[1] - a[1] * b[0];
 }
-/// r = M x and r = M^T x, M by rows.
+/// r = M x and r = M^T x, with M stored by rows.
 template <typename T>
 [[gnu::always_inline]] static inline void turn3(const T* m, const T* x, T* r) {
   for (int i = 0; i < 3; ++i) r[i] = m[3 * i] * x[0] + m[3 * i + 1] * x[1] + m[3 * i + 2] * x[2];

@@ -18,11 +18,12 @@ Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   const DefaultEnvironment environment;
   const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
   if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
-  // Scaled by its largest component first: squares of small normals would vanish.
+  // Scale by the largest component first: the squares of a small normal would underflow.
   const double largest = normal.cwiseAbs().maxCoeff();
   if (largest == 0.0) return Status::invalid_shape;
   link_kernels_of_half_space();
-  // What a pool normalised stays as it is, to the bit, where it is put into another one.
+  // A normal that a pool has already normalised is stored bit for bit, so that copies between pools
+  // are exact.
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(normal.squaredNorm() - 1.0) <= kRounding) {
     return put(half_spaces_, ShapeKind::half_space, shape, id);

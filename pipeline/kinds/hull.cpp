@@ -15,7 +15,7 @@ namespace winnow {
 WINNOW_DEFINE_LINK(hull, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-/// Of a hull that `make` makes, if its rounding is one.
+/// Builds a hull with `make` and adds it, if `rounding` is valid.
 template <typename Make>
 Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
   HullShape hull;

@@ -25,7 +25,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a function answers along the directions to the corners, edges and faces of a cube.
+/// The support points along the 26 directions to the corners, edges and faces of a cube.
 class SupportProbe {
  public:
   explicit SupportProbe(const SupportShape& shape) noexcept {
@@ -38,7 +38,8 @@ class SupportProbe {
     }
   }
 
-  /// Finite, within the radius, and no point farther along another's direction than that one's.
+  /// Returns whether all points are finite and within the radius, and each is the farthest of all
+  /// points along its own direction.
   [[nodiscard]] bool is_convex(double radius) const noexcept {
     const double doubt = 1e-9 * radius;
     for (int i = 0; i < kCount; ++i) {

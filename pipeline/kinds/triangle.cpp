@@ -28,7 +28,7 @@ Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
   return put(triangles_, ShapeKind::triangle, shape, id);
 }
 
-// The primitives of composite shapes are triangles that no pool holds.
+// The primitives of composite shapes are triangles that are in no pool, so link their kernels here.
 MidPhase::MidPhase() noexcept {
   link_kernels_of_triangle();
 }

@@ -1,3 +1,6 @@
+// Contact points of two patches (contact_patch.h). patch_meetings.cpp finds the corners of the
+// intersection of the projections; this file chooses at most four of them and writes them.
+
 #include "pipeline/manifold/contact_patch.h"
 #include "pipeline/manifold/patch_meetings.h"
 
@@ -9,23 +12,23 @@ namespace winnow {
 
 namespace {
 
-// Areas that differ by less than this share of the places' extent squared, and than this share of
-// the larger, are equal; depths are that differ by less than kTiedDepth of the extent.
+// Areas count as equal if they differ by less than kTiedArea times the squared extent and by less
+// than kTiedShare times the larger area; depths, if they differ by less than kTiedDepth times the
+// extent.
 constexpr double kTiedArea = 1e-3;
 constexpr double kTiedShare = 0.05;
 
-/// A place seen along a normal, and how deep it is there.
+/// A contact point projected along the normal, and its depth.
 struct SeenPlace {
   double x;
   double y;
   double depth;
 };
 
-/// Places in order around their convex hull, and the few of them that say the most.
+/// Chooses a few of the points of a patch, which are added in order around their convex hull.
 ///
-/// Of places that are equally good, as those of regular polygons are, the one counts that is
-/// farther along a direction fixed in a body: which are kept does not hang on what a body that
-/// trembles changes.
+/// Ties between equally good points, as in regular polygons, are broken by a direction that is
+/// fixed in a body: so the choice does not change while the body jitters.
 class Places {
  public:
   static constexpr std::uint32_t kRoom = 2 * kOutlineVertices;
@@ -38,16 +41,16 @@ class Places {
     along_[count_++] = direction_[0] * x + direction_[1] * y;
   }
 
-  // The places that span most: the outermost along the direction, the one farthest from it, the one
-  // that makes the largest triangle with both, and the one that adds most to its area. If none of
-  // them is as deep as the deepest, that takes the place of the one that is missed least. Returns
-  // how many; the deepest is first.
+  // Chooses the points that span most: the outermost along the direction, the one farthest from it,
+  // the one that makes the largest triangle with both, and the one that adds most area. If none of
+  // them is nearly as deep as the deepest, the deepest one replaces the point that matters least
+  // for the area. Returns the number of points; the deepest is first.
   std::uint32_t choose(Chosen& chosen) noexcept {
     std::uint32_t count = spread(chosen);
     double most = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < count_; ++i) most = std::max(most, place_[i].depth);
     const double least = most - kTiedDepth * std::sqrt(extent_);
-    // The deepest itself if it is kept, so that each point has its own depth.
+    // Prefer the deepest of the chosen points as first, so that each point has its own depth.
     std::uint32_t* first = std::max_element(
         chosen, chosen + count,
         [&](std::uint32_t i, std::uint32_t k) { return place_[i].depth < place_[k].depth; });
@@ -62,7 +65,7 @@ class Places {
   }
 
  private:
-  // Of the places for which `counts`, the one farthest along the direction.
+  // Returns the point farthest along the direction for which `counts` is true.
   template <typename Counts>
   [[nodiscard]] std::uint32_t farthest(Counts&& counts) const noexcept {
     std::uint32_t best = count_;
@@ -72,7 +75,7 @@ class Places {
     return best;
   }
 
-  // Of the places of the largest value. Values are areas, 0 for some place.
+  // Returns a point with the largest value. Values are areas; at least one of them is 0.
   template <typename Value>
   [[nodiscard]] std::uint32_t largest(Value&& value) const noexcept {
     double values[kRoom];
@@ -85,7 +88,7 @@ class Places {
     return farthest([&](std::uint32_t i) { return values[i] >= least; });
   }
 
-  // Returns how many: none is taken twice.
+  // Returns the number of distinct points.
   std::uint32_t spread(Chosen& kept) noexcept {
     kept[0] = farthest([](std::uint32_t) { return true; });
     const SeenPlace& p = place_[kept[0]];
@@ -107,7 +110,7 @@ class Places {
     return count;
   }
 
-  // Which of four leaves the largest area to the others and `place`.
+  // Returns which of four points to replace by `place` so that the largest area remains.
   [[nodiscard]] std::uint32_t least_missed(const Chosen& chosen,
                                            std::uint32_t place) const noexcept {
     std::uint32_t best = 0;
@@ -125,12 +128,12 @@ class Places {
     return best;
   }
 
-  // Twice that of four places in order.
+  // Twice the area of the polygon of four points in order.
   [[nodiscard]] double area_around(const Chosen& i) const noexcept {
     return area(place_[i[0]], place_[i[1]], place_[i[2]]) +
            area(place_[i[0]], place_[i[2]], place_[i[3]]);
   }
-  // Twice that of a triangle, positive if it is counter-clockwise.
+  // Twice the area of a triangle, positive if it is counter-clockwise.
   [[nodiscard]] static double area(const SeenPlace& a, const SeenPlace& b,
                                    const SeenPlace& c) noexcept {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -143,7 +146,7 @@ class Places {
   SeenPlace place_[kRoom];
   double along_[kRoom];
   std::uint32_t count_ = 0;
-  /// The largest squared distance from the first.
+  /// Largest squared distance from the first chosen point.
   double extent_ = 0.0;
 };
 
@@ -161,14 +164,15 @@ ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double 
   return point;
 }
 
-/// The corners of what two patches share that are within the margin, in order around it, and the
-/// deepest.
+/// Corners of the intersection of two patches that are within the margin, in order around it, and
+/// the deepest one.
 struct SharedPatch {
   PatchFrame frame;
   PatchMeetings corners;
   double rounding[2];
   std::uint32_t deepest = 0;
-  /// Fixed in one of the bodies; of more corners than a manifold has.
+  /// Breaks ties; fixed in one of the bodies. Set only if there are more corners than a manifold
+  /// has.
   double direction[2] = {0.0, 0.0};
 
   SharedPatch(const Patch& a, const Patch& b, const double normal[3], double margin) noexcept
@@ -180,7 +184,7 @@ struct SharedPatch {
     meet({faces, 0}, {faces, 1}, margin);
   }
 
-  /// Writes the deepest one and those that span the largest area with it.
+  /// Writes the deepest corner and the corners that span the largest area with it.
   std::uint32_t write_widest(ContactPoint* out) const noexcept {
     if (corners.count <= kManifoldPoints) return write_all(out);
     Places places(direction);
@@ -195,7 +199,7 @@ struct SharedPatch {
     return count;
   }
 
-  /// Writes them, the deepest first.
+  /// Writes all corners, the deepest first.
   std::uint32_t write_all(ContactPoint* out) const noexcept {
     out[0] = contact(deepest);
     std::uint32_t count = 1;
@@ -218,8 +222,8 @@ struct SharedPatch {
     if (corners.count > kManifoldPoints) (is_finer(b, a) ? b : a).find_direction(direction);
   }
 
-  // Whether the one rather than the other is what stands on a face: it has more vertices, or as
-  // many and is smaller.
+  // True if `p` rather than `q` is the patch that rests on the other one: it has more vertices, or
+  // equally many and is smaller.
   [[nodiscard]] static bool is_finer(const Outline& p, const Outline& q) noexcept {
     constexpr double kSmaller = 1.0 - 1e-6;
     if (p.count != q.count) return p.count > q.count;
@@ -230,7 +234,7 @@ struct SharedPatch {
     return m.height[0] - m.height[1];
   }
 
-  // Of equally deep ones always the same.
+  // Among equally deep corners takes the first.
   void find_deepest() noexcept {
     double highest = rise(corners.point[0]);
     for (std::uint32_t i = 1; i < corners.count; ++i) {
@@ -312,7 +316,7 @@ Patch view(const FlatPatch& p) {
   return {p.vertex, p.vertex_feature, p.edge_feature, p.count, p.feature, p.rounding};
 }
 
-// Without places.
+// The vertex positions are not set.
 FlatPatch named(const FaceNames& names, double rounding) {
   FlatPatch patch;
   patch.count = names.count;

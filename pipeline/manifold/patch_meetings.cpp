@@ -1,3 +1,6 @@
+// Intersections of projected patches: polygons, segments and points in all combinations; see
+// patch_meetings.h.
+
 #include "pipeline/manifold/patch_meetings.h"
 
 #include "pipeline/shapes/directions_around.h"
@@ -12,11 +15,12 @@
 namespace winnow {
 namespace {
 
-// Slopes that differ by less are the same.
+// Slopes that differ by less count as equal.
 constexpr double kSameRise = 1e-9;
 
-// A direction fixed in a body: off the edge of the least name, from the end of the lesser name, to
-// the inside. `at` writes where a vertex is.
+// Finds a direction that is fixed in the body: takes the edge with the least id, starting at its
+// end with the lesser id, and rotates it towards the inside by the angle of kOffAxes. `at` writes
+// the position of a vertex.
 template <typename At>
 void find_fixed_direction(const std::uint32_t* vertex_name, const std::uint32_t* edge_name,
                           std::uint32_t count, At&& at, double (&direction)[2]) {
@@ -116,7 +120,7 @@ Outline::Outline(const SeenFaces& faces, int side) noexcept {
     y[i] = number(SeenFaces::kY + corner);
     h[i] = number(SeenFaces::kH + corner);
     vertex_id[i] = feature_id(FeatureKind::vertex, names.vertex[corner]);
-    // Turned round, the edge that ended at a vertex begins there.
+    // If the order is reversed, the edge that ended at a vertex begins there.
     const std::uint32_t edge = faces.clockwise[side] ? (2 * count - 2 - i) % count : i;
     edge_id[i] = feature_id(FeatureKind::edge, names.edge[edge]);
   }
@@ -128,14 +132,14 @@ void Outline::take(const Patch& patch, const PatchFrame& frame, std::uint32_t ve
   y[count] = dot(frame.axis[1], p);
   h[count] = dot(frame.axis[2], p);
   vertex_id[count] = feature_id(FeatureKind::vertex, patch.vertex_feature[vertex]);
-  // A segment is its own edge, a point has none.
+  // A segment is its own edge; a point has no edge.
   edge_id[count] =
       feature_id(FeatureKind::edge, patch.count < 3 ? patch.feature : patch.edge_feature[vertex]);
   ++count;
 }
 
-// The farthest vertices in fifteen directions around that are fixed in the body, and the deepest,
-// if it is deeper than these.
+// Takes the farthest vertices in fifteen directions that are fixed in the body, and the deepest
+// vertex if it is deeper than those.
 void Outline::take_outermost(const Patch& patch, const PatchFrame& frame, double up) noexcept {
   static_assert(kOutlineVertices == std::size(kFifteenthsOfTurn) + 1);
   const auto at = [&](std::uint32_t i, double(&place)[2]) {
@@ -187,7 +191,7 @@ void Outline::find_direction(double (&direction)[2]) const noexcept {
   find_fixed_direction(vertex_id, edge_id, count, at, direction);
 }
 
-// The polygon's normal by the sum of its triangles' (Newell).
+// Normal of the polygon as the sum of the normals of its triangles (Newell).
 void Outline::orient(double up) noexcept {
   double normal[3] = {0.0, 0.0, 0.0};
   for (std::uint32_t i = 1; i + 1 < count; ++i) {
@@ -249,8 +253,9 @@ std::uint32_t Outline::least_rise_from(std::uint32_t vertex, double up) const no
   return best;
 }
 
-// Its ends if they are the deepest of it, else the deepest vertex and the one to which it rises
-// least: on that edge of the outline the other patch is met.
+// Reduces the outline to a segment: to its two ends if they are its deepest vertices, else to the
+// deepest vertex and the vertex towards which the depth decreases least, because the other patch
+// touches that edge.
 void Outline::flatten(double up) noexcept {
   const double same = kSamePlace * size;
   std::uint32_t ends[2] = {farthest_from(0), 0};
@@ -279,15 +284,15 @@ void Outline::flatten(double up) noexcept {
 
 namespace {
 
-// Edges of a smaller sine are parallel: they meet along a line, others in a point.
+// Edges with a smaller sine are parallel: they overlap along a line. Other edges cross in a point.
 constexpr double kParallelSine = 1e-3;
 
 struct Corner {
   double x;
   double y;
   double h;
-  // Of the edge that begins here: that of the incident polygon, or kOutlineVertices + that of the
-  // reference.
+  // The edge that begins here: its index in the incident polygon, or kOutlineVertices plus its
+  // index in the reference.
   std::uint32_t edge;
 };
 
@@ -296,7 +301,7 @@ struct Polygon {
   std::uint32_t count = 0;
 };
 
-// How far left of side i of the reference a point is, times the length of the side.
+// Distance of a point to the left of side i of the reference, times the length of the side.
 double inside(const Outline& reference, std::uint32_t i, double x, double y) {
   const std::uint32_t j = reference.next(i);
   const double ex = reference.x[j] - reference.x[i];
@@ -314,8 +319,8 @@ Corner crossing(const Corner& p, const Corner& q, double at_p, double at_q, std:
   return {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.h + t * (q.h - p.h), edge};
 }
 
-// Keeps what is left of a side (Sutherland and Hodgman, "Reentrant polygon clipping", 1974). False
-// if nothing had to be done.
+// Clips a polygon against one side (Sutherland and Hodgman, "Reentrant polygon clipping", 1974).
+// Returns false, and does not write `to`, if all of it is inside.
 bool cut(const Polygon& from, const Outline& reference, std::uint32_t side, double slack,
          Polygon& to) {
   double at[2 * kOutlineVertices];
@@ -340,7 +345,7 @@ bool cut(const Polygon& from, const Outline& reference, std::uint32_t side, doub
   return true;
 }
 
-// What a corner of the clipped polygon is called follows from the edges that meet there.
+// The ids of a corner of the clipped polygon follow from the two edges that share it.
 void polygon_meetings(const Outline& reference, const Outline& incident, int r,
                       PatchMeetings& out) {
   Polygon buffer[2];
@@ -378,7 +383,7 @@ void polygon_meetings(const Outline& reference, const Outline& incident, int r,
   }
 }
 
-// Moves a point that is outside of a side to it.
+// Moves a point that is outside of a side onto the side.
 void move_inside(const Outline& polygon, std::uint32_t side, PatchMeeting& m) {
   const double out = -inside(polygon, side, m.x, m.y);
   if (!(out > 0.0)) return;
@@ -389,8 +394,8 @@ void move_inside(const Outline& polygon, std::uint32_t side, PatchMeeting& m) {
   m.y += share * along[0];
 }
 
-// The part of a segment inside of a polygon (Cyrus and Beck, 1978). One that lies along a side is
-// inside of it, whichever way it leans by a little: what is outside is moved to the side.
+// Clips a segment against a polygon (Cyrus and Beck, 1978). A segment along a side counts as
+// inside, in whichever direction it deviates slightly: points outside are moved onto the side.
 void segment_meetings(const Outline& polygon, const Outline& segment, int r, PatchMeetings& out) {
   const double near = kAlongSide * std::min(polygon.size, segment.size);
   double t[2] = {0.0, 1.0};
@@ -431,12 +436,12 @@ void segment_meetings(const Outline& polygon, const Outline& segment, int r, Pat
   }
 }
 
-// The point of an edge that is closest to another.
+// The point of an edge that is closest to a given point.
 struct EdgePoint {
   double x;
   double y;
   double h;
-  // From the other point, squared.
+  // Squared distance from the given point.
   double away;
   std::uint32_t id;
 };
@@ -456,7 +461,7 @@ EdgePoint project(const Outline& outline, std::uint32_t i, double x, double y) {
   return p;
 }
 
-// Two segments: where they cross, or the ends of what parallel ones share.
+// Two segments: the point where they cross, or, if they are parallel, the ends of their overlap.
 void crossing_meetings(const Outline& a, const Outline& b, PatchMeetings& out) {
   const double e[2] = {a.x[1] - a.x[0], a.y[1] - a.y[0]};
   const double f[2] = {b.x[1] - b.x[0], b.y[1] - b.y[0]};
@@ -474,7 +479,7 @@ void crossing_meetings(const Outline& a, const Outline& b, PatchMeetings& out) {
              {a.edge_id[0], b.edge_id[0]}});
     return;
   }
-  // An end of one that projects into the other is a meeting, if the other is there.
+  // An end of one segment is a corner if it is within tolerance of the other segment.
   const double near = kParallelSine * std::min(a.size, b.size);
   const auto ends = [&](const Outline& p, const Outline& q, int of) {
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -492,8 +497,9 @@ void crossing_meetings(const Outline& a, const Outline& b, PatchMeetings& out) {
   ends(b, a, 1);
 }
 
-// Where outlines come closest to each other that do not meet, but for rounding, or of which one is
-// a point: a vertex of one and an edge of the other, the deepest of equally close ones.
+// For outlines that do not overlap, up to rounding, or of which one is a point: finds where they
+// are closest, a vertex of one and an edge of the other. Among equally close pairs, takes the
+// deepest.
 void closest_meeting(const Outline* const outline[2], PatchMeetings& out) {
   double least = std::numeric_limits<double>::infinity();
   double deepest = -std::numeric_limits<double>::infinity();
@@ -523,7 +529,7 @@ void closest_meeting(const Outline* const outline[2], PatchMeetings& out) {
   out.apart = least;
 }
 
-// A point over or under a polygon.
+// A point above or below a polygon.
 void point_meeting(const Outline& polygon, const Outline& point, int r, PatchMeetings& out) {
   for (std::uint32_t side = 0; side < polygon.count; ++side) {
     if (inside(polygon, side, point.x[0], point.y[0]) < 0.0) return;
@@ -540,7 +546,7 @@ void point_meeting(const Outline& polygon, const Outline& point, int r, PatchMee
 
 void find_meetings(const Outline& a, const Outline& b, PatchMeetings& out) noexcept {
   const Outline* const outline[2] = {&a, &b};
-  // The polygon, or of two the one that faces the normal better.
+  // The reference is the polygon; of two polygons, the one that faces the normal better.
   const int r = a.count >= 3 && (b.count < 3 || a.cosine >= b.cosine) ? 0 : 1;
   const Outline& reference = *outline[r];
   const Outline& incident = *outline[1 - r];

@@ -1,5 +1,8 @@
 #pragma once
 
+// Projections of patches along the contact normal (Outline), and the corners of the intersection of
+// two of them (find_meetings). Used by contact_patch.cpp.
+
 #include "pipeline/manifold/contact_patch.h"
 
 #include <cmath>
@@ -9,14 +12,14 @@ namespace winnow {
 
 inline constexpr std::uint32_t kOutlineVertices = 16;
 
-/// As a share of the patches' size: places that are closer are one.
+/// Points that are closer than this share of the patches' size count as one.
 inline constexpr double kSamePlace = 1e-9;
 
 [[nodiscard]] inline double dot(const double a[3], const double b[3]) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Axes in which the normal is the third.
+/// Axes of which the third is the contact normal.
 struct PatchFrame {
   double axis[3][3];
 
@@ -29,8 +32,7 @@ struct PatchFrame {
   return static_cast<std::uint32_t>(kind) << kFeatureKindShift | (number & 0x3FFFFFFFU);
 }
 
-/// What the faces of boxes and triangles are called, and their vertices and edges: as numbers of
-/// their kind.
+/// Feature numbers of a face of a box or of a triangle, and of its vertices and edges.
 struct FaceNames {
   std::uint32_t count;
   std::uint32_t face;
@@ -38,12 +40,13 @@ struct FaceNames {
   std::uint32_t edge[4];
 };
 
-/// Corners of face 2 i + up of a box lie at (-, -), (+, -), (+, +), (-, +) of the axes after i.
+/// The corners of face 2 i + up of a box are at (-, -), (+, -), (+, +), (-, +) on the two axes that
+/// follow axis i.
 inline constexpr bool kPlusCorner[4][2] = {
     {false, false}, {true, false}, {true, true}, {false, true}};
 
-/// Vertices are numbered by the bits x > 0, y > 0, z > 0, edges by 4 x their axis and the bits of
-/// the others.
+/// Vertices are numbered by the bits x > 0, y > 0, z > 0; edges by 4 x their axis plus the bits of
+/// the other axes.
 [[nodiscard]] constexpr FaceNames box_face_names(std::uint32_t face) noexcept {
   const std::uint32_t i = face / 2;
   const std::uint32_t k = (i + 1) % 3;
@@ -63,42 +66,42 @@ inline constexpr bool kPlusCorner[4][2] = {
   return names;
 }
 
-/// By face of a box, then the triangle.
+/// Indexed by face of a box; then the triangle.
 inline constexpr FaceNames kFaceNames[kTriangleFace + 1] = {
     box_face_names(0), box_face_names(1), box_face_names(2),           box_face_names(3),
     box_face_names(4), box_face_names(5), {3, 0, {0, 1, 2}, {0, 1, 2}}};
 
-/// A patch seen along the normal: counter-clockwise in x and y, with its heights h. What looks like
-/// a segment or a point from there has become one.
+/// A patch projected along the normal: counter-clockwise in x and y, with heights h along the
+/// normal. A patch whose projection is nearly a segment or a point is reduced to that.
 struct Outline {
   double x[kOutlineVertices];
   double y[kOutlineVertices];
   double h[kOutlineVertices];
   std::uint32_t vertex_id[kOutlineVertices];
-  /// Of the edge from vertex i to the next.
+  /// Id of the edge from vertex i to the next.
   std::uint32_t edge_id[kOutlineVertices];
   std::uint32_t face_id;
   std::uint32_t count;
-  /// Largest side of its bounds in x and y.
+  /// Longer side of the bounding rectangle in x and y.
   double size;
-  /// With three vertices or more: how fast h grows along x and y, and the cosine between the normal
-  /// and that of the polygon.
+  /// For three or more vertices: the gradient of h along x and y, and the cosine between the
+  /// contact normal and the normal of the polygon.
   double slope[2];
   double cosine;
 
-  /// `up` is 1 for the patch of a, whose highest point is its deepest, and -1 for that of b.
+  /// `up` is 1 for the patch of a, whose highest point is the deepest, and -1 for the patch of b.
   Outline(const Patch& patch, const PatchFrame& frame, double up) noexcept;
   Outline(const SeenFaces& faces, int side) noexcept;
 
-  /// Height of the polygon's plane.
+  /// Height of the polygon's plane at a point.
   [[nodiscard]] double height(double px, double py) const noexcept {
     return h[0] + slope[0] * (px - x[0]) + slope[1] * (py - y[0]);
   }
   [[nodiscard]] std::uint32_t next(std::uint32_t i) const noexcept {
     return i + 1 == count ? 0 : i + 1;
   }
-  /// One that turns with the body, of any length, whichever vertex the outline begins with and
-  /// whichever way round it goes.
+  /// Finds a direction that is fixed in the body, of any length. It does not depend on the first
+  /// vertex or on the winding.
   void find_direction(double (&direction)[2]) const noexcept;
 
  private:
@@ -111,7 +114,7 @@ struct Outline {
   [[nodiscard]] std::uint32_t least_rise_from(std::uint32_t vertex, double up) const noexcept;
 };
 
-/// A place where two patches are, seen along the normal: patch 0 is that of a.
+/// A corner of the intersection of two projected patches. Index 0 belongs to a, index 1 to b.
 struct PatchMeeting {
   double x;
   double y;
@@ -119,21 +122,22 @@ struct PatchMeeting {
   std::uint32_t id[2];
 };
 
-/// The corners of what two outlines share, in order around it.
+/// The corners of the intersection of two outlines, in order around it.
 struct PatchMeetings {
   PatchMeeting point[2 * kOutlineVertices];
   std::uint32_t count = 0;
-  /// Points closer than that are one, and points so little outside of a side are inside.
+  /// Points closer than this count as one; points that are outside of a side by less count as
+  /// inside.
   double same;
-  /// How far the outlines are from each other where they do not meet.
+  /// Distance of the outlines if they do not overlap.
   double apart = 0.0;
 
   explicit PatchMeetings(double tolerance) noexcept : same(tolerance) {}
 
-  /// Room for one more, to be written in place: copied from elsewhere it would wait for what was
-  /// just stored there.
+  /// Returns the next corner, to be written in place: copying a struct that was just stored would
+  /// stall on store forwarding.
   [[nodiscard]] PatchMeeting& next() noexcept { return point[count]; }
-  /// Keeps the next one, unless it is where the first or the last one is.
+  /// Keeps the next corner, unless it coincides with the first or the last one.
   void keep_next() noexcept {
     const PatchMeeting& m = point[count];
     for (std::uint32_t i = 0; i<count; i += count> 1 ? count - 1 : 1) {
@@ -147,8 +151,8 @@ struct PatchMeetings {
   }
 };
 
-/// Finds them; where outlines do not meet, as rounding or a caller's normal may have it, the one
-/// place where they come closest.
+/// Finds the corners. If the outlines do not overlap, because of rounding or because of the
+/// caller's normal, finds the one point where they are closest.
 void find_meetings(const Outline& a, const Outline& b, PatchMeetings& out) noexcept;
 
 }  // namespace winnow

@@ -1,3 +1,5 @@
+// Choice of the points of a contact region; see region_points.h.
+
 #include "pipeline/manifold/region_points.h"
 
 #include "pipeline/shapes/directions_around.h"
@@ -10,14 +12,14 @@
 namespace winnow {
 namespace {
 
-/// As a share of what the points of a region span: of points that are farther by less than the
-/// first, either may stay; what is wider by less than the second is not.
+/// Relative to the span of a region: points whose distances differ by less than kTiedSpan count as
+/// equally far, and a point outside of the hull by less than kLeastWider is not chosen.
 constexpr double kTiedSpan = 1e-3;
 constexpr double kLeastWider = 1e-4;
-/// Points are at one place if they are no farther apart than that many times what ties them.
+/// Points within this many times the tie tolerance of each other count as one place.
 constexpr double kPlaces = 4.0;
 
-/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), one to one.
+/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014), a bijection.
 [[nodiscard]] std::uint64_t scrambled(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
@@ -85,7 +87,7 @@ void RegionPoints::keep(const Point& point) noexcept {
   point_[count_++] = point;
 }
 
-// The first of the deepest of one or more.
+// Returns the first of the deepest points. There must be a point.
 std::uint32_t RegionPoints::deepest() const noexcept {
   std::uint32_t deepest = 0;
   for (std::uint32_t i = 1; i < count_; ++i) {
@@ -94,10 +96,10 @@ std::uint32_t RegionPoints::deepest() const noexcept {
   return deepest;
 }
 
-// Of points whose values are less than the largest by no more than the slack, the one that is
-// outermost along the direction says at which place: a place that is as good as others stays the
-// same. Of the points at that place the one of the largest value is returned, so that a corner is
-// not lost to a point beside it; of several in one place the first that was added.
+// Finds a point with the largest value. Among points whose values are within `slack` of it, the
+// outermost along the direction determines the place, so that the choice between equally good
+// places is stable. Returns the point with the largest value at that place, so that a corner is not
+// lost to a point beside it; among several, the first that was added.
 template <typename Value>
 std::uint32_t RegionPoints::first_of_largest(Value&& value, double slack,
                                              double& most) const noexcept {
@@ -150,7 +152,7 @@ double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
   return is_left || is_right ? 0.0 : std::sqrt(nearest);
 }
 
-// The first is chosen. Returns how many.
+// The first point is already chosen. Returns the number of chosen points.
 std::uint32_t RegionPoints::spread(Chosen& chosen, double span) const noexcept {
   const double least = std::max(tie_, kLeastWider * span);
   const double slack = std::max(tie_, kTiedSpan * span);
@@ -177,8 +179,8 @@ double RegionPoints::span_from(std::uint32_t point) const noexcept {
   return std::sqrt(square);
 }
 
-// Parts that share a side may tell of one place more than once, and one that is beside it, of
-// almost the same place.
+// Parts that share a side may report the same place several times, and a part beside it may report
+// almost the same place: take the deepest of these points.
 const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const noexcept {
   constexpr double kPlace = 16.0;
   const Point* best = &place;
@@ -191,8 +193,8 @@ const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const no
   return *best;
 }
 
-// Leaves the points that are farthest in directions all around, of equals the one that is farther
-// counter-clockwise, and the deepest, in the order in which they were added.
+// Keeps the farthest points in sixteen directions, and the deepest, in the order in which they were
+// added. Among equally far points, keeps the one that is farther counter-clockwise.
 void RegionPoints::thin() noexcept {
   bool stays[kRoom] = {};
   double unused = 0.0;
@@ -236,7 +238,7 @@ std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
     deepest = count_;
     keep(beside_);
   }
-  // The deepest itself if it is kept, so that each point has its own depth.
+  // Prefer the deepest of the chosen points as first, so that each point has its own depth.
   std::uint32_t* first = std::max_element(
       chosen, chosen + count,
       [&](std::uint32_t i, std::uint32_t k) { return depth_of(point_[i]) < depth_of(point_[k]); });

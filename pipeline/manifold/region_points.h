@@ -1,6 +1,7 @@
 #pragma once
 
-// Which points of the manifolds of one region of contact stay.
+// Chooses the points of one contact region from the manifolds that are merged into it. Called by
+// composites/reduce.cpp.
 
 #include <winnow/pipeline/contact_types.h>
 #include "pipeline/manifold/patch_meetings.h"
@@ -9,44 +10,47 @@
 
 namespace winnow {
 
-/// As a share of the largest coordinate of a pair's points: lengths that differ by less are equal.
-/// A few times what rounding a position to float costs.
+/// Lengths that differ by less than this share of the largest coordinate of a pair's points count
+/// as equal. A few times the error of rounding a position to float.
 inline constexpr double kRegionTie = 1e-6;
 
-/// A feature among those of other parts of the same bodies. A vertex of one body is the same
-/// whatever face of the other it lies on, so that it keeps its name while it slides from triangle
-/// to triangle.
+/// Combines a feature id with the parts that it belongs to. If a vertex of one body touches a face
+/// of the other, the face and its part are ignored: the id stays while the vertex slides from
+/// triangle to triangle.
 [[nodiscard]] std::uint64_t feature_among_parts(std::uint64_t feature,
                                                 const std::uint32_t (&part)[2]) noexcept;
 
-/// The points of one region, seen along its normal, and the few of them that say the most.
+/// The points of one region, projected along its normal, and the choice of at most kManifoldPoints
+/// of them.
 ///
-/// Kept are points that span the widest area: one that is outermost along a direction, then three
-/// times the one that is farthest from the convex hull of those kept, as long as it is outside. Of
-/// those that are equally far, but for a thousandth of what the points span, it is the outermost
-/// along the direction. No point that is dropped is then farther from that hull, but for as much,
-/// than the last one kept was from the hull of those before. If none of them is as deep as the
-/// deepest of all (but for kTiedDepth), that one takes the place of the last. So a face that rests
-/// keeps its corners, the same from frame to frame, however many points lie along its sides and
-/// however regular it is.
+/// The chosen points span the widest area: first the outermost point along a direction; then, up to
+/// three times, the point farthest from the convex hull of the chosen ones, if it is outside of
+/// that hull. Distances that differ by less than 1/1000 of the span count as equal, and the
+/// outermost point along the direction wins. So, up to this tolerance, a dropped point is no
+/// farther from the hull than the last chosen point was from the hull of the previous ones. If no
+/// chosen point is as deep as the deepest (up to kTiedDepth), the deepest replaces the last one. A
+/// resting face therefore keeps the same corners from frame to frame, however many points lie along
+/// its sides and however regular it is.
 class RegionPoints {
  public:
-  /// Places that differ by no more than `tie` are the same. `direction`: any, fixed in a body.
+  /// Lengths that differ by at most `tie` count as equal. `direction` is arbitrary, but fixed in a
+  /// body.
   RegionPoints(const double normal[3], const double direction[3], double tie) noexcept;
 
-  /// A point of the manifold of two parts, and where the body of a stands that the parts are of.
-  /// O(1) amortized; of more than some sixty points those stay that are outermost in sixteen
-  /// directions, and the deepest.
+  /// Adds a point of the manifold of two parts. `offset` is the origin of its position. Amortized
+  /// O(1): beyond about sixty points, keeps only the outermost in sixteen directions and the
+  /// deepest.
   void add(const ContactPoint& contact, const double* offset,
            const std::uint32_t (&part)[2]) noexcept;
 
-  /// A point that counts only if it is deeper than all others that are added.
+  /// Adds a point that is chosen only if it is deeper than all points of `add`, or if there are
+  /// none.
   void add_beside(const ContactPoint& contact, const double* offset,
                   const std::uint32_t (&part)[2]) noexcept;
 
-  /// Writes the points that are kept (room for kManifoldPoints), the deepest first, and returns how
-  /// many; 0 only if none was added. The first has the depth of the deepest, the others their own.
-  /// Features are those among parts.
+  /// Writes the chosen points (room for kManifoldPoints), the deepest first, and returns their
+  /// number; 0 only if none was added. The first point has the depth of the deepest, the others
+  /// their own depth. Feature ids are made by feature_among_parts.
   std::uint32_t choose(ContactPoint* out) noexcept;
 
  private:
@@ -55,7 +59,7 @@ class RegionPoints {
   struct Point {
     double x;
     double y;
-    /// The direction.
+    /// Coordinate along the direction.
     double along;
     ContactPoint contact;
     std::uint32_t part[2];

@@ -6,11 +6,11 @@
 
 namespace winnow {
 
-/// More than the relative error of the few operations that make a measure.
+/// Bound on the relative error of the functions below.
 inline constexpr double kBoxMeasureError = 0x1p-48;
 
-/// When the swept box [min, max] + t * direction first meets the box [low, high]: not later than it
-/// does, infinite if that is not in [0, limit].
+/// Lower bound on the time t in [0, limit] at which the swept box [min, max] + t * direction first
+/// overlaps the box [low, high]; infinite if it does not.
 [[nodiscard]] inline double meeting_time(const double min[3], const double max[3],
                                          const double direction[3], double limit,
                                          const double low[3], const double high[3]) noexcept {
@@ -26,14 +26,14 @@ inline constexpr double kBoxMeasureError = 0x1p-48;
     }
     const double a = near / d;
     const double b = far / d;
-    // Infinities may make NaN, which as the second operand of a comparison narrows nothing.
+    // Infinities can make NaN; as the second operand of min or max it is ignored.
     entry = std::max(entry, std::min(a, b) * (1.0 - kBoxMeasureError));
     exit = std::min(exit, std::max(a, b) * (1.0 + kBoxMeasureError));
   }
   return entry <= exit ? entry : std::numeric_limits<double>::infinity();
 }
 
-/// The distance of two boxes, not more than it is.
+/// Lower bound on the distance of two boxes.
 [[nodiscard]] inline double box_gap(const double min[3], const double max[3], const double low[3],
                                     const double high[3]) noexcept {
   double gap[3];

@@ -4,16 +4,17 @@
 
 namespace winnow {
 
-/// Whether two triangles that share an edge bend outward there by more than an angle. In double; a
-/// bend that rounding of the corners' differences could make counts as none.
+/// Tests whether two triangles that share an edge form a convex (outward) bend of more than an
+/// angle. In double; a bend that rounding of the corners' differences could cause counts as none.
 class EdgeBend {
  public:
   explicit EdgeBend(double angle) noexcept
       : cosine_(std::cos(angle)), sine_(std::sin(angle)), is_straight_(cosine_ <= -1.0) {}
 
-  /// The edge runs from u to v in the first triangle; p is the third corner of that one and q that
-  /// of the second. `consistent`: outward is where u, v, p run counter-clockwise; otherwise both
-  /// sides are. True also for triangles without area.
+  /// Returns whether the edge is active. The edge runs from u to v in the first triangle; p and q
+  /// are the third corners of the first and second triangle. If `consistent`, outward is the side
+  /// from which u, v, p are counter-clockwise; else bends to both sides count. Also true if a
+  /// triangle has no area.
   [[nodiscard]] bool is_active(const double (&u)[3], const double (&v)[3], const double (&p)[3],
                                const double (&q)[3], bool consistent) const noexcept {
     const Vector edge = between(u, v);
@@ -26,12 +27,12 @@ class EdgeBend {
     const double ee = dot(edge, edge);
     const double pp = dot(to_p, to_p);
     const double qq = dot(to_q, to_q);
-    // The cross product of parallel edges is their rounding.
+    // The cross product of parallel edges is only rounding error.
     if (!(nn > kFlat * ee * pp) || !(mm > kFlat * ee * qq)) return true;
     if (consistent && is_above(n, nn, to_q, qq) && is_above(m, mm, to_p, pp)) return false;
     n = scaled(n, 1.0 / std::sqrt(nn));
     m = scaled(m, 1.0 / std::sqrt(mm));
-    // The sine of bend - angle, which lies between -pi and pi.
+    // The sine of bend - angle; the difference is between -pi and pi.
     const Vector c = cross(n, m);
     const double bend_sine = std::sqrt(dot(c, c));
     const double bend_cosine = dot(n, m);
@@ -47,7 +48,8 @@ class EdgeBend {
   static constexpr double kFlat = 1e-24;
   static constexpr double kRounding = 1e-12;
 
-  /// On the outer side of a plane, beyond rounding; given the squares of both lengths.
+  /// Returns whether `to` is above the plane by more than rounding; `nn` and `tt` are the squared
+  /// lengths.
   static bool is_above(const Vector& normal, double nn, const Vector& to, double tt) noexcept {
     const double height = dot(normal, to);
     return height > 0.0 && height * height > kFlat * nn * tt;

@@ -1,3 +1,6 @@
+// HeightField: validation, storage, active edges, snapshots, and the pyramid of minimum and maximum
+// heights over tiles. height_traversal.cpp searches the pyramid.
+
 #include <winnow/pipeline/height_field.h>
 
 #include <winnow/core/column.h>
@@ -25,7 +28,7 @@ std::size_t stride_of(const HeightSamples& samples) {
   return samples.row_stride != 0 ? samples.row_stride : samples.columns;
 }
 
-/// Of at least one column and row.
+/// Requires at least one column and row.
 Status check(const HeightSamples& samples) {
   const std::size_t stride = stride_of(samples);
   if (stride < samples.columns) return Status::invalid_argument;
@@ -53,23 +56,24 @@ Status check_field(const HeightSamples& samples) {
   return check(samples);
 }
 
-/// Samples of a square's even and odd triangle, as steps from its own sample: the corners, and for
-/// the edge from each to the next the far corner of the triangle beyond.
+/// Offsets from a square's own sample, for its even and its odd triangle: the corners (kCorner),
+/// and for the edge from each corner to the next the far corner of the triangle across it
+/// (kBeyond).
 struct SampleStep {
   int column;
   int row;
 };
 constexpr SampleStep kCorner[2][3] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}};
 constexpr SampleStep kBeyond[2][3] = {{{0, -1}, {2, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}};
-/// The square that the triangle beyond is of.
+/// Offset of the square that contains the triangle across the edge.
 constexpr SampleStep kSquareBeyond[2][3] = {{{0, -1}, {1, 0}, {0, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
 
-/// Below zero it wraps to a number that no column has.
+/// A negative result wraps to a number that is not a valid column.
 std::uint32_t moved(std::uint32_t from, int by) {
   return from + static_cast<std::uint32_t>(by);
 }
 
-/// The least and the greatest of many heights.
+/// A minimum and a maximum height.
 struct Heights {
   float low = std::numeric_limits<float>::infinity();
   float high = -std::numeric_limits<float>::infinity();
@@ -165,7 +169,7 @@ void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, flo
   }
 }
 
-/// Samples and the pyramid over them.
+/// The samples and the tile pyramid over them.
 struct HeightField::State {
   explicit State(std::pmr::memory_resource* memory) noexcept : heights(memory), tiles(memory) {}
 
@@ -182,7 +186,7 @@ struct HeightField::State {
   void put(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) noexcept;
 
   Column<float> heights;
-  /// The least heights of all tiles, then the greatest.
+  /// The minimum heights of all tiles, then their maximum heights.
   Column<float> tiles;
   HeightPyramid pyramid;
   std::uint32_t columns = 0;
@@ -241,7 +245,7 @@ void HeightField::State::put(std::uint32_t column, std::uint32_t row,
     std::copy_n(samples.heights.data() + r * stride, samples.columns,
                 heights.data() + (row + r) * columns + column);
   }
-  // A sample is a corner of the squares before it too.
+  // A sample is also a corner of the squares in the previous column and row.
   const TileRange squares{
       {column - std::min(column, 1U), row - std::min(row, 1U)},
       {std::min(columns - 1, column + samples.columns), std::min(rows - 1, row + samples.rows)}};

@@ -9,14 +9,15 @@ namespace winnow {
 
 class HeightField;
 
-/// Squares along a side of a tile of level 0, and tiles along a side of one of a higher level.
+/// Side of a tile of level 0 in squares, and of a tile of a higher level in tiles of the level
+/// below.
 inline constexpr std::uint32_t kTileSquares = 16;
 inline constexpr std::uint32_t kTileTiles = 4;
 
-/// How the least and greatest heights over a grid of squares are laid out: level 0 has a tile for
-/// every 16 x 16 squares, level l + 1 for every 4 x 4 tiles of level l, the last level one tile.
+/// Layout of the minimum and maximum heights over a grid of squares: level 0 has a tile for every
+/// 16 x 16 squares, level l + 1 for every 4 x 4 tiles of level l; the last level is one tile.
 struct HeightPyramid {
-  /// 2^27 squares in a row are 2^23 tiles, and 12 times a quarter of them.
+  /// 2^27 squares in a row make 2^23 tiles, which 12 divisions by 4 reduce to one.
   static constexpr std::uint32_t kMaxLevels = 13;
 
   struct Level {
@@ -28,11 +29,11 @@ struct HeightPyramid {
   std::uint32_t levels = 0;
   std::size_t tiles = 0;
 
-  /// Squares along a side of a tile.
+  /// Side of a tile of `level` in squares.
   [[nodiscard]] static constexpr std::uint32_t span(std::uint32_t level) noexcept {
     return kTileSquares << (2 * level);
   }
-  /// For columns x rows squares.
+  /// The pyramid over columns x rows squares.
   [[nodiscard]] static HeightPyramid plan(std::uint32_t columns, std::uint32_t rows) noexcept;
 };
 
@@ -42,10 +43,10 @@ struct TileRange {
   std::uint32_t high[2];
 };
 
-/// Samples over a grid, and the heights of its tiles.
+/// Samples on a grid, and the height ranges of its tiles.
 struct HeightGrid {
   const float* heights = nullptr;
-  /// Of samples.
+  /// Numbers of samples.
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
   double spacing[2] = {1.0, 1.0};
@@ -55,7 +56,8 @@ struct HeightGrid {
 
   [[nodiscard]] std::uint32_t square_columns() const noexcept { return columns - 1; }
   [[nodiscard]] std::uint32_t square_rows() const noexcept { return rows - 1; }
-  /// The heights of a square's corners: at its low column and row, then by column, then by row.
+  /// Reads the heights of a square's corners: its own sample, the next column, the next row, the
+  /// next column and row.
   void corners(std::uint32_t column, std::uint32_t row, float (&height)[4]) const noexcept {
     const float* at = heights + std::size_t{row} * columns + column;
     height[0] = at[0];
@@ -63,21 +65,21 @@ struct HeightGrid {
     height[2] = at[columns];
     height[3] = at[columns + std::size_t{1}];
   }
-  /// False for a hole.
+  /// Returns false if the square is a hole or outside the grid.
   [[nodiscard]] bool has_square(std::uint32_t column, std::uint32_t row) const noexcept;
 };
 
-/// Finds the heights of the tiles over a range of squares anew, on all levels. Tiles without
-/// triangles get +inf and -inf. `low` and `high` are those of the grid.
+/// Recomputes the height ranges of the tiles over a range of squares, on all levels. Tiles without
+/// triangles get low = +inf and high = -inf. `low` and `high` are the grid's arrays.
 void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, float* high) noexcept;
 
-/// Without columns if nothing is built.
+/// The grid of a field; without columns if nothing is built.
 [[nodiscard]] HeightGrid grid_of(const HeightField& field) noexcept;
 
 // Traversals, in the field's own frame. A slot is the number of a triangle.
 
-/// The numbers of all triangles whose boxes meet [min, max], ascending; counts on where there is no
-/// room.
+/// Writes the numbers of all triangles whose boxes overlap [min, max] to `out`, in ascending order.
+/// If the sink is full, they are only counted.
 void height_overlap(const HeightGrid& grid, const double min[3], const double max[3],
                     SlotSink& out) noexcept;
 /// As mesh_sweep.

@@ -1,3 +1,6 @@
+// Searches a height field's tile pyramid: all triangles in a box, or triangles in order of time of
+// impact or distance. composites/search.cpp and composites/visits.cpp call these.
+
 #include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/shapes/frame.h"
@@ -15,8 +18,8 @@ struct GridBox {
   double high[3];
 };
 
-/// The squares [first, end) that reach into [min, max] along an axis. Division may be off by one;
-/// what is compared are the ends of squares as triangles have them.
+/// The squares [first, end) that overlap [min, max] along an axis. The division may be off by one;
+/// the result is corrected by comparing the ends of squares, computed as for triangles.
 struct SquareRange {
   std::uint32_t first = 0;
   std::uint32_t end = 0;
@@ -36,16 +39,16 @@ struct SquareRange {
   }
 };
 
-/// The heights of the two triangles of a square; none if it is a hole.
+/// Height ranges of the two triangles of a square.
 struct SquareHeights {
   float low[2];
   float high[2];
 
-  /// False for a hole.
+  /// Returns false if the square is a hole.
   [[nodiscard]] bool read(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
     float h[4];
     grid.corners(column, row, h);
-    // Comparisons with NaN are false.
+    // NaN compares false.
     if (!(h[0] == h[0] && h[1] == h[1] && h[2] == h[2] && h[3] == h[3])) return false;
     for (std::size_t k = 0; k < 2; ++k) {
       low[k] = std::min({h[0], h[3], h[1 + k]});
@@ -55,14 +58,15 @@ struct SquareHeights {
   }
 };
 
-/// The box of squares [column, last_column) x [row, last_row), without heights.
+/// The box of squares [column, last_column) x [row, last_row), with heights 0.
 GridBox floor_box(const HeightGrid& grid, std::uint32_t column, std::uint32_t row,
                   std::uint32_t last_column, std::uint32_t last_row) {
   return {{column * grid.spacing[0], row * grid.spacing[1], 0.0},
           {last_column * grid.spacing[0], last_row * grid.spacing[1], 0.0}};
 }
 
-/// When a moving box first meets one; infinite where it does not up to the limit.
+/// Measures the time at which a moving box first touches a box; infinite if it does not up to the
+/// limit.
 struct GridSweep {
   const double* min;
   const double* max;
@@ -77,7 +81,7 @@ struct GridSweep {
   }
 };
 
-/// The distance from a box that stands.
+/// Measures the distance of a box from a fixed box.
 struct GridNear {
   const double* min;
   const double* max;
@@ -101,7 +105,7 @@ struct WaitingTile {
   std::uint32_t level;
 };
 
-/// Depth first, the nearest tile first.
+/// Depth-first traversal that opens the nearest tile first.
 template <typename Measure>
 class OrderedTraversal {
  public:
@@ -187,7 +191,8 @@ class OrderedTraversal {
     }
   }
 
-  /// In order, sixteen at a time, as long as they are within the limit.
+  /// Passes the hits to the visitor in order, at most sixteen at a time, while they are within the
+  /// limit.
   void show() {
     std::sort(hits_, hits_ + found_, [](const FoundTriangle& a, const FoundTriangle& b) {
       return a.measure != b.measure ? a.measure < b.measure : a.number < b.number;
@@ -208,7 +213,7 @@ class OrderedTraversal {
   const SlotVisitor& visitor_;
   std::uint32_t size_ = 0;
   std::uint32_t found_ = 0;
-  /// Every level leaves at most 15 tiles waiting while one is opened.
+  /// Each level leaves at most 15 tiles on the stack while one is opened.
   WaitingTile waiting_[HeightPyramid::kMaxLevels * kTileTiles * kTileTiles];
   FoundTriangle hits_[2 * kTileSquares * kTileSquares];
 };

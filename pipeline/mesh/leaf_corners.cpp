@@ -7,16 +7,16 @@ namespace {
 
 constexpr std::uint32_t kLeafCorners = 3 * kMeshFanout;
 
-/// Where vertices are in their leaves is kept where there are no more blocks of them than so many
-/// for each leaf: a mesh then takes no more than 24 bytes a triangle.
+/// Quantised positions are stored only if there are at most this many blocks of vertices per leaf.
+/// A mesh then takes at most 24 bytes per triangle.
 constexpr double kBlocksWithPoints = 1.25;
 
-/// The vertices of one leaf, in the order in which its corners come to them.
+/// The distinct vertices of one leaf, in the order in which its corners use them.
 class LeafVertices {
  public:
   LeafVertices() noexcept { std::fill_n(table_, kTable, kNone); }
 
-  /// Where a vertex is among them, and from now on.
+  /// Returns the index of a vertex in the list; appends it if it is new.
   std::uint8_t place_of(std::uint32_t vertex) noexcept {
     std::uint32_t at = vertex % kTable;
     for (; table_[at] != kNone; at = (at + 1) % kTable) {
@@ -26,9 +26,9 @@ class LeafVertices {
     return table_[at] = static_cast<std::uint8_t>(count_++);
   }
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
-  /// Blocks of sixteen that they take besides the first.
+  /// Blocks of sixteen that the list needs beyond the first.
   [[nodiscard]] std::uint32_t more_blocks() const noexcept { return (count_ - 1) / kMeshFanout; }
-  /// Writes a block of them, filled up by the last.
+  /// Writes one block of the list, padded with the last vertex.
   void write(std::uint32_t block, std::uint32_t* out) const noexcept {
     for (std::uint32_t i = 0; i < kMeshFanout; ++i) {
       out[i] = vertex_[std::min(block * kMeshFanout + i, count_ - 1)];

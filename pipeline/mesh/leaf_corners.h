@@ -8,20 +8,22 @@
 
 namespace winnow {
 
-/// Corners of triangles by leaf: neighbours share most of their vertices, so that the sixteen of a
-/// leaf have hardly more than sixteen, and a corner needs a byte to say which of them it is.
-/// Kernels look at each once.
+/// Corners of triangles, stored by leaf. Neighbouring triangles share most of their vertices, so
+/// that the sixteen triangles of a leaf have little more than sixteen vertices. Each leaf lists its
+/// vertices once, and a corner is a one-byte index into this list; kernels load each vertex once.
 class LeafCorners {
  public:
   explicit LeafCorners(std::pmr::memory_resource* memory) noexcept
       : vertex_(memory), point_(memory), more_(memory), place_(memory) {}
 
-  /// Takes them from a view with corners by slot; or nothing, if most leaves have more than sixteen
-  /// vertices. False, and nothing is taken, if memory is refused. O(n).
+  /// Converts a view that has corners by slot. Stores nothing if more than three quarters of the
+  /// leaves have more than sixteen vertices. Returns false and stores nothing if memory is refused.
+  /// O(n).
   [[nodiscard]] bool take(const MeshView& view) noexcept;
   [[nodiscard]] bool empty() const noexcept { return place_.empty(); }
   void link(MeshView& view) const noexcept;
-  /// Where the vertices are in the boxes of their leaves, to be written; null if that is not kept.
+  /// The quantised positions of the vertices in the boxes of their leaves (MeshView::leaf_point),
+  /// for fit_mesh_levels to write; null if they are not stored.
   [[nodiscard]] std::uint32_t* points() noexcept { return point_.data(); }
   [[nodiscard]] Bytes bytes() const noexcept;
 

@@ -1,8 +1,9 @@
 #pragma once
 
-// Where a ray meets a triangle, by the signs of the volumes between it and the sides (Platis,
-// Theoharis, "Fast ray-tetrahedron intersection using Pluecker coordinates", 2003). In double,
-// without fused operations that some instruction sets do not have: the same on all.
+// Ray-triangle intersection by the signs of the volumes between the ray and the sides (Platis,
+// Theoharis, "Fast ray-tetrahedron intersection using Pluecker coordinates", 2003). Computed in
+// double, without fused operations, which some instruction sets lack, so that results are equal on
+// all of them.
 
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
 #include "pipeline/mesh/mesh_view.h"
@@ -20,8 +21,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// The product of two edges of a triangle, at right angles to both. Where no more than three bits
-/// of the products cancel, they need no more care.
+/// Cross product of two edges of a triangle. If cancellation removes at most three bits, plain
+/// products are accurate enough; else difference_of_products is used.
 [[gnu::always_inline]] inline Numbers normal_of(const Numbers& a, const Numbers& b) {
   const Numbers plus{a.y * b.z, a.z * b.x, a.x * b.y};
   const Numbers minus{a.z * b.y, a.x * b.z, a.y * b.x};
@@ -33,8 +34,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
           difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// Whether the line of a ray passes a triangle's sides, whose corners are given by axis, on one
-/// side of all.
+/// Tests whether the line of a ray passes all sides of a triangle on one side. The corners are
+/// given by axis.
 [[gnu::always_inline]] inline Crossing cross_sides(const SurfaceRay& ray,
                                                    const CornerDoubles (&corner)[3]) {
   using D = CornerDoubles;
@@ -54,7 +55,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   return above == kThreeCorners || below == kThreeCorners ? Crossing::found : Crossing::doubtful;
 }
 
-/// Whether a ray whose line meets a triangle does so where it counts.
+/// Given that the ray's line crosses the triangle, tests whether it does so within [ray.low,
+/// ray.high].
 [[gnu::always_inline]] inline Crossing cross_plane(const SurfaceRay& ray,
                                                    const Numbers (&corner)[3], SurfaceHit& hit) {
   const Numbers start{ray.origin[0], ray.origin[1], ray.origin[2]};
@@ -65,7 +67,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   const Numbers normal = normal_of(a, b);
   const double rate = dot(normal, way);
   const double t = dot(normal, from) / rate;
-  // No less than how far all corners are.
+  // Upper bound on the distances of all corners from the ray's origin.
   const double far = 3.0 * taxicab(from) + taxicab(a) + taxicab(b);
   const double error = taxicab(normal) * (2.0 * ray.slack + 0x1p-48 * far) / abs(rate);
   if (t < ray.low - error || t > ray.high + error) return Crossing::none;
@@ -78,7 +80,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   return Crossing::found;
 }
 
-/// See cross_triangle, of a triangle of a mesh whose sides the ray's line passes for sure, or not.
+/// cross_triangle for a triangle of a mesh. `is_sure`: the ray's line certainly crosses the
+/// triangle.
 [[gnu::always_inline]] inline Crossing cross_slot(const SurfaceRay& ray, const MeshView& mesh,
                                                   std::uint32_t slot, bool is_sure,
                                                   SurfaceHit& hit) {
@@ -98,7 +101,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   return cross_plane(ray, corner, hit);
 }
 
-/// Of a triangle that is in no mesh.
+/// cross_triangle for a triangle that is not in a mesh.
 inline Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                SurfaceHit& hit) {
   CornerDoubles by_axis[3];

@@ -1,7 +1,8 @@
 #pragma once
 
-// Descents that come upon triangles roughly in the order of a measure: the time at which a moving
-// box meets theirs, or the squared distance from it. Boxes are measured in double.
+// Traversals of a mesh's tree in approximate order of a measure: the time at which a moving box
+// touches triangles (mesh_sweep), or the squared distance from a fixed box (mesh_near). Boxes are
+// measured in double.
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_lanes.wide.h"
@@ -10,13 +11,13 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// More than the relative error of the few operations that make a measure.
+/// Bound on the relative error of a measure.
 inline constexpr double kMeasureError = 0x1p-48;
 
-/// When the moving box first meets boxes; above `limit` where it does not by then.
+/// The time at which the moving box first touches boxes; infinite if it does not up to `limit`.
 class SweepMeasure {
  public:
-  /// Whether no triangle has less than its order.
+  /// Whether `order` is a lower bound on the measure of triangles, by which they can be dropped.
   static constexpr bool kOrderIsLeast = false;
 
   SweepMeasure(const MeshSweepJob& job, double limit) : job_(job), limit_(limit) {}
@@ -43,8 +44,9 @@ class SweepMeasure {
     }
     return select(met & (entry <= exit), entry, Doubles(__builtin_inf()));
   }
-  /// When to look at triangles whose boxes are met at these times: not before the box comes to
-  /// their planes. What is met first comes first so, and others need not be looked at closely.
+  /// Times by which triangles whose boxes are touched at times `met` are ordered: not before the
+  /// moving box reaches their planes. The first triangle hit then tends to come first, and the
+  /// limit it returns excludes others.
   template <int Half>
   [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& met) const {
     Vec3<double> corner[3];
@@ -68,7 +70,7 @@ class SweepMeasure {
     const Doubles time = select(closing > Doubles(0.0), gap / closing, late);
     return max(met, select(gap > Doubles(0.0), min(time, late), met));
   }
-  /// No time is infinite, whatever the limit.
+  /// False for infinite times, even if the limit is infinite.
   [[nodiscard]] bool within(double measure) const {
     return measure <= limit_ && measure < __builtin_inf();
   }
@@ -78,8 +80,8 @@ class SweepMeasure {
   double limit_;
 };
 
-/// The squared distance from a box that stands to boxes that are scaled. What underflows is taken
-/// for near: squares below 1e-300 are within every limit.
+/// The squared distance from a fixed box to scaled boxes. Squares below 1e-300 count as within
+/// every limit, because smaller ones may have underflowed.
 class NearMeasure {
  public:
   static constexpr bool kOrderIsLeast = true;
@@ -106,10 +108,11 @@ class NearMeasure {
     }
     return square * Doubles(1.0 - kMeasureError);
   }
-  /// The same of triangles whose boxes are so far, no more than it is for certain. In doubt where
-  /// the nearest point lies inside, it is taken for one of an edge: the square is then too large by
-  /// less than some roundings of the product of two of the lengths. The rest is the rounding of the
-  /// coordinates, which counts twice with the distance: as a share of that and of itself.
+  /// Lower bound on the squared distance of triangles whose boxes are at squared distance `square`.
+  /// If rounding hides that the nearest point is inside a triangle, a point of an edge is used; the
+  /// square is then too large by less than a few roundings of the product of two lengths. The error
+  /// e of the coordinates changes a square d^2 by 2 d e + e^2, which is bounded by a fraction of
+  /// d^2 plus a multiple of e^2.
   template <int Half>
   [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& square) const {
     Vec3<double> corner[3];
@@ -138,7 +141,7 @@ class NearMeasure {
   [[nodiscard]] bool within(double measure) const { return measure <= square_; }
 
  private:
-  /// From a point to a line between two corners; no more than to its ends.
+  /// Squared distance from a point to an edge, given the vector from the edge's first corner.
   [[gnu::always_inline]] static Doubles square_to_edge(const Vec3<double>& from,
                                                        const Vec3<double>& edge) {
     const Doubles zero(0.0);
@@ -148,7 +151,7 @@ class NearMeasure {
     const Vec3<double> rest = from - edge * select(after < one, after, one);
     return dot(rest, rest);
   }
-  /// From a point to triangles, and the lengths that it is made of.
+  /// Squared distance from a point to triangles, and the sum of the lengths it is computed from.
   [[gnu::always_inline]] static Doubles square_to(const Vec3<double> (&corner)[3],
                                                   const Vec3<double>& point, Doubles& lengths) {
     const Vec3<double> ab = corner[1] - corner[0];
@@ -166,8 +169,8 @@ class NearMeasure {
     const auto is_over = (dot(cross(ab, a), normal) >= zero) & (dot(cross(bc, b), normal) >= zero) &
                          (dot(cross(ca, c), normal) >= zero);
     const Doubles height = dot(normal, a);
-    // The plane of a triangle with hardly an area is not known, and one without may stand for its
-    // box: nothing is said of these.
+    // The plane of a triangle with hardly any area is unreliable, and a triangle without area may
+    // stand for its box (trees over other objects): return 0 for both.
     constexpr double kLeastSize = 1e-250;
     const auto has_plane = size > Doubles(kLeastSize);
     const Doubles plane = height * height / size;
@@ -179,14 +182,15 @@ class NearMeasure {
   double square_ = 0.0;
 };
 
-/// Lanes of a block that are within the limit, the first to be looked at first.
+/// Lanes of a block that are within the limit, in the order in which to visit them.
 struct OrderedLanes {
   double measure[kLanes];
   std::uint32_t lane[kLanes];
   std::uint32_t count = 0;
 };
 
-/// By `order`, of `lanes` of which a measure of `value` is within the limit.
+/// Selects the lanes in `lanes` whose measure `value` is within the limit, and sorts them by
+/// `order`.
 template <typename Measure>
 inline void order_lanes(const Measure& measure, const double* value, const double* order,
                         Mask16 lanes, OrderedLanes& out) {
@@ -204,8 +208,8 @@ inline void order_lanes(const Measure& measure, const double* value, const doubl
   }
 }
 
-/// The open nodes of a descent, of which the nearest is the last. Every level leaves at most 15
-/// nodes waiting while one is descended into, which bounds the stack.
+/// The stack of open nodes, nearest on top. Each level leaves at most 15 nodes while one is opened,
+/// which bounds the stack.
 template <typename Measure>
 class OpenMeshNodes {
  public:
@@ -230,7 +234,7 @@ class OpenMeshNodes {
     return true;
   }
 
-  /// A negative limit ends the descent.
+  /// Returns false if no node is left, or if the limit is negative.
   bool take(std::uint32_t& level, std::uint32_t& node) {
     while (size_ != 0 && measure_.limit() >= 0.0) {
       const Waiting& next = waiting_[--size_];
@@ -255,7 +259,7 @@ class OpenMeshNodes {
   std::uint32_t size_ = 0;
 };
 
-/// Shows a leaf's triangles within the limit.
+/// Passes a leaf's triangles within the limit to the visitor.
 template <typename Measure>
 inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure,
                       const SlotVisitor& visitor) {
@@ -285,7 +289,7 @@ inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure
   }
 }
 
-/// Shows the triangles within the measure's limit, the nearest leaf first.
+/// Passes the triangles within the measure's limit to the visitor, nearest leaf first.
 template <typename Measure>
 inline void show_in_order(const MeshView& mesh, Measure& measure, const SlotVisitor& visitor) {
   if (!(measure.limit() >= 0.0)) return;

@@ -1,3 +1,6 @@
+// Edges of a mesh: welds vertices by position, finds the neighbour of each edge by a counting sort,
+// and marks active edges. triangle_mesh.cpp calls these when a mesh is built or refitted.
+
 #include "pipeline/mesh/mesh_edges.h"
 
 #include "pipeline/mesh/edge_bend.h"
@@ -11,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kEmpty = ~0U;
 
-/// -0 is the same place as 0.
+/// Adding 0 turns -0 into 0, which is the same position.
 std::uint32_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x + 0.0F);
 }
@@ -31,7 +34,8 @@ bool same_place(const MeshView& mesh, std::uint32_t u, std::uint32_t v) {
          coordinate(mesh, u, 2) == coordinate(mesh, v, 2);
 }
 
-/// place[v]: the lowest number of a vertex at the place of v. `table` is a power of two in size.
+/// Sets place[v] to the lowest vertex number at the position of v. The size of `table` is a power
+/// of two.
 void weld(const MeshView& mesh, Column<std::uint32_t>& table, Column<std::uint32_t>& place) {
   std::fill(table.begin(), table.end(), kEmpty);
   const std::size_t mask = table.size() - 1;
@@ -43,7 +47,8 @@ void weld(const MeshView& mesh, Column<std::uint32_t>& table, Column<std::uint32
   }
 }
 
-/// An edge as it is sorted: the higher of its places, then these bits.
+/// Sort key of an edge: the higher of its two places in the upper half, these bits in the lower
+/// half.
 constexpr std::uint32_t kUpward = 1U << 30U;   ///< from the lower place to the higher
 constexpr std::uint32_t kSegment = 1U << 31U;  ///< of a triangle with fewer than three places
 constexpr std::uint32_t kCode = kUpward - 1U;  ///< 4 * slot + edge
@@ -74,7 +79,7 @@ std::uint32_t& neighbour_of(Column<std::uint32_t>& neighbours, std::uint64_t ent
   return neighbours[std::size_t{code >> 2U} * 3 + (code & 3U)];
 }
 
-/// All entries of one edge: those of segments come last.
+/// Links all entries of one edge; entries of segments come last.
 void join(const std::uint64_t* begin, const std::uint64_t* end, Column<std::uint32_t>& neighbours) {
   const auto is_segment = [](std::uint64_t entry) { return (entry & kSegment) != 0; };
   const std::uint64_t* segments = std::find_if(begin, end, is_segment);
@@ -88,7 +93,7 @@ void join(const std::uint64_t* begin, const std::uint64_t* end, Column<std::uint
   if (segments == begin) return;
   for (const std::uint64_t* e = segments; e != end; ++e) {
     std::uint32_t* edge = &neighbour_of(neighbours, *e);
-    // The edge between corners at one place goes with the others.
+    // The edge between corners at one position is covered, too.
     std::fill_n(edge - (*e & 3U), 3, kCoveredEdge);
   }
 }
@@ -98,7 +103,7 @@ void join_all(std::size_t vertices, const Column<std::uint32_t>& first,
   for (std::size_t v = 0; v < vertices; ++v) {
     std::uint64_t* begin = edges.data() + first[v];
     std::uint64_t* const end = edges.data() + first[v + 1];
-    // The bits are such that the segments of an edge come last.
+    // The sort puts the segments of an edge last, because kSegment is the highest bit.
     std::sort(begin, end);
     while (begin != end) {
       std::uint64_t* next = begin;
@@ -128,8 +133,8 @@ bool find_neighbours(const MeshView& mesh, Column<std::uint32_t>& neighbours) {
   weld(mesh, first, place);
   std::fill(neighbours.begin(), neighbours.end(), kNoNeighbour);
 
-  // Edges by their lower place v: first[v + 2] counts them, first[v + 1] then says where the next
-  // one goes, and in the end where they stop.
+  // Counting sort of edges by their lower place v: first[v + 2] counts them, then first[v + 1] is
+  // where the next one goes, and finally where they end.
   first.set_size(std::size_t{mesh.vertex_count} + 2);
   std::fill(first.begin(), first.end(), 0U);
   for (std::size_t slot = 0; slot < count; ++slot) {
@@ -186,7 +191,7 @@ void mark_active_edges(const MeshView& mesh, const Column<std::uint32_t>& neighb
         triangle[slot] &= ~(1U << (kActiveEdgeShift + edge));
         continue;
       }
-      // Each pair once: both triangles get the same answer.
+      // Visit each pair once; both triangles get the same result.
       const std::uint32_t other = neighbour & ~kSameWay;
       if (other < 4 * slot + edge || is_active(mesh, bend, slot, edge, neighbour)) continue;
       triangle[slot] &= ~(1U << (kActiveEdgeShift + edge));

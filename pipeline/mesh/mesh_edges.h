@@ -7,28 +7,28 @@
 
 namespace winnow {
 
-/// What find_neighbours says of an edge of a slot, at 3 * slot + edge, where it has one neighbour:
-/// 4 * slot + edge of the other triangle, and this bit if both run along the edge the same way,
-/// that is if they are wound inconsistently.
+/// Flag in a result of find_neighbours. For an edge of a slot with exactly one neighbour, entry 3 *
+/// slot + edge is 4 * slot + edge of the other triangle, plus this bit if both triangles traverse
+/// the edge in the same direction, that is if they are wound inconsistently.
 inline constexpr std::uint32_t kSameWay = 1U << 30U;
-/// A border, or an edge of more than two triangles.
+/// A border, or an edge shared by more than two triangles.
 inline constexpr std::uint32_t kNoNeighbour = ~0U;
-/// All edges of a triangle that is a segment, where a triangle with area has that edge.
+/// All edges of a triangle that is a segment, if a triangle with area has that segment as an edge.
 inline constexpr std::uint32_t kCoveredEdge = ~0U - 1U;
 
-/// Finds for every edge the one other triangle that has it. Vertices at the same place count as
-/// one, since files split them where colours or normals differ; triangles whose corners are fewer
-/// than three places then are no one's neighbours, so that a sliver closed to a segment does not
-/// part the triangles on both its sides. `neighbours` holds three numbers per slot. False, and it
-/// is empty, if memory is refused. O(n log n), O(n) where few triangles share a vertex.
+/// Finds for each edge the one other triangle that shares it. Vertices at equal positions count as
+/// one, because files split vertices where colours or normals differ. Triangles with fewer than
+/// three distinct corners are no neighbours, so that a sliver collapsed to a segment does not
+/// separate the triangles on its two sides. `neighbours` gets three entries per slot. Returns false
+/// and leaves it empty if memory is refused. O(n log n); O(n) if few triangles share a vertex.
 [[nodiscard]] bool find_neighbours(const MeshView& mesh, Column<std::uint32_t>& neighbours);
 
-/// Says in the top bits of `triangle` which edges are active: those without a neighbour, and those
-/// where the surface bends outward by more than `angle`. Outward is the side from which corners run
-/// counter-clockwise; where two triangles do not agree on it, every bend beyond the angle counts,
-/// as it does where one of them has no area, which leaves no plane to measure from. Edges that are
-/// covered are not active: what touches them touches a triangle with area, so that one without area
-/// and without active edges may be left out.
+/// Stores in the top bits of `triangle` which edges are active: edges without a neighbour, and
+/// edges where the surface bends outward by more than `angle`. Outward is the side from which the
+/// corners are counter-clockwise. If two triangles are wound inconsistently, bends to both sides
+/// count; an edge of a triangle without area is active, because there is no plane to measure from.
+/// Covered edges are not active: an object that touches one also touches a triangle with area, so
+/// that a triangle without area and without active edges can be dropped.
 void mark_active_edges(const MeshView& mesh, const Column<std::uint32_t>& neighbours, double angle,
                        std::uint32_t* triangle) noexcept;
 

@@ -1,10 +1,11 @@
 #pragma once
 
-// Sixteen triangles of a mesh against a hull. First along one way: from the point of the triangle
-// that is closest to the hull's middle towards that, with the vertices of the hull one after
-// another (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). What is left is held against the
-// hull's faces, sixteen at a time, which parts another third. Ways need not be exact; only heights
-// along them are, to a few roundings.
+// Sixteen triangles of a mesh against a hull. The first test uses one direction per triangle: from
+// the triangle's point closest to the hull's centre to that centre (Ericson, "Real-Time Collision
+// Detection", 2005, 5.1.5), against all vertices of the hull. The remaining triangles are tested
+// against the hull's face planes, sixteen planes at a time. Any direction that separates is valid,
+// so that directions need not be exact; heights along them are accurate to a few roundings. Called
+// by mesh_overlaps.wide.h.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -12,14 +13,13 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Corners in the hull's own frame, relative to its middle, in the scale that makes its radius
-/// about 1.
+/// Corners in the hull's frame, relative to its centre, scaled so that its radius is about 1.
 struct HullCorners {
-  /// Products of so large numbers stay in the range of float.
+  /// Products of numbers of this size stay in the range of float.
   static constexpr float kLargestCorner = 1e6F;
 
   Vec3<float> at[3];
-  Floats reach;  ///< beyond the hull by more than this, a triangle is outside for certain
+  Floats reach;  ///< a triangle beyond the hull by more than this is certainly outside
 
   HullCorners(const Corners16& corners, const MeshHullJob& hull) {
     Floats sum(0.0F);
@@ -36,7 +36,7 @@ struct HullCorners {
       at[k] = {row(0), row(1), row(2)};
       sum += taxicab(at[k]);
     }
-    // Corners and heights take some forty roundings of numbers no larger than these.
+    // Corners and heights accumulate about forty roundings of numbers no larger than these.
     reach = Floats(hull.reach) + (sum + Floats(hull.largest)) * Floats(0x1p-18F);
     is_small_ = sum < Floats(kLargestCorner);
   }
@@ -44,11 +44,11 @@ struct HullCorners {
   [[nodiscard]] Mask16 are_small() const { return bits(is_small_); }
 
  private:
-  /// False where something is not a number.
+  /// False for lanes with NaN.
   LaneMask<float> is_small_;
 };
 
-/// From the closest point of each triangle to the origin towards that, of any length.
+/// From the closest point of each triangle to the origin, towards the origin; of any length.
 [[gnu::always_inline]] inline Vec3<float> way_to_origin(const Vec3<float> (&corner)[3]) {
   const Floats zero(0.0F);
   const Vec3<float> a = -corner[0];
@@ -78,7 +78,7 @@ struct HullCorners {
   return way;
 }
 
-/// Which triangles lie below all of the hull along `way`, by more than their reach.
+/// The triangles that are below all of the hull along `way` by more than their reach.
 [[gnu::always_inline]] inline Mask16 below_vertices(const HullCorners& t, const Vec3<float>& way,
                                                     const MeshHullJob& hull) {
   const HullShape& shape = *hull.shape;
@@ -95,7 +95,7 @@ struct HullCorners {
   return bits((gap > Floats(0.0F)) & (gap * gap > dot(way, way) * (reach * reach)));
 }
 
-/// Whether one triangle lies beyond one of the hull's faces.
+/// Returns whether one triangle is beyond one of the hull's faces.
 inline bool beyond_face(const float (&corner)[3][3], float reach, const MeshHullJob& hull) {
   const float* const* const plane = hull.shape->plane_float;
   const Floats least_height(reach);
@@ -112,7 +112,7 @@ inline bool beyond_face(const float (&corner)[3][3], float reach, const MeshHull
   return false;
 }
 
-/// Which triangles lie outside of the hull for certain. Nothing that is not a number counts.
+/// The triangles that are certainly outside the hull; NaN never counts as outside.
 inline Mask16 outside_hull(const Corners16& corners, Mask16 lanes, const MeshHullJob& hull) {
   const HullCorners t(corners, hull);
   Mask16 out = below_vertices(t, way_to_origin(t.at), hull) & t.are_small();

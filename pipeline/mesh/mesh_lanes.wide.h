@@ -1,6 +1,7 @@
 #pragma once
 
-// Sixteen nodes or sixteen triangles of a mesh in lanes.
+// Loads of sixteen nodes or sixteen triangles of a mesh into SIMD lanes, for the traversals beside
+// this file.
 
 #include "pipeline/mesh/mesh_view.h"
 #include "simd/lanes/boxes.h"
@@ -10,14 +11,14 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Which of the lanes [first, first + 16) of `count` are there.
+/// The lanes among [first, first + 16) that are below `count`.
 inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
   const std::uint32_t rest = count - first_lane;
   return lanes_below(rest < kLanes ? rest : kLanes);
 }
 
-/// Nodes [first_node, first_node + 16) of a level, in the units of the nodes. Lanes beyond the
-/// level's count are to be masked.
+/// Nodes [first_node, first_node + 16) of a level, in node units. The caller masks the lanes beyond
+/// the level's count.
 [[gnu::always_inline]] inline Box16 load_nodes(const MeshView& mesh, std::uint32_t level,
                                                std::uint32_t first_node) {
   const std::uint16_t* const bounds = mesh.node[level] + std::size_t{6} * first_node;
@@ -29,7 +30,8 @@ inline Mask16 present(std::uint32_t count, std::uint32_t first_lane) {
   return box;
 }
 
-/// Lane l is the point of three floats at base + 3 * index[l]. One float behind a point is read.
+/// Loads into lane l the point of three floats at base + 3 * index[l]. Reads one float beyond each
+/// point.
 [[gnu::always_inline]] inline void load_points(const float* base, const std::uint32_t* index,
                                                Floats (&point)[3]) {
 #if defined(WINNOW_ISA_IS_neon64)
@@ -54,8 +56,8 @@ struct Corners16 {
   Floats at[3][3];
 };
 
-/// How many blocks of sixteen hold the vertices that a leaf lists: one or two, or 0 where leaves
-/// list none or this one more.
+/// Number of blocks of sixteen that hold the vertex list of a leaf: 1 or 2; 0 if leaves have no
+/// lists or this one is longer.
 [[gnu::always_inline]] inline int vertex_blocks(const MeshView& mesh, std::uint32_t leaf) {
   if (mesh.corner[0] != nullptr) return 0;
   const std::uint8_t* const places = places_of(mesh, leaf, 0);
@@ -63,13 +65,13 @@ struct Corners16 {
   return are_below<2 * kLanes>(places) ? 2 : 0;
 }
 
-/// Where one of them lies.
+/// Index of a block of a leaf's vertex list.
 [[gnu::always_inline]] inline std::size_t block_of(const MeshView& mesh, std::uint32_t leaf,
                                                    int block) {
   return block == 0 ? leaf : std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
 }
 
-/// Calls look(block, its vertices) for each of them.
+/// Calls look(block, its vertices) for each block.
 template <int Blocks, typename Look>
 [[gnu::always_inline]] inline void each_vertex_block(const MeshView& mesh, std::uint32_t leaf,
                                                      Look&& look) {
@@ -80,7 +82,7 @@ template <int Blocks, typename Look>
   }
 }
 
-/// Corners k of a leaf, each from where its vertex is.
+/// Gathers corners k of a leaf, each from its own vertex.
 [[gnu::always_inline]] inline void load_corners(const MeshView& mesh, std::uint32_t leaf,
                                                 std::size_t k, Floats (&corner)[3]) {
   const std::size_t first_slot = std::size_t{leaf} * kMeshFanout;
@@ -128,7 +130,7 @@ template <int Blocks>
   return box;
 }
 
-/// Writes the slots of the set lanes, or counts on where there is no room.
+/// Writes the slots of the set lanes; if there is no room, only counts them.
 inline void put_slots(const Uints& slots, Mask16 hits, SlotSink& out) {
   if (out.size + kLanes <= out.capacity) {
     out.size += compress_store(hits, slots, out.slot + out.size);
@@ -141,7 +143,7 @@ inline void put_slots(const Uints& slots, Mask16 hits, SlotSink& out) {
   }
 }
 
-/// Sixteen boxes in double, half of them at a time.
+/// Eight of sixteen boxes, in double.
 struct Box8 {
   Doubles low[3];
   Doubles high[3];
@@ -157,7 +159,7 @@ template <int Half>
   return r;
 }
 
-/// What boxes in the units of the nodes stand for.
+/// Converts boxes from node units to the mesh's frame.
 [[gnu::always_inline]] inline void decode(const MeshView& mesh, Box8& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const Doubles origin(static_cast<double>(mesh.origin[axis]));

@@ -1,12 +1,13 @@
 #pragma once
 
-// The nearest triangles of two meshes: two trees descended at once, the pair of boxes first that is
-// the least apart, as long as it is within the limit. Lengths are those of the scaled frame of a
-// (see mesh_pairs.wide.h), squares of them rounded down.
+// The nearest triangles of two meshes (mesh_near_pairs): descends both trees at once and opens the
+// pair of boxes with the least distance first, while it is within the limit. Lengths are in the
+// scaled frame of a (see mesh_pairs.wide.h); squared distances are lower bounds.
 //
-// Triangles are dropped if a direction parts them by more than the limit and what rounding can have
-// added: the one along which the nearest pair so far is apart, which parts nearly all pairs of
-// surfaces that bend away from each other, or that between their middles.
+// Pairs of triangles are dropped if a direction separates them by more than the limit plus a bound
+// on rounding. Two directions are tested: the direction that separates the nearest pair found up to
+// now, which also separates nearly all pairs of surfaces that curve away from each other, and the
+// direction between the triangles' centres.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
@@ -14,10 +15,10 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// More than the relative error of a square.
+/// Bound on the relative error of a square.
 inline constexpr float kSquareError = 0x1p-16F;
 
-/// A pair of nodes, leaves or triangles, and the square of how far their boxes are apart at least.
+/// A pair of nodes, leaves or triangles, and a lower bound on the squared distance of their boxes.
 struct ApartPair {
   float square;
   std::uint32_t a;
@@ -36,7 +37,7 @@ struct ApartPairs {
       pair[size++] = {square[first(hits)], first_a + first(hits), b};
     }
   }
-  /// The farthest first (Shell, "A high-speed sorting procedure", CACM 1959).
+  /// Sorts in descending order of distance (Shell, "A high-speed sorting procedure", CACM 1959).
   void sort() {
     static constexpr std::uint32_t kGaps[6] = {132, 57, 23, 10, 4, 1};
     for (const std::uint32_t gap : kGaps) {
@@ -97,7 +98,7 @@ class NearPairTraversal {
     square_ = most_ * most_ * (1.0F + kSquareError) + 1e-36F;
   }
 
-  /// Squared distances of sixteen boxes from one, a unit of each axis being `length` long.
+  /// Squared distances of sixteen boxes from one box; a unit of each axis has length `length`.
   [[gnu::always_inline]] static Floats squares(const Box16& boxes, const float (&low)[3],
                                                const float (&high)[3], const float (&length)[3]) {
     Floats sum(0.0F);
@@ -155,7 +156,7 @@ class NearPairTraversal {
     const Box16 children = load_nodes(a_, level, first_a);
     const Mask16 lanes = present(a_.count[level], first_a);
     found_.size = 0;
-    // The direction in units: along it boxes reach as far as their corners do.
+    // The direction in node units. Along it boxes extend as far as their corners.
     float along[3];
     float doubt = slack_;
     Floats own_reach(0.0F);
@@ -213,7 +214,7 @@ class NearPairTraversal {
     }
   }
 
-  /// Triangles of two leaves that may be within the limit.
+  /// Finds pairs of triangles of two leaves that may be within the limit.
   void find_triangles(const PairLeaf& leaf, const Corners16& others, std::uint32_t first_a,
                       std::uint32_t first_b) {
     alignas(64) float corner[3][3][kLanes];
@@ -244,7 +245,7 @@ class NearPairTraversal {
     (-farthest(backward, others)).store(other_reach);
     for (Mask16 rest = present(b_.triangle_count, first_b); rest != 0; rest &= rest - 1) {
       const unsigned j = first(rest);
-      // Sums of three products of coordinates, and the corners of b, are rounded by less.
+      // Exceeds the rounding of sums of three products of coordinates, and of the corners of b.
       const Floats doubt = (size + Floats(other_size[j])) * Floats(0x1p-19F) + Floats(slack_);
       const Floats reach = (Floats(most_) + doubt) * Floats(1.0F + 0x1p-14F);
       Mask16 hits = ~bits(Floats(other_reach[j]) - own_reach > reach) & leaf.lanes;
@@ -276,8 +277,9 @@ class NearPairTraversal {
     return d[0] != 0.0F || d[1] != 0.0F || d[2] != 0.0F;
   }
 
-  /// The meshes are no farther apart than any two corners. Before there is a nearest pair this
-  /// saves most of the looks at pairs that are not it.
+  /// Lowers the limit to the least distance of a corner of one leaf to a corner of the other, which
+  /// bounds the distance of the meshes. Until a nearest pair is found this avoids most visits to
+  /// other pairs.
   void cut_by_corners(const PairLeaf& leaf, const float (&corner)[3][3][kLanes], float size) {
     Floats nearest(__builtin_inff());
     for (int j = 0; j < kLanes; ++j) {
@@ -295,7 +297,7 @@ class NearPairTraversal {
     if (apart < most_) set_most(apart);
   }
 
-  /// How far triangles reach along a direction, in units of its length.
+  /// Support of triangles along a direction, in units of its length.
   [[gnu::always_inline]] static Floats farthest(const Floats (&direction)[3],
                                                 const Corners16& corners) {
     Floats at[3];
@@ -322,7 +324,7 @@ class NearPairTraversal {
   float length_[3];
   float slack_ = 0.0F;
   double limit_ = 0.0;
-  /// The limit in the scaled frame, or the distance of two corners if that is less, and its square.
+  /// The limit in the scaled frame, or the distance of two corners if that is less; and its square.
   float most_ = __builtin_inff();
   float square_ = __builtin_inff();
   PlacedNodes nodes_;

@@ -1,12 +1,13 @@
 #pragma once
 
-// Triangles of a mesh that meet a box, or a ball or a hull in it.
+// Triangles of a mesh that overlap a box, or a ball or hull in it (mesh_overlap).
 //
-// Sixteen triangles against a ball. A convex shape and a ball are apart only along the way from the
-// ball's middle to the closest point of the shape: for a triangle that is its normal, the way to a
-// corner, or the way to an edge at a right angle (Ericson, "Real-Time Collision Detection", 2005,
-// 5.2.7 and 5.1.5). Any direction serves as long as all three corners lie beyond the ball along it,
-// so that directions need not be exact; only heights along them are, to a few roundings.
+// Ball test: a convex shape and a ball are disjoint only if they are separated along the direction
+// from the ball's centre to the closest point of the shape. For a triangle this is its normal, the
+// direction to a corner, or the direction orthogonal to an edge (Ericson, "Real-Time Collision
+// Detection", 2005, 5.2.7 and 5.1.5). Any direction along which all three corners are beyond the
+// ball separates, so that directions need not be exact; heights along them are accurate to a few
+// roundings.
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_hull.wide.h"
@@ -21,8 +22,8 @@ using Lanes3 = Floats[3];
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Corners relative to the middle of the ball, in the scale that makes its radius about 1, and how
-/// far from the middle they must be to be outside for certain.
+/// Corners relative to the ball's centre, scaled so that its radius is about 1, and the distance
+/// from the centre at which they are certainly outside.
 struct BallCorners {
   Lanes3 at[3];
   Floats square;  ///< of that distance
@@ -35,13 +36,14 @@ struct BallCorners {
         largest = max(largest, abs(at[k][axis]));
       }
     }
-    // The middle and the differences were rounded, and so are heights: less than 16 u of the
-    // largest number among them, u being half an ulp of 1.
+    // Bounds the rounding of the centre, of the differences and of heights: less than 16 u of the
+    // largest number involved, where u is half an ulp of 1.
     const Floats distance = Floats(ball.radius * (1.0F + 0x1p-20F)) + largest * Floats(0x1p-19F);
     square = distance * distance;
   }
 
-  /// All three lie beyond the ball along a way of this squared length, given the least height.
+  /// Returns whether all three corners are beyond the ball along a direction of squared length
+  /// `length`, given the least of their heights.
   [[gnu::always_inline]] LaneMask<float> beyond(const Floats& least, const Floats& length) const {
     return (least > Floats(0.0F)) & (least * least > length * square);
   }
@@ -51,7 +53,7 @@ struct BallCorners {
   }
 };
 
-/// Which triangles lie outside of the ball for certain. Nothing that is not a number counts.
+/// The triangles that are certainly outside the ball; NaN never counts as outside.
 [[gnu::always_inline]] inline Mask16 outside_ball(const Corners16& corners,
                                                   const MeshBallJob& ball) {
   const BallCorners t(corners, ball);
@@ -87,7 +89,7 @@ struct BallCorners {
   return bits(out | t.beyond(normal));
 }
 
-/// Takes triangles of one leaf after another, of which few are left, and tests sixteen at a time.
+/// Collects the few remaining triangles of one leaf after another, and tests sixteen at a time.
 class TriangleSieve {
  public:
   TriangleSieve(const MeshBoxJob& job, SlotSink& out) : job_(job), out_(out) {}
@@ -129,12 +131,12 @@ class TriangleSieve {
   const MeshBoxJob& job_;
   SlotSink& out_;
   unsigned size_ = 0;
-  // Up to 15 wait, and every store writes 16.
+  // Up to 15 triangles are pending, and every store writes 16.
   alignas(64) float corner_[3][3][2 * kLanes] = {};
   alignas(64) std::uint32_t slot_[2 * kLanes] = {};
 };
 
-/// Calls show(corners, hits, first slot) for leaves with triangles in the box.
+/// Calls show(corners, hits, first slot) for leaves with triangles whose boxes overlap the box.
 template <typename Show>
 [[gnu::always_inline]] inline void visit_box(const MeshView& mesh, const MeshBoxJob& job,
                                              Show&& show) {

@@ -1,12 +1,13 @@
 #pragma once
 
-// Two trees descended at once. Boxes of b's nodes are brought into the frame of a by the matrix and
-// its absolute value and tested against sixteen nodes of a; at pairs of leaves the triangles of b,
-// brought there in double, against sixteen triangles of a.
+// Pairs of overlapping triangles of two meshes (mesh_overlap_pairs): descends both trees at once.
+// Boxes of b's nodes are transformed to the frame of a (by the matrix and its absolute value) and
+// tested against sixteen nodes of a. At pairs of leaves, b's triangles are transformed in double
+// and tested against sixteen triangles of a.
 //
-// Triangles meet in the scaled frame of a, sixteen against one: boxes, then the planes of both as
-// separating ones. A pair is dropped only where it is apart by more than rounding can have added; u
-// is half an ulp of 1. A number that is not finite drops nothing.
+// Triangles are tested in the scaled frame of a, sixteen against one: first their boxes, then both
+// triangle planes as separating planes. A pair is dropped only if it is separated by more than a
+// bound on rounding; u is half an ulp of 1. NaN and infinity drop no pair.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -14,7 +15,7 @@
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
 inline constexpr float kUlp = 0x1p-24F;
-// More than what underflows of any product here.
+// Exceeds the underflow of any product here.
 inline constexpr float kTiny = 0x1p-110F;
 
 [[gnu::always_inline]] inline Box16 load_box(const float (&low)[3][kLanes],
@@ -27,45 +28,49 @@ inline constexpr float kTiny = 0x1p-110F;
   return box;
 }
 
-/// Triangles of a leaf of a. What their planes take is found when first asked for.
+/// Triangles of a leaf of a. Their planes are computed on first use.
 struct PairLeaf {
   Corners16 corners;
   Box16 box;
   Mask16 lanes;
   bool has_planes;
   Floats normal[3];
-  /// Sum of the absolute values of the two products whose difference `normal` is.
+  /// Sum of the absolute values of the two products whose difference is `normal`.
   Floats size[3];
-  /// Rounding of distances from the plane that is due to the extent of the triangle itself.
+  /// Rounding error of distances from the plane due to the extent of the triangle itself.
   Floats doubt;
 };
 
-/// Triangles of a leaf of b, one by one to be broadcast; their planes too when first asked for.
+/// Triangles of a leaf of b, of which one at a time is broadcast. Their planes are computed on
+/// first use.
 struct PlacedTriangles {
   Mask16 lanes;
   bool has_planes;
   alignas(64) float corner[3][3][kLanes];
   /// The largest absolute value of a coordinate.
   alignas(64) float largest[3][kLanes];
-  /// Grown by slack and rounding.
+  /// Bounds grown by slack and rounding.
   alignas(64) float low[3][kLanes];
   alignas(64) float high[3][kLanes];
-  /// 32 u of how far a corner of a triangle whose box meets may lie from one of these, and 2 u of
-  /// the coordinate: times `size` of the other triangle the rounding of its plane's distances.
+  /// 32 u times the distance that a corner of a triangle with an overlapping box may have from one
+  /// of these corners, plus 2 u times the coordinate. Multiplied by `size` of the other triangle,
+  /// it bounds the error of distances from that triangle's plane.
   alignas(64) float doubt[3][kLanes];
   alignas(64) float normal[3][kLanes];
-  /// Rounding of the normal: times such a distance that of this plane's distances.
+  /// Error bound of the normal. Multiplied by such a distance, it bounds the error of distances
+  /// from this triangle's plane.
   alignas(64) float wobble[3][kLanes];
-  /// Extent and slack.
+  /// Extent plus slack.
   alignas(64) float reach[3][kLanes];
-  /// How far the slack reaches along the normal, with the rounding of the corner it starts from.
+  /// How far the slack extends along the normal, plus the rounding of the corner that distances are
+  /// measured from.
   alignas(64) float thickness[kLanes];
 
   [[nodiscard]] Box16 box() const { return load_box(low, high); }
 };
 
-/// The two products of each component of the cross product of p and q, subtracted and, by absolute
-/// value, added.
+/// The cross product of p and q: the two products of each component subtracted (`normal`), and
+/// their absolute values added (`size`).
 [[gnu::always_inline]] inline void cross_sizes(const Floats (&p)[3], const Floats (&q)[3],
                                                Floats (&normal)[3], Floats (&size)[3]) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +111,8 @@ inline void add_planes(PairLeaf& out) {
   }
 }
 
-/// The corners of b's leaf in double, brought into the scaled frame of a and rounded.
+/// Loads the corners of b's leaf, transforms them in double to the scaled frame of a and rounds
+/// them.
 inline Corners16 place_corners(const MeshView& b, const MeshPairJob& job, std::uint32_t leaf) {
   const Corners16 own = load_corners(b, leaf);
   const Doubles scale(static_cast<double>(job.scale));
@@ -152,7 +158,8 @@ inline void add_planes(const MeshPairJob& job, PlacedTriangles& out) {
   for (int axis = 0; axis < 3; ++axis) {
     const int j = (axis + 1) % 3;
     const int k = (axis + 2) % 3;
-    // Edges are wrong by 4 u of the coordinates: each corner was rounded once, the edge once more.
+    // The error of an edge is 4 u of the coordinates: each corner was rounded once, and so was the
+    // edge.
     const Floats edges = longest[j] * largest[k] + longest[k] * largest[j] +
                          largest[j] * largest[k] * Floats(4.0F * kUlp);
     const Floats error = edges * Floats(8.0F * kUlp) + size[axis] * Floats(4.0F * kUlp);
@@ -189,7 +196,7 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
   out.has_planes = false;
 }
 
-/// Which lanes have all three heights on one side, farther than `bound` from zero.
+/// The lanes whose three heights are all on one side, farther than `bound` from zero.
 [[gnu::always_inline]] inline LaneMask<float> aside(const Floats (&height)[3],
                                                     const Floats& bound) {
   const LaneMask<float> above = (height[0] > bound) & (height[1] > bound) & (height[2] > bound);
@@ -198,7 +205,7 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
          ((height[0] < below_bound) & (height[1] < below_bound) & (height[2] < below_bound));
 }
 
-/// Which triangles of the leaf, out of `boxes`, are not parted from triangle j by a plane.
+/// The triangles of the leaf, among `boxes`, that no triangle plane separates from triangle j.
 [[gnu::always_inline]] inline Mask16 unparted(const PairLeaf& leaf, const PlacedTriangles& placed,
                                               const MeshPairJob& job, unsigned j, Mask16 boxes) {
   const Floats zero(0.0F);
@@ -228,7 +235,7 @@ struct PlacedNodes {
   alignas(64) float high[3][kLanes];
   Mask16 lanes;
 
-  /// The box around them.
+  /// The bounding box of all of them.
   void merge(float (&least)[3], float (&greatest)[3]) const {
     const std::uint32_t last = 31U - static_cast<std::uint32_t>(__builtin_clz(lanes));
     for (int axis = 0; axis < 3; ++axis) {
@@ -244,9 +251,10 @@ struct PlacedNodes {
   [[nodiscard]] Box16 box() const { return load_box(low, high); }
 };
 
-/// One half of the lanes. An eighth of a unit covers the rounding of units: doubles resolve them to
-/// 2^-13 (floats of the mesh's size lie no closer than 2^-40 of it, and a unit is 2^-16 of its
-/// extent) and floats up to 2^17 to 2^-7; where |unit| is larger, both sides agree.
+/// Transforms one half of the lanes. An eighth of a unit covers rounding: a unit is 2^-16 of the
+/// mesh's extent and at least 2^-40 of its coordinates, so that doubles resolve units to 2^-13;
+/// floats up to 2^17 resolve them to 2^-7. Larger numbers are beyond all node bounds, rounded or
+/// not.
 template <int Half>
 [[gnu::always_inline]] inline void place_half(const MeshView& a, const MeshView& b,
                                               const MeshPairJob& job, const Box16& nodes,
@@ -288,8 +296,8 @@ inline void place_nodes(const MeshView& a, const MeshView& b, const MeshPairJob&
   out.lanes = present(b.count[level], first_node);
 }
 
-/// A node of each tree; one of level l > 0 stands for nodes [16 i, 16 i + 16) of level l - 1, and
-/// the only node of level `levels` for the top.
+/// A node of each tree. A node i of level l > 0 stands for its children, nodes [16 i, 16 i + 16) of
+/// level l - 1; the only node of level `levels` stands for the top level.
 struct NodePair {
   std::uint32_t a;
   std::uint32_t b;
@@ -297,9 +305,9 @@ struct NodePair {
   std::uint32_t level_b;
 };
 
-/// The levels of a pair sum up to 2 * kMaxMeshLevels at most and each step goes down one level of
-/// one tree and leaves 16 pairs, or of both and leaves 256: half as many steps. The last step goes
-/// to leaves and leaves none.
+/// Stack size. The levels of a pair add up to at most 2 * kMaxMeshLevels. Each step descends one
+/// level of one tree and leaves 16 pairs, or one level of both trees and leaves 256 pairs, in half
+/// as many steps. The last step visits leaves and leaves none.
 inline constexpr std::uint32_t kPairRoom = kMaxMeshLevels * kMeshFanout * kMeshFanout;
 
 class PairTraversal {
@@ -326,7 +334,7 @@ class PairTraversal {
  private:
   void push(const NodePair& pair) { stack_[size_++] = pair; }
 
-  /// Which of b's nodes reach into the box of a's node.
+  /// The nodes of b that overlap the box of a's node.
   Mask16 reaching(const NodePair& pair, const PlacedNodes& nodes) const {
     if (pair.level_a == a_.levels) return nodes.lanes;
     float low[3];
@@ -343,7 +351,7 @@ class PairTraversal {
   void open_a(const NodePair& pair) {
     const std::uint32_t first_b = pair.b * kMeshFanout;
     place_nodes(a_, b_, job_, pair.level_b - 1, first_b, nodes_);
-    // The box of b's node is that of its children.
+    // The box of b's node is the bounding box of its children.
     float low[3];
     float high[3];
     nodes_.merge(low, high);
@@ -363,7 +371,7 @@ class PairTraversal {
     }
   }
 
-  /// Calls visit(child of b, children of a that it may meet).
+  /// Calls visit(child of b, mask of the children of a that it may overlap).
   template <typename Visit>
   [[gnu::always_inline]] void for_children(const NodePair& pair, Visit&& visit) {
     const std::uint32_t first_a = pair.a * kMeshFanout;
@@ -404,8 +412,8 @@ class PairTraversal {
     });
   }
 
-  /// Which of the placed triangles reach into the box of a's leaf. Decoding, scaling and rounding
-  /// keep order, so the box still contains the leaf's scaled corners.
+  /// The placed triangles whose boxes overlap the box of a's leaf. Decoding, scaling and rounding
+  /// are monotonic, so that the box still contains the leaf's scaled corners.
   Mask16 triangles_near(std::uint32_t leaf_a) const {
     float low[3];
     float high[3];

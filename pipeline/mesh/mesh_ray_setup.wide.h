@@ -1,8 +1,9 @@
 #pragma once
 
-// Rays into the frame of a surface, and made ready for their way through the nodes of a mesh: eight
-// at once, a lane for each, or one alone in plain numbers, which have less to wait for than lanes
-// of axes. In double, without fused operations: the same either way and on every instruction set.
+// Transforms rays to the frame of a surface and prepares them for the traversal of a mesh's nodes:
+// eight at a time, one per SIMD lane, or a single ray in scalars, which have less latency than
+// lanes of axes. In double, without fused operations, so that results are equal either way and on
+// every instruction set. mesh_rays.wide.h uses this.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -11,25 +12,27 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// In the units of the nodes: more than float makes of a bound on its way to tau.
+/// Error bound, in node units, of a bound converted in float to the parameter tau (see ReadyRays).
 inline constexpr double kUnitDoubt = 0.05;
-/// A ray that moves by fewer units for each tau stands on that axis: its way through the mesh takes
-/// it less than kUnitDoubt.
+/// A ray that moves by fewer units per tau counts as static on that axis: it moves by less than
+/// kUnitDoubt while it crosses the mesh.
 inline constexpr double kStandingRate = 0.01;
 inline constexpr double kStandingInverse = 1e30;
-/// More slack than this leaves all in doubt as well.
+/// A larger slack would also leave all triangles uncertain, so slack is clamped to this.
 inline constexpr double kMostSlack = 1e200;
 
-// Of a ray that is measured from where it begins, in float: u is half an ulp of 1.
+// Constants for rays measured in float from their own origin; u is half an ulp of 1.
 
-/// It begins no more units away along any axis, so that it leaves the mesh before tau = 200.
+/// The origin is at most this many units away along any axis, so that the ray leaves the mesh
+/// before tau = 200.
 inline constexpr float kNearUnits = 0x1p22F;
-/// What roundings make of its place and of its way to a bound, as a share of where it is, and of
-/// the largest bound: 32 u, where 12 are met, or 24 in a mode that rounds to one side.
+/// Error bound of the ray's position and of its distance to a bound: a fraction of the position,
+/// plus a fraction of the largest bound. 32 u covers 12 roundings, or 24 in a directed rounding
+/// mode.
 inline constexpr float kNearShare = 0x1p-19F;
 inline constexpr float kNearDoubt = 0.5F;
 
-/// Three numbers of one vector.
+/// A vector of three scalars.
 struct Numbers {
   double x;
   double y;
@@ -46,20 +49,20 @@ struct Numbers {
   }
 };
 
-/// Eight rays.
+/// Traits for eight rays in lanes.
 struct RaysInLanes {
   static constexpr std::uint32_t kRoom = kRaysAtOnce;
   using Number = Doubles;
   using Vector = Vec3<double>;
 };
-/// One ray.
+/// Traits for one ray in scalars.
 struct RayInNumbers {
   static constexpr std::uint32_t kRoom = 1;
   using Number = double;
   using Vector = Numbers;
 };
 
-// What both are written in.
+// Functions that both variants are written in.
 
 [[gnu::always_inline]] inline void load(const double* p, double& number) {
   number = *p;
@@ -94,14 +97,14 @@ struct RayInNumbers {
 [[gnu::always_inline]] inline double max(double a, double b) {
   return a > b ? a : b;
 }
-/// With the sign of another one; none of its own is set.
+/// `size` with the sign of `of`; the sign bit of `size` must not be set.
 [[gnu::always_inline]] inline double with_sign(double size, double of) {
   return __builtin_copysign(size, of);
 }
 [[gnu::always_inline]] inline Doubles with_sign(const Doubles& size, const Doubles& of) {
   return (of & Doubles(-0.0)) | size;
 }
-/// The power of two of its exponent. Infinity has the bits of the exponent alone.
+/// The power of two with the exponent of v: infinity has exactly the exponent bits.
 [[gnu::always_inline]] inline Doubles power_of(const Doubles& v) {
   return v & Doubles(__builtin_inf());
 }
@@ -121,12 +124,12 @@ template <typename Vector, typename T, std::size_t Rows, std::size_t Room>
   store(v.y, column[1] + first);
   store(v.z, column[2] + first);
 }
-/// The same vector for every ray.
+/// Broadcasts one vector to all rays.
 template <typename Vector>
 [[gnu::always_inline]] inline Vector spread(const double (&of)[3]) {
   return {of[0], of[1], of[2]};
 }
-/// Calls f with what each axis has of the vectors.
+/// Applies f to the components of the vectors, axis by axis.
 template <typename F, typename Vector, typename... V>
 [[gnu::always_inline]] inline Vector by_axis(F&& f, const Vector& a, V&&... b) {
   return {f(a.x, b.x...), f(a.y, b.y...), f(a.z, b.z...)};
@@ -144,7 +147,7 @@ template <typename Vector>
   return min(min(v.x, v.y), v.z);
 }
 
-/// A matrix times a vector, its columns added in their order; `on_entries` is done to each before.
+/// A matrix times a vector, summed column by column; `on_entries` is applied to each entry before.
 template <typename OnEntries>
 [[gnu::always_inline]] inline Vec3<double> times(const double (&column)[3][3],
                                                  const Vec3<double>& v, OnEntries&& on_entries) {
@@ -159,9 +162,8 @@ template <typename OnEntries>
   return times(column, v, [](const Doubles& entries) { return entries; });
 }
 
-/// Takes rays [first, first + kRayLanes) into the frame of a surface. Gives back a bit for each
-/// that is left to the caller: those that begin far away, or whose numbers are too large or too
-/// small.
+/// Transforms rays [first, first + kRayLanes) to the frame of a surface. Returns a bit for each ray
+/// that is left to the caller: rays that begin far away, or have numbers too large or too small.
 [[gnu::always_inline]] inline Mask16 place_some(const SurfaceFrame& frame,
                                                 const RayColumns<kRaysAtOnce>& world,
                                                 std::uint32_t first, SurfaceRays& own) {
@@ -191,7 +193,7 @@ template <typename OnEntries>
   return ~bits(near & tame);
 }
 
-/// The same of rays [0, count).
+/// As above, for rays [0, count).
 inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                                 std::uint32_t count, SurfaceRays& own) {
   std::uint64_t left = 0;
@@ -202,37 +204,38 @@ inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns<kRay
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;
 }
 
-/// Rays that are ready to go through a mesh, in columns. `tau` is time, in another unit, from where
-/// a ray comes to the mesh, or from where it begins near it.
+/// Rays prepared for the traversal of a mesh, in columns. `tau` is a scaled time, measured from
+/// where a ray enters the mesh's box, or from its origin if that is near the mesh.
 template <std::uint32_t Room>
 struct ReadyRays {
   static constexpr std::size_t kAlignment = kRayAlignment<Room>;
-  /// Of floats, more are written than are there: those of the next rays, or slack.
+  /// Float columns have room for a full vector store, which may write beyond the rays stored here.
   static constexpr std::uint32_t kFloats = Room == 1 ? 1 : Room + kLanes;
   static constexpr std::uint32_t kRows = Room == 1 ? 4 : 3;
   /// tau = (t - entry) * pace.
   alignas(kAlignment) double entry[Room];
   alignas(kAlignment) double pace[Room];
-  /// Where rays are at tau = 0, in units of the nodes, and by how much boxes are grown for what is
-  /// wrong of that and of their ways.
+  /// Position of rays at tau = 0, in node units, and the amount by which boxes are grown to cover
+  /// the errors of position and direction.
   alignas(kAlignment) float at[kRows][kFloats];
   alignas(kAlignment) float grow[kRows][kFloats];
-  /// A bound of q units is passed at q * inverse + near, or + far, where the ray enters or leaves:
-  /// not later, or earlier, than it is.
+  /// A ray passes a bound of q units at tau = q * inverse + near if it enters, q * inverse + far if
+  /// it leaves. Rounding makes the former no later, the latter no earlier than exact.
   alignas(kAlignment) float inverse[kRows][kFloats];
   alignas(kAlignment) float near[kRows][kFloats];
   alignas(kAlignment) float far[kRows][kFloats];
-  /// Times the inverse of the fastest axis: an area beside the ray, in units of the others, that
-  /// leaves no doubt of its sign in double either.
+  /// Multiplied by |inverse| of the fastest axis: an area beside the ray, in units of the other
+  /// axes, that is large enough to have a certain sign in double, too.
   alignas(kAlignment) float surely[kFloats];
 };
 
-/// The same of a ray that begins so far away from the lower bounds of a mesh by the sum of its
-/// axes, where `longest` is one over the pace.
+/// ReadyRays::surely for a ray whose origin is `away` from the lower bounds of a mesh (sum over the
+/// axes); `longest` is 1 / pace.
 ///
-/// The volume of an area is that by what the ray moves along the axis; it is in doubt by less than
-/// half of this (see cross_sides), of which the lengths of direction are less than 3, and each of
-/// three corners is no farther from the start than `away` and the extent of the mesh on all axes.
+/// The volume of cross_sides is the area times the ray's movement along the fastest axis. Its error
+/// is less than half of the value here (see cross_sides): the components of direction sum to less
+/// than 3, and each of the three corners is no farther from the origin than `away` plus the extent
+/// of the mesh on all axes.
 template <typename L>
 [[gnu::always_inline]] inline L sure_area(const MeshSpan& mesh, const L& away, const L& slack,
                                           const L& longest) {
@@ -240,15 +243,15 @@ template <typename L>
   return L(2.1 * 3.0 * mesh.units_volume) * longest * far * (L(0x1p-48) * far + L(4.0) * slack);
 }
 
-/// The part of [0, limit] in which a ray is within bounds on an axis, grown by its slack: it enters
-/// them then, or is there from the beginning.
+/// Computes the part of [0, limit] in which a ray is within bounds on one axis, grown by its slack.
 template <typename L>
 struct AxisPassage {
   const L slack;
   const L limit;
 
-  /// Gives back when it enters them, and sets when it leaves: before 0 if it stands beside them.
-  /// Zero times infinity narrows nothing: comparisons with it do not hold.
+  /// Returns when the ray enters the bounds (0 if it begins inside) and sets `leaves`, which is
+  /// negative if the ray is static outside them. Zero times infinity gives NaN, which compares
+  /// false and narrows nothing.
   [[gnu::always_inline]] L operator()(const L& from, const L& way, const L& inverse, const L& least,
                                       const L& most, L& leaves) const {
     const L zero(0.0);
@@ -266,8 +269,8 @@ struct AxisPassage {
   }
 };
 
-/// How rays pass bounds on an axis. `from` is where they are, and `grow` by how much boxes are
-/// grown, in units of the nodes; `inverse` is how long, in tau, it takes for one.
+/// Coefficients for a ray passing bounds on one axis. `from` is its position and `grow` the growth
+/// of boxes, in node units; `given` is the time in tau per unit.
 template <typename L>
 struct AxisWay {
   L inverse;
@@ -283,12 +286,12 @@ struct AxisWay {
   }
 };
 
-/// Makes rays [first, first + kRayLanes) ready, or the only one there is. Gives back bits of those
-/// that do not pass the mesh by.
+/// Prepares rays [first, first + kRayLanes), or the only one. Returns a bit for each ray that does
+/// not miss the mesh's box.
 ///
 /// A bound q becomes q * inverse + near in float: three or four roundings, each of half an ulp of
-/// at most (65536 + |from| + grow) * |inverse|. Where the ray is in the mesh's box, grown by its
-/// slack, that is less than kUnitDoubt and 2^-20 of the slack.
+/// at most (65536 + |from| + grow) * |inverse|. Within the mesh's box, grown by the slack, this is
+/// less than kUnitDoubt plus 2^-20 of the slack.
 template <typename Rays>
 [[gnu::always_inline]] inline Mask16 make_ready(const MeshSpan& mesh,
                                                 const SurfaceRayColumns<Rays::kRoom>& rays,
@@ -348,11 +351,11 @@ template <typename Rays>
   return come;
 }
 
-/// The same of a ray that begins near the mesh, as most do, and is measured from there: what passes
-/// the mesh's box by is left to its nodes. False for others.
+/// As make_ready, for a single ray that begins near the mesh, as most do; tau is measured from its
+/// origin. Does not test the mesh's box; the nodes do. Returns false for other rays.
 ///
-/// Where it is takes three roundings, its inverse as many, and a bound on its way to tau four: all
-/// of them are of less than |at| and the largest bound.
+/// The position takes three roundings, its inverse as many, and a bound's conversion to tau four,
+/// each of at most |at| and the largest bound.
 [[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh, const LoneSurfaceRay& ray,
                                                    ReadyRays<1>& ready) {
   const auto& start = ray.ray.origin;

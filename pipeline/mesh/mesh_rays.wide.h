@@ -1,13 +1,14 @@
 #pragma once
 
-// A ray through a mesh: sixteen nodes at once in their own 16-bit units, the nearest first, and
-// sixteen triangles at once. Everything is in float, and lets through what its rounding leaves in
-// doubt; u is half an ulp of 1.
+// Ray traversal of a mesh: tests sixteen nodes at a time in their 16-bit units, nearest first, then
+// sixteen triangles at a time. All tests are in float and keep what rounding leaves uncertain; u is
+// half an ulp of 1.
 //
-// Triangles are tested in a frame that is sheared along the ray, so that it becomes an axis, by the
-// signs of the areas between it and their sides (Woop, Benthin, Wald, "Watertight ray/triangle
-// intersection", JCGT 2013); in units of the nodes too, and by where their vertices are in the box
-// of their leaf, of which each takes four bytes.
+// Triangles are tested in a frame sheared along the ray, so that the ray becomes an axis, by the
+// signs of the areas between the ray and the triangle's sides (Woop, Benthin, Wald, "Watertight
+// ray/triangle intersection", JCGT 2013). Coordinates are in node units; if the mesh stores
+// quantised vertices (MeshView::leaf_point, four bytes each), these are used. The triangles that
+// remain are tested in double (mesh_crossing.wide.h).
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
@@ -17,25 +18,26 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Corners of triangles across a ray: where they are along two axes once they are moved along the
-/// ray to one place on the third, the fastest one, measured from the ray.
+/// Corners of triangles in the sheared frame: their coordinates relative to the ray on the two axes
+/// other than the ray's fastest axis.
 struct CornersAcross {
   Floats x[3];
   Floats y[3];
 };
 
-/// Triangles of a leaf that the line of a ray may meet, and those of them that it is sure to meet.
+/// The triangles of a leaf that the line of a ray may cross, and a subset that it certainly
+/// crosses.
 struct LineTriangles {
   Mask16 may;
   Mask16 sure;
 };
 
-/// Which of those triangles the line of the ray meets, if coordinates are wrong by less than
-/// `wrong`, less 0.05 units for roundings of products, of 6 u of a coordinate of 2^17. It is sure
-/// of those whose areas beside it are larger, by `surely` more, than what is wrong with them.
+/// Tests which of these triangles the line of the ray crosses. The error of coordinates is less
+/// than `wrong`, which includes 0.05 units for the rounding of products, 6 u of a coordinate of
+/// 2^17. A crossing is certain if the areas exceed their error by `surely`.
 ///
-/// The product of two corners is wrong by less than `wrong` times the coordinates of both and twice
-/// its square.
+/// The product of two coordinates has an error of less than `wrong` times both coordinates, plus
+/// twice its square.
 [[gnu::always_inline]] inline LineTriangles around_line(const CornersAcross& at, float wrong,
                                                         float surely) {
   const auto taxicab = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
@@ -52,7 +54,7 @@ struct LineTriangles {
   return {~bits(misses) & 0xFFFFU, bits(sure)};
 }
 
-/// The line of a ray, in units.
+/// The line of a ray, in node units.
 class RayLine {
  public:
   template <std::uint32_t Room>
@@ -76,7 +78,7 @@ class RayLine {
     surely_ = rays.surely[ray] * __builtin_fabsf(along);
   }
 
-  /// Which triangles of a leaf it may meet.
+  /// The triangles of a leaf that the line may cross.
   [[gnu::always_inline]] LineTriangles near(const MeshView& mesh, std::uint32_t leaf) const {
     const int blocks = mesh.leaf_point != nullptr ? vertex_blocks(mesh, leaf) : 0;
     if (blocks == 1) return near_listed<1>(mesh, leaf);
@@ -85,12 +87,13 @@ class RayLine {
   }
 
  private:
-  /// For those of coordinates from here on, of 65536 units or their products.
+  /// Covers the rounding of coordinates computed in this class, up to 65536 units, and of their
+  /// products.
   static constexpr float kRoundings = 0.12F;
 
   [[gnu::always_inline]] static float larger(float a, float b) { return a > b ? a : b; }
 
-  /// By way of the vertices that the leaf lists, which are wrong by half a step each.
+  /// Uses the quantised vertices that the leaf lists, each with an error of half a step.
   template <int Blocks>
   [[gnu::always_inline]] LineTriangles near_listed(const MeshView& mesh, std::uint32_t leaf) const {
     constexpr float kShare = 1.0F / kMaxLeafPoint;
@@ -131,7 +134,7 @@ class RayLine {
     return around_line(at, wrong_ + 0.51F * larger(steps[0], steps[1]), surely_);
   }
 
-  /// By way of each corner's own vertex.
+  /// Uses each corner's vertex.
   [[gnu::always_inline]] LineTriangles near_corners(const MeshView& mesh,
                                                     std::uint32_t leaf) const {
     CornersAcross at;
@@ -149,21 +152,20 @@ class RayLine {
     return around_line(at, wrong_, surely_);
   }
 
-  /// The axis along which it is fastest, and the others.
+  /// The fastest axis, and the other two.
   std::uint32_t fastest_;
   std::uint32_t side_[2];
-  /// By how much a vector is moved to those sides for each unit along it, to be measured from it,
-  /// and where it is itself so.
+  /// Shear: the change of the other two coordinates per unit along the fastest axis, and the
+  /// sheared position of the ray.
   float slope_[2];
   float at_[2];
   float wrong_;
-  /// See ReadyRays.
+  /// See ReadyRays::surely.
   float surely_;
 };
 
-/// What a ray does next: goes into a node, or a leaf, to find which of its triangles it may meet,
-/// asks for the vertices of those whose corners are there, looks whether it meets them, turns to
-/// the nodes that wait, or has come to its end.
+/// The next step of a ray: enter an inner node; enter a leaf to find the triangles that it may
+/// cross; prefetch their vertices; test them; take the next open node; or end.
 enum RayStep : std::uint32_t {
   kEnterInner,
   kEnterLeaf,
@@ -174,7 +176,7 @@ enum RayStep : std::uint32_t {
   kRaySteps
 };
 
-/// A node that a ray goes to, and when it enters that.
+/// A node that a ray goes to, and the time at which it enters the node.
 struct RayNode {
   std::uint32_t level;
   std::uint32_t number;
@@ -185,17 +187,17 @@ struct RayNode {
   [[nodiscard, gnu::always_inline]] bool is_inner() const { return is_some() && level != 0; }
 };
 
-/// A ray on its way: the nodes that wait for it, of which it goes to the nearest of those that came
-/// last. What is needed soon is asked for before: by a ray that goes alone all that may be needed
-/// of a leaf, since it has nothing else to do meanwhile. Where it goes on is branched on, as soon
-/// as it is known: processors foresee more than half of it, and begin what comes after.
+/// The traversal state of one ray. The next node is the nearest open one of the last block. Data
+/// needed soon are prefetched; a single ray prefetches everything of a leaf that it may need, since
+/// it has no other work meanwhile. Control flow uses branches rather than select: branch prediction
+/// lets the processor start the next step early.
 template <bool Alone>
 class RayWalk {
  public:
   static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
 
-  /// `ray`: its place among those that are ready, and as its visitor knows it. Gives the first node
-  /// that it goes to.
+  /// Begins the traversal; `ray` is the ray's index in the columns and for the visitor. Returns the
+  /// first node.
   [[gnu::always_inline]] RayNode start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
                                        const ReadyRays<kRoom>& rays, std::uint32_t ray,
                                        double limit) {
@@ -211,14 +213,14 @@ class RayWalk {
     if (mesh.box == nullptr) line_.set(rays, ray);
     set_last(limit);
     open_ = 0;
-    // What is below a top level of few nodes is nearly as soon asked.
+    // A top level with one or two nodes is skipped: its children are tested at once.
     const std::uint32_t top = mesh.levels - 1;
     if (top != 0 && mesh.count[top] == 2) return start_between_two(mesh, top - 1);
     if (top == 0 || mesh.count[top] != 1) return meet(mesh, top, 0);
     return meet(mesh, top - 1, 0);
   }
 
-  /// Turns to the nearest of the nodes that came last, of which there are some.
+  /// Takes the nearest node of the last open block; requires one.
   [[gnu::always_inline]] RayNode take_next() {
     const auto at = 31U - static_cast<std::uint32_t>(__builtin_clz(open_));
     const Floats key = Floats::load(key_[at]);
@@ -228,13 +230,14 @@ class RayWalk {
     open_ ^= (is_open(key, gone_to_[at]) ^ 1U) << at;
     return node_of(nearest, level_[at], first_node_[at]);
   }
-  /// Goes into an inner node, and gives the nearest of those in it that the ray meets.
+  /// Enters an inner node; returns the nearest of its children that the ray intersects.
   [[gnu::always_inline]] RayNode enter_inner(const MeshView& mesh, const RayNode& node) {
     return meet(mesh, node.level - 1, node.number * kLanes);
   }
   [[nodiscard, gnu::always_inline]] bool is_anyone_waiting() const { return open_ != 0; }
-  /// The whole way of one ray. A leaf whose triangles have boxes is looked at after the next nodes,
-  /// while its vertices come; of others nearly all is at hand.
+  /// Runs the whole traversal of one ray. If triangles have boxes, a leaf's triangles are tested
+  /// after the next nodes, while its vertices are being fetched; else nearly all data of a leaf are
+  /// already in cache.
   [[gnu::always_inline]] void go(const MeshView& mesh, RayNode node,
                                  const RaySlotVisitor& visitor) {
     if (mesh.box != nullptr) return go_through_boxes(mesh, node, visitor);
@@ -254,35 +257,36 @@ class RayWalk {
     }
   }
 
-  // What follows is for rays that go side by side, and is kept from step to step.
+  // The functions below are for rays that are traversed side by side; their state is kept between
+  // steps.
 
-  /// Sets what it goes to, and gives the step that does so.
+  /// Sets the next node; returns the step that processes it.
   [[gnu::always_inline]] RayStep step_to(const RayNode& node) {
     node_ = node;
     if (!node.is_some()) return next_step();
     return node.level != 0 ? kEnterInner : kEnterLeaf;
   }
-  /// What comes where it goes no farther.
+  /// The step to take if there is no next node.
   [[nodiscard, gnu::always_inline]] RayStep next_step() const {
     return is_anyone_waiting() ? kTakeNext : kEnd;
   }
   [[gnu::always_inline]] RayStep enter_inner(const MeshView& mesh) {
     return step_to(enter_inner(mesh, node_));
   }
-  /// Goes to its leaf: false if none of its triangles need be looked at. Before they are, their
-  /// vertices are to be fetched.
+  /// Finds the triangles of the current leaf to test; returns false if there are none. Their
+  /// vertices must be fetched next.
   [[gnu::always_inline]] bool enter_leaf(const MeshView& mesh) {
     asked_ = ask(mesh, node_);
     return asked_.triangles != 0;
   }
-  /// Asks for what of that leaf is looked at first, before it is waited for. Of nodes there are few
-  /// enough to be at hand.
+  /// Prefetches the data of the current leaf that are read first. Nodes are few enough to be in
+  /// cache.
   [[gnu::always_inline]] void fetch_leaf(const MeshView& mesh) const { fetch(mesh, node_.number); }
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
     fetch_vertices(mesh, asked_);
   }
-  /// The same where triangles have no boxes: false if its line meets none of them. Vertices of the
-  /// first are asked for, since there is hardly ever another.
+  /// As enter_leaf, for triangles without boxes: returns false if the line crosses none. Prefetches
+  /// the vertices of the first triangle only, since there are hardly ever more.
   [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
     const LineTriangles line = line_.near(mesh, node_.number);
     asked_ = {node_.number, node_.entry, triangles_of(mesh, node_.number) & line.may, line.sure};
@@ -290,7 +294,7 @@ class RayWalk {
     __builtin_prefetch(mesh.triangle + node_.number * kMeshFanout);
     return asked_.triangles != 0;
   }
-  /// False if the visitor has seen enough.
+  /// Returns false if the visitor ends the ray.
   [[gnu::always_inline]] bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
     return cross_triangles(mesh, asked_, visitor);
   }
@@ -298,13 +302,13 @@ class RayWalk {
  private:
   static constexpr float kLeastTau = 0x1p-100F;
   static constexpr float kMostTau = 1e38F;
-  /// The key of a node that does not wait: more than kMostTau.
+  /// The key of a node that is not open; more than kMostTau.
   static constexpr float kNobody = __FLT_MAX__;
-  /// Keys tell one node of so many.
+  /// Keys distinguish this many nodes.
   static constexpr std::uint32_t kNumbers = 2 * kLanes;
 
-  /// A leaf that was gone to: when it is entered, and which of its triangles may be met, or are for
-  /// sure.
+  /// A leaf to be tested: the time at which the ray enters it, the triangles that it may cross, and
+  /// a subset that it certainly crosses.
   struct Asked {
     std::uint32_t leaf = 0;
     float entry = 0.0F;
@@ -343,7 +347,7 @@ class RayWalk {
     last_key_ =
         __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, last_) | (kNumbers - 1U));
   }
-  /// Nodes that begin behind it wait no longer.
+  /// Lowers the limit; closes open nodes beyond it.
   void set_limit(double limit) {
     set_last(limit);
     for (std::uint32_t rest = open_; rest != 0; rest &= rest - 1) {
@@ -351,12 +355,13 @@ class RayWalk {
       open_ ^= (is_open(Floats::load(key_[at]), gone_to_[at]) ^ 1U) << at;
     }
   }
-  /// 1 if some nodes with these keys come after that one and before the end, else 0.
+  /// Returns 1 if nodes with these keys come after `gone_to` and before the limit, else 0.
   [[nodiscard, gnu::always_inline]] std::uint32_t is_open(const Floats& key, float gone_to) const {
     return bits((key > Floats(gone_to)) & (key <= Floats(last_key_))) != 0 ? 1U : 0U;
   }
 
-  /// Which of sixteen boxes, in columns from `bounds` on, the ray meets, and when it enters them.
+  /// The boxes, of sixteen in columns at `bounds`, that the ray intersects, and when it enters
+  /// them.
   [[gnu::always_inline]] LaneMask<float> enter(const std::uint16_t* bounds, Floats& in) const {
     in = Floats(kLeastTau);
     Floats out(last_);
@@ -370,8 +375,8 @@ class RayWalk {
     return in <= out;
   }
 
-  /// Which of sixteen nodes the ray meets, and their keys, which tell them by `number` and those
-  /// after it.
+  /// Finds which of sixteen nodes the ray intersects, and their keys, whose low bits number the
+  /// nodes from `number` on.
   [[gnu::always_inline]] Mask16 find(const MeshView& mesh, std::uint32_t level,
                                      std::uint32_t first_node, std::uint32_t number, Floats& key) {
     alignas(64) static constexpr std::uint32_t kEach[kNumbers] = {
@@ -391,7 +396,8 @@ class RayWalk {
     }
     return hits;
   }
-  /// Lanes that are not there do not wait, if boxes are grown so much that the ray meets theirs.
+  /// Clears the keys of lanes beyond the level's count; if boxes are grown by a large amount, the
+  /// ray can intersect the padding.
   [[gnu::always_inline]] static Mask16 leave_out(Mask16 there, Mask16 hits, Floats& key) {
     if ((hits & ~there) == 0) [[likely]]
       return there;
@@ -401,8 +407,8 @@ class RayWalk {
     key = Floats::load(one);
     return there;
   }
-  /// Lets nodes wait at a place, but for those that come no later than `gone_to`: `rest` are left.
-  /// Keys tell their numbers from `first_node` on.
+  /// Stores a block of open nodes at `at`. Nodes with keys up to `gone_to` have been visited;
+  /// `rest` is the mask of the others. Node numbers in keys count from `first_node`.
   [[gnu::always_inline]] void put(std::uint32_t at, std::uint32_t level, std::uint32_t first_node,
                                   const Floats& key, Mask16 rest, float gone_to) {
     key.store(key_[at]);
@@ -411,8 +417,8 @@ class RayWalk {
     first_node_[at] = first_node;
     open_ |= (rest != 0 ? 1U : 0U) << at;
   }
-  /// Lets the nodes that the ray meets on a level of two blocks wait, of which the nearer one comes
-  /// last, and turns to the nearest.
+  /// Opens a level of two blocks: stores the nodes that the ray intersects, the nearer block last,
+  /// and returns the nearest node.
   [[gnu::always_inline]] RayNode start_between_two(const MeshView& mesh, std::uint32_t level) {
     Floats key[2];
     const Mask16 hits[2] = {find(mesh, level, 0, 0, key[0]),
@@ -428,13 +434,14 @@ class RayWalk {
     }
     return node_of(nearest, level, 0);
   }
-  /// Lets those of sixteen nodes wait that the ray meets, but for the nearest of them.
+  /// Opens sixteen nodes: returns the nearest one that the ray intersects and stores the others
+  /// that it intersects.
   [[gnu::always_inline]] RayNode meet(const MeshView& mesh, std::uint32_t level,
                                       std::uint32_t first_node) {
     Floats key;
     const Mask16 hits = find(mesh, level, first_node, 0, key);
     if (hits == 0) return RayNode::none();
-    // When it is entered is asked only where triangles have boxes.
+    // The time of entry is used only if triangles have boxes.
     if (mesh.box == nullptr && (hits & (hits - 1)) == 0) {
       return {level, first_node + first(hits), 0.0F};
     }
@@ -443,14 +450,14 @@ class RayWalk {
         __builtin_bit_cast(float, nearest));
     return node_of(nearest, level, first_node);
   }
-  /// The node with that key.
+  /// The node with this key.
   [[gnu::always_inline]] static RayNode node_of(std::uint32_t key, std::uint32_t level,
                                                 std::uint32_t first_node) {
     const std::uint32_t number = key % kNumbers;
     return {level, first_node + number, __builtin_bit_cast(float, key - number)};
   }
 
-  // Compilers leave out calls of functions that only ask for memory, and these with them.
+  // Compilers delete calls of functions that only prefetch; always_inline prevents this.
   [[gnu::always_inline]] static void fetch_corners(const MeshView& mesh, std::uint32_t leaf) {
     if (mesh.corner[0] == nullptr) {
       __builtin_prefetch(mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout);
@@ -473,7 +480,7 @@ class RayWalk {
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(box + 32 * k);
   }
 
-  /// Those that a leaf has.
+  /// The lanes of the triangles that a leaf has.
   [[nodiscard, gnu::always_inline]] static Mask16 triangles_of(const MeshView& mesh,
                                                                std::uint32_t leaf) {
     const std::uint32_t first_slot = leaf * kMeshFanout;
@@ -481,8 +488,7 @@ class RayWalk {
       return lanes_below(kLanes);
     return present(mesh.triangle_count, first_slot);
   }
-  /// Finds out which triangles of a leaf are to be looked at: those whose boxes the ray meets where
-  /// they have some.
+  /// Finds the triangles of a leaf to test; if triangles have boxes, tests these first.
   [[gnu::always_inline]] Asked ask(const MeshView& mesh, const RayNode& leaf) const {
     Asked asked{leaf.number, leaf.entry, triangles_of(mesh, leaf.number), 0};
     if (mesh.box == nullptr) return asked;
@@ -493,8 +499,8 @@ class RayWalk {
     return asked;
   }
 
-  /// Asks for vertices of a leaf that lists them, before it is known which of its triangles are to
-  /// be looked at: they are neighbours.
+  /// Prefetches vertices of a leaf that lists them, before it is determined which triangles are
+  /// tested: their vertices are close together in memory.
   [[gnu::always_inline]] static void fetch_some_vertices(const MeshView& mesh, std::uint32_t leaf) {
     constexpr std::uint32_t kApart = 2;
     const std::uint32_t* const vertex = mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout;
@@ -504,7 +510,7 @@ class RayWalk {
     __builtin_prefetch(mesh.triangle + std::size_t{leaf} * kMeshFanout);
   }
 
-  /// Asks for their vertices, once their corners are there.
+  /// Prefetches the vertices of a triangle whose corner indices are in cache.
   [[gnu::always_inline]] static void fetch_vertices(const MeshView& mesh, std::uint32_t slot) {
     for (std::size_t k = 0; k < 3; ++k) {
       __builtin_prefetch(mesh.vertex + std::size_t{3} * corner_of(mesh, k, slot));
@@ -535,36 +541,36 @@ class RayWalk {
     }
     return true;
   }
-  /// Its place in columns.
+  /// The ray's index in the columns.
   [[nodiscard, gnu::always_inline]] std::uint32_t place() const { return Alone ? 0 : ray_; }
 
   const SurfaceRayColumns<kRoom>* own_;
   const ReadyRays<kRoom>* rays_;
-  /// Not set where triangles have boxes.
+  /// Not set if triangles have boxes.
   RayLine line_;
   std::uint32_t ray_;
-  /// Where the bounds of sixteen nodes lie that it passes as it enters and leaves them.
+  /// Offsets of the bounds of sixteen nodes that the ray passes as it enters and as it leaves.
   std::uint32_t near_bound_[3];
   std::uint32_t far_bound_[3];
   double limit_;
   float last_;
-  /// No key of a node that begins by then is larger.
+  /// No key of a node that is entered by then is larger.
   float last_key_;
-  /// Of rays that go side by side: what it goes to next, and what it asked of the last leaf.
+  /// For rays side by side: the next node, and the last leaf to be tested.
   RayNode node_;
   Asked asked_;
-  /// Nodes that wait, in blocks of sixteen or fewer: one for each level but the top one, of which
-  /// there may be two, the lowest level last. A bit is set of each of which some are left.
+  /// Open nodes, in blocks of up to sixteen: one block per level except the top one, which may have
+  /// two; the lowest level last. Bit i of `open_` is set if nodes of block i are left.
   std::uint32_t open_;
   std::uint32_t level_[kMaxMeshLevels];
   std::uint32_t first_node_[kMaxMeshLevels];
   float gone_to_[kMaxMeshLevels];
-  /// When each is entered, as bits of a positive float that are ordered as it is, but for the last
-  /// five, which tell which it is; kNobody of those that the ray does not meet.
+  /// Keys: the bits of the positive float at which a node is entered, which sort like the float,
+  /// with the last five bits replaced by the node's number; kNobody for nodes that the ray misses.
   alignas(64) float key_[kMaxMeshLevels][kLanes];
 };
 
-/// Rays that have not begun their way, in their order.
+/// Rays that have not started, in order.
 class WaitingRays {
  public:
   WaitingRays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
@@ -577,7 +583,7 @@ class WaitingRays {
     if (count < kRaysAtOnce) come_ &= (std::uint64_t{1} << count) - 1U;
   }
 
-  /// Lets the next one start that does not pass the mesh by; false if there is none.
+  /// Starts the next ray that does not miss the mesh; returns false if there is none.
   [[gnu::always_inline]] bool start(RayWalk<false>& walk, RayStep& step) {
     if (come_ == 0) return false;
     const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
@@ -594,8 +600,8 @@ class WaitingRays {
   ReadyRays<kRaysAtOnce> ready_;
 };
 
-/// Rays that go through a mesh side by side, so that none waits for memory. In each round all take
-/// the same kind of step one after the other, so that the processor foresees which.
+/// Traverses rays side by side, so that prefetches have time to complete. In each round, all rays
+/// that need the same kind of step take it one after another, which makes branches predictable.
 class RaysSideBySide {
  public:
   RaysSideBySide(const MeshView& mesh, const RaySlotVisitor& visitor, WaitingRays& waiting)
@@ -604,7 +610,7 @@ class RaysSideBySide {
   void run() {
     for (Walk& walk : walk_) begin(walk);
     while (going_ != 0) {
-      // Asked for before other rays take their steps.
+      // Prefetch before other rays take their steps.
       for (Walk* const walk : steps_[kEnterLeaf]) walk->fetch_leaf(mesh_);
       each(kCrossTriangles, [&](Walk& walk) {
         put(walk, walk.cross_triangles(mesh_, visitor_) ? walk.next_step() : kEnd);
@@ -626,7 +632,7 @@ class RaysSideBySide {
  private:
   static constexpr std::uint32_t kWalks = 32;
   using Walk = RayWalk<false>;
-  /// Rays that wait for the same kind of step.
+  /// Rays whose next step is of one kind.
   struct Waiting {
     std::uint32_t count = 0;
     Walk* walk[kWalks] = {};
@@ -635,7 +641,7 @@ class RaysSideBySide {
     [[nodiscard]] Walk* const* end() const { return walk + count; }
   };
 
-  /// What triangles have boxes are known by is not yet at hand.
+  /// If triangles have boxes, their corner indices are not in cache yet.
   [[gnu::always_inline]] void enter_leaves() {
     if (mesh_.box != nullptr) {
       return each(kEnterLeaf, [&](Walk& walk) {
@@ -646,7 +652,7 @@ class RaysSideBySide {
       put(walk, walk.find_triangles(mesh_) ? kCrossTriangles : walk.next_step());
     });
   }
-  /// Lets the next ray go whose turn it is, if there is one.
+  /// Starts the next ray, if there is one.
   void begin(Walk& walk) {
     RayStep step;
     if (!waiting_.start(walk, step)) return;
@@ -657,7 +663,7 @@ class RaysSideBySide {
     Waiting& waiting = steps_[step];
     waiting.walk[waiting.count++] = &walk;
   }
-  /// Takes all that wait for this kind of step now.
+  /// Processes all rays whose next step is of this kind.
   template <typename Step>
   [[gnu::always_inline]] void each(RayStep kind, Step&& step) {
     const Waiting now = steps_[kind];
@@ -673,13 +679,13 @@ class RaysSideBySide {
   Walk walk_[kWalks];
 };
 
-/// Shows the triangles that each ray may meet, its nearest leaf first.
+/// Passes to the visitor the triangles that each ray may cross, nearest leaf first.
 inline void show_on_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                          std::uint32_t count, const RaySlotVisitor& visitor) {
   WaitingRays waiting(mesh, rays, limits, count);
   RaysSideBySide(mesh, visitor, waiting).run();
 }
-/// The same of one ray.
+/// As above, for one ray.
 inline void show_on_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
                         const RaySlotVisitor& visitor) {
   if (!(limit >= 0.0)) return;

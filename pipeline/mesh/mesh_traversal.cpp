@@ -1,3 +1,6 @@
+// Prepares the traversals of a mesh's tree: converts boxes, balls, hulls and placements into jobs
+// with bounds on rounding, and calls the kernels. mesh_below is scalar.
+
 #include "pipeline/mesh/mesh_traversal.h"
 
 #include <winnow/core/rounding.h>
@@ -18,17 +21,17 @@ namespace {
 using mid::kInfinity;
 // Beyond this, sums of products of coordinates may leave the range of double.
 constexpr double kLargestCoordinate = 1e150;
-// Slack beyond this, in the scale of a, would leave the range of float.
+// Beyond this, slack in the scale of a would leave the range of float.
 constexpr double kLargestSlack = 1e30;
 
-/// The largest coordinate of the decoded nodes.
+/// The largest absolute coordinate of the decoded nodes on an axis.
 double largest(const MeshView& mesh, std::size_t axis) {
   const double low = static_cast<double>(mesh.origin[axis]);
   return std::max(std::abs(low), std::abs(low + static_cast<double>(kMaxNodeBound) *
                                                     static_cast<double>(mesh.step[axis])));
 }
 
-/// 1 / the power of two next to the largest coordinate, in the range of normal floats.
+/// 2^-e for the exponent e of the largest coordinate, clamped to normal floats.
 float scale_of(const MeshView& mesh) {
   const double size = std::max({largest(mesh, 0), largest(mesh, 1), largest(mesh, 2)});
   const int exponent = size > 0.0 ? std::ilogb(size) : 0;
@@ -42,7 +45,7 @@ MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& 
   for (std::size_t k = 0; k < 3; ++k) {
     double reach = std::abs(b_in_a.offset[k]) + std::abs(margin[k]);
     for (std::size_t i = 0; i < 3; ++i) reach += std::abs(b_in_a.matrix[k][i]) * largest(b, i);
-    // Less than ten roundings of sums and products of what `reach` adds up.
+    // Bounds fewer than ten roundings of sums and products of the terms in `reach`.
     job.slack[k] = margin[k] + reach * 0x1p-48;
     const double scaled = job.slack[k] * static_cast<double>(job.scale);
     if (!(reach < kLargestCoordinate && scaled < kLargestSlack)) {
@@ -50,7 +53,7 @@ MeshPairJob pair_job(const MeshView& a, const MeshView& b, const MeshPlacement& 
       job.scaled_slack[k] = std::numeric_limits<float>::infinity();
       continue;
     }
-    // A slack that underflows is as good as one of 2^-100 of a's size.
+    // Adding 2^-100 of a's size covers a slack that underflows.
     job.scaled_slack[k] = round_up(scaled + 0x1p-100);
     std::copy_n(b_in_a.matrix[k], 3, job.matrix[k]);
     job.offset[k] = b_in_a.offset[k];
@@ -69,7 +72,7 @@ MeshBoxJob box_job(const MeshView& mesh, const double min[3], const double max[3
   return job;
 }
 
-/// False for balls so large, so small or so far away that floats tell nothing about them.
+/// Returns false for balls so large, so small or so far away that floats cannot exclude triangles.
 bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
   constexpr double kFar = 1e30;
   if (!(radius >= 1e-30 && radius < kFar)) return false;
@@ -83,11 +86,11 @@ bool set_ball(const double center[3], double radius, MeshBallJob& ball) {
   return true;
 }
 
-/// False for hulls for which doubles, or the floats of kernels, leave little of where triangles
-/// are.
+/// Returns false for hulls for which the precision of doubles, or of the kernels' floats, is too
+/// low to separate triangles.
 bool set_hull(const MeshHull& hull, const double center[3], MeshHullJob& job) {
   constexpr double kFar = 1e30;
-  // Times the radius.
+  // In units of the radius.
   constexpr double kFarFromOrigin = 1e3;
   constexpr double kFarFromMesh = 1e7;
   const HullShape& shape = hull.shape;
@@ -121,14 +124,14 @@ bool set_hull(const MeshHull& hull, const double center[3], MeshHullJob& job) {
   return true;
 }
 
-/// Whether nodes reach below a plane.
+/// Tests whether nodes reach below a plane.
 struct HalfSpaceTest {
   const MeshView& mesh;
   const double* normal;
   double offset;
   double noise;
 
-  /// By the least of normal . x over a node's box.
+  /// Compares the minimum of normal . x over a node's box.
   [[nodiscard]] bool reaches(std::uint32_t level, std::uint32_t node) const noexcept {
     double least = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -168,7 +171,7 @@ void mesh_below(const MeshView& mesh, const double normal[3], double offset,
     noise += std::abs(normal[axis]) * (std::abs(static_cast<double>(mesh.origin[axis])) + step);
   }
   const HalfSpaceTest test{mesh, normal, offset, mid::kSlack * noise};
-  // Children of a node are taken from the last to the first, so that slots come out ascending.
+  // Children are pushed last to first, so that slots come out ascending.
   std::uint32_t level_of[kMaxMeshLevels * kMeshFanout];
   std::uint32_t stack[kMaxMeshLevels * kMeshFanout];
   std::uint32_t depth = 0;

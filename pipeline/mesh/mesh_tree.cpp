@@ -1,3 +1,6 @@
+// Builds the 16-ary tree of a mesh: orders triangles by median cuts, plans the levels, and
+// quantises bounds from leaves to the top. triangle_mesh.cpp calls this to build and to refit.
+
 #include "pipeline/mesh/mesh_tree.h"
 
 #include "core/memory/bounds_pool.h"
@@ -15,7 +18,7 @@ namespace {
 constexpr std::size_t kLeavesPerStretch = 512;
 constexpr std::size_t kTrianglesPerStretch = 8192;
 
-/// The box of a triangle, into row i.
+/// Writes the box of triangle i to row i.
 void box_triangle(BoundsPool& pool, const float* vertex, const std::uint32_t* const corner[3],
                   std::size_t i) {
   const float* const x = vertex + std::size_t{3} * corner[0][i];
@@ -30,19 +33,19 @@ void box_triangle(BoundsPool& pool, const float* vertex, const std::uint32_t* co
   }
 }
 
-/// A bound of a node, to be written: `words` is what the view points into.
+/// A reference to a bound of a node; `words` is the array that the view points into.
 std::uint16_t& written_bound(const MeshView& view, std::uint16_t* words, std::uint32_t level,
                              std::uint32_t node, std::size_t bound) {
   return words[view.node[level] - words + static_cast<std::ptrdiff_t>(place_of_bound(node, bound))];
 }
 
-/// Triangles of which few share a vertex lie where their vertices do, each somewhere else: a look
-/// at the boxes of sixteen costs a fraction of one at their corners.
+/// Decides whether each triangle gets its own box. If few triangles share a vertex, their vertices
+/// are scattered in memory, and testing sixteen boxes costs a fraction of loading the corners.
 bool has_boxes(const MeshView& view) {
   return view.vertex_count > view.triangle_count;
 }
 
-/// Calls look(at) for each place in a list of those of its vertices that a leaf has.
+/// Calls look(at) for each index into the vertex list of a leaf.
 template <typename Look>
 void each_listed(const MeshView& view, std::size_t leaf, Look&& look) {
   const auto each = [&](std::size_t block, std::size_t blocks) {
@@ -54,7 +57,7 @@ void each_listed(const MeshView& view, std::size_t leaf, Look&& look) {
        view.leaf_more[leaf + 1] - view.leaf_more[leaf]);
 }
 
-/// Calls look(number) for the vertices of a leaf: for shared ones once, where leaves list theirs.
+/// Calls look(number) for the vertices of a leaf; for shared vertices once, if leaves list theirs.
 template <typename Look>
 void each_vertex(const MeshView& view, std::size_t leaf, Look&& look) {
   if (view.corner[0] == nullptr) {
@@ -94,7 +97,7 @@ FloatBox box_of_slot(const MeshView& view, std::size_t slot) {
   return box;
 }
 
-/// Maps the mesh's box to 0..65534: one number is left for rounding up.
+/// Maps the mesh's box to 0..65534; the last number is left for rounding up.
 void choose_scale(MeshView& view, const float low[3], const float high[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double extent = static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
@@ -132,8 +135,8 @@ double decoded(const MeshView& view, std::size_t axis, std::uint32_t q) {
          static_cast<double>(q) * static_cast<double>(view.step[axis]);
 }
 
-/// The quotient may be rounded to a whole number; what it stands for is compared, so that the
-/// decoded bound lies outside or on x for certain.
+/// The quotient may be rounded across an integer, so the decoded value is compared: the decoded
+/// bound is certainly outside or on x.
 std::uint16_t quantised_low(const MeshView& view, std::size_t axis, double x) {
   const double t = mesh_units(view, axis, x);
   auto q = static_cast<std::uint32_t>(t);
@@ -147,7 +150,7 @@ std::uint16_t quantised_high(const MeshView& view, std::size_t axis, double x) {
   return static_cast<std::uint16_t>(q);
 }
 
-/// Writes the bounds of a box to where those of number `i` lie in a level.
+/// Writes the bounds of a box as number `i` of a level.
 void write_box(const MeshView& view, const FloatBox& box, std::uint16_t* level, std::size_t i) {
   const auto place = static_cast<std::uint32_t>(i);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -158,7 +161,7 @@ void write_box(const MeshView& view, const FloatBox& box, std::uint16_t* level, 
   }
 }
 
-/// The bounds of number i of a level, which are those of its `children` in the level below.
+/// Sets the bounds of node i of a level to the union of its `children` in the level below.
 void join_boxes(const std::uint16_t* below, std::uint32_t children, std::uint16_t* level,
                 std::uint32_t i) {
   const std::uint32_t first = i * kMeshFanout;
@@ -172,7 +175,7 @@ void join_boxes(const std::uint16_t* below, std::uint32_t children, std::uint16_
   }
 }
 
-/// Where the vertices of a leaf, whose box is written, are in it.
+/// Writes the quantised positions of a leaf's vertices in the leaf's box, which is already written.
 void write_points(const MeshView& view, std::uint32_t leaf, std::uint32_t* points) {
   double low[3];
   double share[3];
@@ -194,7 +197,7 @@ void write_points(const MeshView& view, std::uint32_t leaf, std::uint32_t* point
   });
 }
 
-/// Leaves [first, end), and their triangles where these have boxes.
+/// Fits leaves [first, end), and the boxes of their triangles if there are any.
 void fit_leaves(const MeshView& view, std::uint16_t* words, std::uint32_t* points,
                 std::size_t first, std::size_t end) {
   std::uint16_t* const leaves = words + (view.node[0] - words);
@@ -213,7 +216,7 @@ void fit_leaves(const MeshView& view, std::uint16_t* words, std::uint32_t* point
   }
 }
 
-/// Level `level` from the one below.
+/// Fits level `level` from the level below.
 void fit_upper_level(const MeshView& view, std::uint32_t level, std::uint16_t* words) {
   const std::uint32_t below = view.count[level - 1];
   for (std::uint32_t i = 0; i < view.count[level]; ++i) {
@@ -236,10 +239,8 @@ void pad_levels(const MeshView& view, std::uint16_t* words) {
 
 }  // namespace
 
-// The order of a LinearBvh: leaves and nodes are the sets that median cuts leave. By size and along
-// Hilbert's curve a mesh of 200,000 triangles is built with a sixth fewer instructions, but
-// everything that is asked of it takes 1.1 to 2.5 times as long, and 3 to 5 times of a soup of
-// triangles of all sizes.
+// Median cuts, as in LinearBvh, rather than a sort along a Hilbert curve: meshes are built rarely
+// and queried often, so that the quality of the tree counts more than the time to build it.
 bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
                      Column<std::uint32_t>& order, const Execution& execution) {
   const std::size_t count = order.size();

@@ -9,32 +9,32 @@
 
 namespace winnow {
 
-/// How many there are with the last leaf, or the last sixteen nodes, filled up.
+/// Rounds a count up to a multiple of 16: full leaves, or full blocks of nodes.
 [[nodiscard]] constexpr std::size_t whole_leaves(std::size_t count) noexcept {
   return (count + kMeshFanout - 1) / kMeshFanout * kMeshFanout;
 }
 
-/// x in the units of the nodes on an axis. Grows with x, rounding included, so that of two values
-/// neither passes the other: tests made in these units miss nothing.
+/// Converts x to node units on an axis. Monotonic, rounding included, so that comparisons in these
+/// units miss nothing.
 [[nodiscard]] inline double mesh_units(const MeshView& view, std::size_t axis, double x) noexcept {
   return (x - static_cast<double>(view.origin[axis])) / static_cast<double>(view.step[axis]);
 }
 
-/// Lays out the levels above `view.triangle_count` triangles: sets levels and counts, and gives
-/// the number of 16-bit words they take.
+/// Plans the levels above `view.triangle_count` triangles: sets levels and counts, and returns the
+/// number of 16-bit words they need.
 [[nodiscard]] std::size_t plan_mesh_levels(MeshView& view) noexcept;
 
-/// Points the levels of a planned view at `words`.
+/// Points the levels of a planned view into `words`.
 void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept;
 
-/// Fills `words`, to which the levels of `view` point, with the bounds of its triangles, and
-/// `points`, which are its leaf_point; sets origin and step, and gives the box of all triangles.
-/// O(n).
+/// Fits the tree to the vertices: fills `words`, into which the levels of `view` point, with the
+/// bounds of its triangles, and `points`, which is its leaf_point (may be null). Sets origin and
+/// step, and writes the box of all triangles to `low` and `high`. O(n).
 void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points, float low[3],
                      float high[3], const Execution& execution) noexcept;
 
-/// The order of triangles by which near ones share leaves: slot i is triangle order[i]. False if
-/// memory is refused. Corners are those of the caller's triangles.
+/// Computes the order in which nearby triangles share leaves: slot i is triangle order[i]. `corner`
+/// is indexed by the caller's triangle numbers. Returns false if memory is refused.
 [[nodiscard]] bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
                                    Column<std::uint32_t>& order, const Execution& execution);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Plain structs: kernel files include this.
+// The data of a TriangleMesh as kernels read it. Plain structs, because kernel files include this.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,77 +13,77 @@ class TriangleMesh;
 inline constexpr std::uint32_t kMeshFanout = 16;
 /// Levels of a 16-ary tree over at most 2^28 triangles.
 inline constexpr std::uint32_t kMaxMeshLevels = 7;
-/// Where `MeshView::triangle` keeps which edges are active: bit 28 + k for edge k. Below are the
-/// caller's numbers of triangles.
+/// `MeshView::triangle` has flags of active edges in its top bits: bit 28 + k for edge k. The bits
+/// below are the caller's triangle number.
 inline constexpr std::uint32_t kActiveEdgeShift = 28;
 inline constexpr std::uint32_t kMaxTriangles = 1U << kActiveEdgeShift;
 inline constexpr std::uint32_t kTriangleNumberMask = kMaxTriangles - 1U;
-/// The largest bound of a node.
+/// The largest quantised bound of a node.
 inline constexpr std::uint32_t kMaxNodeBound = 65535;
-/// The largest coordinate of a vertex in the box of its leaf, of which each takes so many bits.
+/// Bits of a quantised vertex coordinate in the box of its leaf, and its largest value.
 inline constexpr std::uint32_t kLeafPointBits = 10;
 inline constexpr std::uint32_t kMaxLeafPoint = (1U << kLeafPointBits) - 1U;
 
-/// What every ray needs of a mesh.
+/// Constants of a mesh that every ray needs.
 struct MeshSpan {
   double low[3];
   double step[3];
   double units[3];
-  /// Of the box of all nodes, with a step to spare on each side.
+  /// The box of all nodes, grown by one step on each side.
   double least[3];
   double most[3];
-  /// Units, and steps times the pace, once more: infinite units where the mesh is so thin that
-  /// these may be too small for float. The last of four is for loads of them all.
+  /// `units`, and `step * pace`, as floats. `float_units` is infinite if the mesh is so thin that
+  /// `float_inverse` may be too small for float. The fourth element pads vector loads.
   float float_units[4];
   float float_inverse[4];
-  /// The longest side of that box, and tau for each t.
+  /// The longest side of that box, and its inverse: tau per unit of t.
   double extent;
   double pace;
-  /// Of units on all axes.
+  /// Product of `units` over the axes.
   double units_volume;
 };
 
-/// A triangle mesh as its traversals read it. A slot is a place in the order of the tree: leaf i
-/// holds slots [16 i, 16 i + 16). Columns of slots are padded to a multiple of 16 by copies of the
-/// last one, levels by empty boxes.
+/// A triangle mesh as its traversals read it. A slot is a position in the order of the tree: leaf i
+/// has slots [16 i, 16 i + 16). Columns indexed by slot are padded to a multiple of 16 with copies
+/// of the last slot, levels with empty boxes.
 struct MeshView {
-  /// x, y and z of every vertex, one vertex after another, and one number more: vertices may be
-  /// read four numbers at a time.
+  /// x, y and z of each vertex, vertex by vertex, plus one extra float, because vertices may be
+  /// read four floats at a time.
   const float* vertex = nullptr;
   std::uint32_t vertex_count = 0;
-  /// Numbers of the corners, by slot; null where leaves list their vertices.
+  /// Vertex numbers of the corners, by slot; null if leaves list their vertices.
   const std::uint32_t* corner[3] = {};
-  /// The vertices of leaf i, each once, from 16 i on; if there are more than sixteen, the others
-  /// from 16 (leaves + leaf_more[i]) to 16 (leaves + leaf_more[i + 1]); null if no leaf has. Each
-  /// sixteen are filled up by the last.
+  /// The distinct vertices of leaf i, from 16 i on. If there are more than sixteen, the others are
+  /// from 16 (leaves + leaf_more[i]) to 16 (leaves + leaf_more[i + 1]); `leaf_more` is null if no
+  /// leaf has more. Each block of sixteen is padded with its last vertex.
   const std::uint32_t* leaf_vertex = nullptr;
   const std::uint32_t* leaf_more = nullptr;
-  /// Where each of them is in the box of its leaf, as nodes have it: at 0 on its lower bounds, at
-  /// kMaxLeafPoint on its upper ones, rounded to the nearest; x in the lowest bits. Null where
+  /// Quantised position of each listed vertex in the box of its leaf: 0 at the lower bounds of the
+  /// node, kMaxLeafPoint at the upper ones, rounded to nearest; x in the lowest bits. Null if
   /// triangles have boxes.
   const std::uint32_t* leaf_point = nullptr;
-  /// Which of them corner k of slot 16 i + l is, at 48 i + 16 k + l.
+  /// Index into the leaf's list of corner k of slot 16 i + l, at 48 i + 16 k + l.
   const std::uint8_t* leaf_place = nullptr;
-  /// The caller's number of the triangle in the low 28 bits, and its active edges.
+  /// The caller's triangle number in the low 28 bits, and the active edges.
   const std::uint32_t* triangle = nullptr;
   std::uint32_t triangle_count = 0;
-  /// A quantised bound q stands for origin + q * step in double arithmetic; lower bounds are
-  /// rounded down and upper ones up, so that the box contains what is below it.
+  /// A quantised bound q is decoded as origin + q * step in double. Lower bounds are rounded down
+  /// and upper bounds up, so that a box contains its content.
   float origin[3] = {};
   float step[3] = {};
   MeshSpan span = {};
-  /// Node i of level 0 bounds leaf i, node i of level l + 1 nodes [16 i, 16 i + 16) of level l. The
-  /// top level has at most 16 nodes. Six columns of sixteen nodes, lower bounds before upper ones,
-  /// lie behind each other, then those of the next sixteen.
+  /// Node i of level 0 bounds leaf i, node i of level l + 1 bounds nodes [16 i, 16 i + 16) of level
+  /// l. The top level has at most 16 nodes. Each block of sixteen nodes stores six columns, lower
+  /// bounds before upper bounds.
   std::uint32_t levels = 0;
   std::uint32_t count[kMaxMeshLevels] = {};
   const std::uint16_t* node[kMaxMeshLevels] = {};
-  /// The same of every slot, in the place of nodes; null where triangles have no boxes.
+  /// Boxes of all slots in the same layout; null if triangles have no boxes.
   const std::uint16_t* box = nullptr;
 };
 
-/// Where column `bound` of a node lies in its level; of the first of sixteen those of the others
-/// follow.
+/// Index of bound `bound` of a node in its level. The bounds of the other nodes of its block follow
+/// it.
 [[nodiscard]] constexpr std::size_t place_of_bound(std::uint32_t node, std::size_t bound) {
   return std::size_t{6} * (node / kMeshFanout * kMeshFanout) + bound * kMeshFanout +
          node % kMeshFanout;
@@ -94,14 +94,14 @@ struct MeshView {
   return mesh.node[level][place_of_bound(node, bound)];
 }
 
-/// The places of the corners k of a leaf.
+/// The list indices of corners k of a leaf.
 [[nodiscard, gnu::always_inline]] inline const std::uint8_t* places_of(const MeshView& mesh,
                                                                        std::size_t leaf,
                                                                        std::size_t k) {
   return mesh.leaf_place + kMeshFanout * (3 * leaf + k);
 }
 
-/// The number of corner k of a slot.
+/// The vertex number of corner k of a slot.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t corner_of(const MeshView& mesh,
                                                                  std::size_t k, std::size_t slot) {
   if (mesh.corner[0] != nullptr) return mesh.corner[k][slot];
@@ -117,7 +117,7 @@ struct MeshView {
   return mesh.vertex[std::size_t{3} * vertex + axis];
 }
 
-/// The corners of the triangle of a slot.
+/// Reads the corners of the triangle of a slot.
 inline void put_corners(const MeshView& mesh, std::size_t slot, double (&corner)[3][3]) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t number = corner_of(mesh, k, slot);
@@ -127,17 +127,17 @@ inline void put_corners(const MeshView& mesh, std::size_t slot, double (&corner)
   }
 }
 
-/// That of a mesh with nothing built has no triangles.
+/// The view of a mesh; it has no triangles if nothing is built.
 [[nodiscard]] const MeshView& view_of(const TriangleMesh& mesh) noexcept;
 
-/// x -> matrix x + offset: from the frame of one mesh to that of another, scales included.
+/// x -> matrix x + offset: from the frame of one mesh to the frame of another, scales included.
 struct MeshPlacement {
   double matrix[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   double offset[3] = {0, 0, 0};
 };
 
-/// Where a traversal writes the slots that it finds. `size` counts on where there is no room: make
-/// room for that many and ask again.
+/// Receives the slots that a traversal finds. `size` continues to count when `slot` is full; the
+/// caller then enlarges it to that size and repeats the call.
 struct SlotSink {
   std::uint32_t* slot = nullptr;
   std::uint64_t capacity = 0;
@@ -149,10 +149,10 @@ inline void put_slot(SlotSink& out, std::uint32_t slot) {
   ++out.size;
 }
 
-/// The same for pairs of slots; or, with `take`, for any number of them in one traversal: it is
-/// called where there is no room for 16 more, uses up what is there and sets size to 0. The
-/// capacity is 16 at least then, and what is left when it ends is for the caller to use up. Once
-/// `is_done` is set the traversal ends soon.
+/// As SlotSink, for pairs of slots. If `take` is set, one traversal can produce any number of
+/// pairs: `take` is called if fewer than 16 places are free, consumes the pairs and sets `size` to
+/// 0. The capacity must then be at least 16, and the caller consumes the pairs left at the end.
+/// Setting `is_done` ends the traversal soon.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;
@@ -163,18 +163,18 @@ struct SlotPairSink {
   bool is_done = false;
 };
 
-/// Is shown pairs of slots, roughly the nearest first; gives back the new limit.
+/// Receives pairs of slots, roughly nearest first; `visit` returns the new limit.
 struct SlotPairVisitor {
   double (*visit)(void* context, std::uint32_t a, std::uint32_t b, double limit) = nullptr;
   void* context = nullptr;
-  /// The direction, a unit vector in the frame of a, from a to b along which the nearest pair so
-  /// far is apart; zero if there is none. Read again after each visit.
+  /// Unit vector in the frame of a, from a to b, that separates the nearest pair found up to now;
+  /// zero if there is none. Read again after each visit.
   const float* direction = nullptr;
-  /// Whether some pairs do not count, so that the corners of any two say nothing of the limit.
+  /// Whether some pairs are ignored; then the distance of two corners does not bound the limit.
   bool leaves_out = false;
 };
 
-/// Is shown the slots that a traversal in order finds, 16 or fewer at a time; gives back the new
+/// Receives the slots found by an ordered traversal, up to 16 at a time; `visit` returns the new
 /// limit.
 struct SlotVisitor {
   double (*visit)(void* context, const std::uint32_t* slots, std::uint32_t count,

@@ -1,6 +1,7 @@
 #pragma once
 
-// Plain structs: kernel files include this.
+// Rays in the frame of a mesh or height field, and ray-triangle hits. Plain structs, because kernel
+// files include this.
 
 #include <winnow/pipeline/surface_frame.h>
 
@@ -9,41 +10,42 @@
 
 namespace winnow {
 
-/// Rays that are taken through a surface together.
+/// Rays that are traversed together.
 inline constexpr std::uint32_t kRaysAtOnce = 64;
-/// So many are made ready at once. Columns of more than one are filled up to a multiple of it, by
-/// copies of the last ray.
+/// Rays prepared at once, one per lane. Columns of more than one ray are padded to a multiple of
+/// this with copies of the last ray.
 inline constexpr std::uint32_t kRayLanes = 8;
 
-/// Rays whose lengths are larger have products that may leave the range of double.
+/// Products of the components of longer vectors may leave the range of double.
 inline constexpr double kMostRayLength = 1e150;
-/// Of coordinates: some roundings of a ray on its way into a surface's frame, and of triangles on
-/// theirs into the world.
+/// Slack relative to coordinates: a few roundings of a ray's transformation to a surface's frame,
+/// and of triangles' transformation to the world.
 inline constexpr double kRaySlack = 0x1p-46;
 
 template <std::uint32_t Room>
 inline constexpr std::size_t kRayAlignment = Room == 1 ? 8 : 64;
 
-/// Rays by component.
+/// Origins and directions of rays, in columns.
 template <std::uint32_t Room>
 struct RayColumns {
   alignas(kRayAlignment<Room>) double origin[3][Room];
   alignas(kRayAlignment<Room>) double direction[3][Room];
 };
 
-/// A ray in the own frame of a mesh or height field, whose length along it is about that of t.
+/// A ray in the frame of a mesh or height field. Its parameter is scaled so that lengths along it
+/// are about equal to t.
 struct SurfaceRay {
   double origin[3];
-  /// The largest component is in [1/2, 1).
+  /// The largest component is in [1/2, 1) in magnitude.
   double direction[3];
-  /// Wherever it is near the surface, the true ray is no farther from this one.
+  /// Bound on the distance between this ray and the exact one, near the surface.
   double slack;
-  /// Triangles count that it meets at some t in [low, high].
+  /// Triangles are hit at t in [low, high] only.
   double low;
   double high;
 };
 
-/// The same in columns. The caller's t is shift + own t * stretch.
+/// Rays in columns. The caller's t is shift + own t * stretch.
 template <std::uint32_t Room>
 struct SurfaceRayColumns {
   RayColumns<Room> ray;
@@ -71,7 +73,7 @@ enum class Crossing : std::uint8_t { none, found, doubtful };
 
 struct SurfaceHit {
   double t;
-  /// At right angles to the triangle, against the ray, of any length.
+  /// Orthogonal to the triangle, against the ray; of any length.
   double normal[3];
 };
 

@@ -1,3 +1,6 @@
+// TriangleMesh: validation, build, refit and snapshots. The tree is in mesh_tree.cpp, active edges
+// in mesh_edges.cpp, vertex lists of leaves in leaf_corners.cpp; traversals read the MeshView.
+
 #include <winnow/pipeline/triangle_mesh.h>
 
 #include "core/memory/new_in.h"
@@ -59,7 +62,7 @@ Status check(const PointView& vertices, const IndexView& triangles, const MeshOp
 
 }  // namespace
 
-/// Columns and the view of them.
+/// The columns and the view of them.
 struct TriangleMesh::State {
   explicit State(std::pmr::memory_resource* memory) noexcept;
 
@@ -76,12 +79,12 @@ struct TriangleMesh::State {
   void fit(const Execution& execution) noexcept;
 
   Column<float> vertex;
-  /// By slot, unless leaves list them.
+  /// By slot; empty if leaves list their vertices.
   Column<std::uint32_t> corner[3];
   LeafCorners leaf_corners;
   Column<std::uint32_t> triangle;
   Column<std::uint16_t> nodes;
-  /// See find_neighbours; kept by meshes that are refitted.
+  /// See find_neighbours; kept only by meshes that were refitted.
   Column<std::uint32_t> neighbours;
   MeshOptions options;
   MeshView view;
@@ -164,7 +167,8 @@ Status TriangleMesh::refit(const PointView& vertices, const Execution& execution
 }
 
 Status TriangleMesh::State::refit(const PointView& vertices, const Execution& execution) noexcept {
-  // Found where the vertices are now, so that those which come to lie at one place stay apart.
+  // Computed from the old vertex positions, so that vertices that move to one position stay
+  // distinct.
   if (neighbours.empty() && !find_neighbours(view, neighbours)) return Status::out_of_memory;
   place_vertices(vertices);
   fit(execution);
@@ -220,7 +224,8 @@ Status TriangleMesh::State::read(ByteReader& in, const Execution& execution) noe
   return Status::ok;
 }
 
-/// True numbers of corners, triangles and neighbours, each triangle once.
+/// Checks that numbers of corners, triangles and neighbours are valid and each triangle occurs
+/// once.
 Status TriangleMesh::State::check_read() noexcept {
   const std::size_t count = view.triangle_count;
   Column<std::uint8_t> seen(vertex.memory());
@@ -285,7 +290,7 @@ void TriangleMesh::State::place_vertices(const PointView& vertices) noexcept {
     farthest = std::max(farthest, square);
   }
   vertex[3 * vertices.count] = 0.0F;
-  // Three roundings of the sum and one of the root, each of half an ulp.
+  // Covers three roundings of the sum and one of the root, each of half an ulp.
   radius = std::sqrt(farthest) * (1.0 + 4.0 * std::numeric_limits<double>::epsilon());
 }
 
@@ -298,7 +303,7 @@ void TriangleMesh::State::link() noexcept {
   link_mesh_levels(view, nodes.data());
 }
 
-/// False if memory is refused.
+/// Moves the corners to vertex lists by leaf, if that pays. Returns false if memory is refused.
 bool TriangleMesh::State::list_corners() noexcept {
   if (!leaf_corners.take(view)) return false;
   if (leaf_corners.empty()) return true;

@@ -1,9 +1,9 @@
-// Composite shapes are traversed where they stand still: in their own frame, through which the
-// other shape passes. A box around it that sweeps through the frame for a while contains it
-// (Passage), and meets first what is met first, so that a time found bounds what is looked at
-// after it. Where the way bends so much that the box meets many parts, the time is halved, the
-// earlier half first. The contacts that the bodies have at the start are looked for once an impact
-// was found.
+// Impact search for bodies with composite shapes. A composite shape is traversed in its own frame,
+// in which it is at rest and the other shape moves. Passage computes a swept box that contains the
+// other shape for an interval; the traversal visits parts in the order in which the box touches
+// them, so that an impact found limits the rest. If the box touches many parts because the relative
+// path bends, the interval is halved, and the earlier half is searched first. The contacts at the
+// start are computed only after an impact was found.
 
 #include "pipeline/motion/body_impact.h"
 
@@ -15,11 +15,11 @@
 namespace winnow::impact {
 namespace {
 
-/// No interval is shorter than this share of the motion for being bent.
+/// Limit on the halvings of an interval.
 constexpr int kMostHalvings = 12;
-/// An interval is halved where the box meets more parts,
+/// An interval is halved if its box touches more parts than this,
 constexpr int kFewParts = 8;
-/// and is grown, or goes on, by more than this share of the radius.
+/// and its growth plus, for two composite shapes, its length exceed this fraction of the radius.
 constexpr double kLoose = 0.04;
 
 void grow(double by, BoxSweep& box) noexcept {
@@ -29,7 +29,7 @@ void grow(double by, BoxSweep& box) noexcept {
   }
 }
 
-/// Of parts that move, at the start.
+/// Whether two moving parts overlap at the start.
 [[nodiscard]] bool share_a_point(const ShapeTables& tables, const MovingPart& a,
                                  const MovingPart& b) noexcept {
   const Impact impact = find_impact(tables, a, b, 1e-9, {0.0, 0.0});
@@ -65,7 +65,7 @@ class BodyImpactSearch {
   BodyImpact found_;
   RestingContacts resting_;
   bool has_noted_ = false;
-  /// Pairs of parts are noted in place of being tested.
+  /// Pairs of parts are recorded as contacts instead of being tested.
   bool notes_ = false;
 };
 
@@ -77,7 +77,7 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const In
     resting_.note(pair.tables(), moving_a, moving_b);
     return;
   }
-  // A plane shows it for less than it takes to find an impact.
+  // A recorded contact plane is cheaper to test than an impact search.
   if (resting_.part(pair.tables(), moving_a, moving_b)) return;
   const BodyImpact found{find_impact(pair.tables(), moving_a, moving_b, request_.tolerance, within),
                          a.shape.part, b.shape.part};
@@ -89,8 +89,8 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const In
   found_.impact.samples = samples;
 }
 
-/// If touches are left out or slid from: true of an impact, of a search that began at `from`, with
-/// what the bodies touch at the start.
+/// Returns whether an impact, from a search that began at `from`, is dropped because of a contact
+/// at the start. Always false for StartTouch::meets.
 bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& a,
                                    const MovingPart& b, const BodyImpact& found, double from) {
   if (request_.touch == StartTouch::meets) return false;
@@ -98,7 +98,7 @@ bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& 
     if (touches_at_start(found.impact)) return true;
     if (from > 0.0 && share_a_point(tables, a, b)) return true;
   }
-  // Those that part were left out before, once contacts were noted.
+  // Parts that separate were dropped before, once contacts were recorded.
   if (has_noted_) return false;
   note_contacts();
   return resting_.part(tables, a, b);
@@ -110,7 +110,7 @@ void BodyImpactSearch::note_contacts() {
   notes_ = false;
 }
 
-/// Bodies that share a point at the start are answered without their contacts.
+/// Bodies that overlap at the start are reported without a search for contacts.
 BodyImpact BodyImpactSearch::run() {
   meet(a_, b_, request_.within);
   const bool may_slide =
@@ -125,8 +125,8 @@ BodyImpact BodyImpactSearch::run() {
   return found_;
 }
 
-/// Of two composite shapes the larger one is traversed first, by the way of the other, and that by
-/// the ways of the parts that were found.
+/// Traverses the larger one of two composite shapes first, against the swept box of the other; then
+/// the other one against the swept boxes of the parts found.
 void BodyImpactSearch::meet(const MovingShape& a, const MovingShape& b, const Interval& within) {
   const bool of_a = a.shape.shape.is_composite();
   const bool of_b = b.shape.shape.is_composite();
@@ -153,7 +153,7 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
   if (within.first > within.last) return;
   BoxSweep way = passage.sweep(within);
   if (notes_) grow(request_.tolerance * other.own_radius, way);
-  // Of two composite shapes a long way brings many parts near each other, too.
+  // For two composite shapes, a long path also brings many pairs of parts near each other.
   const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
   if (halvings < kMostHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
       meets_many(walked, way)) {

@@ -10,21 +10,21 @@
 
 namespace winnow::impact {
 
-/// A body that moves, its shape convex or composite.
+/// A body that moves; its shape is convex or composite.
 struct MovingBody {
   ShapeId shape;
   const RigidMotion& motion;
 };
 
-/// When two bodies meet, and with which of their parts.
+/// The first impact of two bodies, and the parts that touch.
 struct BodyImpact {
   Impact impact;
   std::uint32_t part_a = kWholeShape;
   std::uint32_t part_b = kWholeShape;
 };
 
-/// True if the first is an impact, and the second none or one that is later; where times are the
-/// same the nearer one is first, and then that of smaller parts.
+/// Returns whether `first` is a hit, and `second` is none or a later one. Ties are broken by the
+/// smaller gap, then by part numbers.
 [[nodiscard]] inline bool comes_before(const BodyImpact& first, const BodyImpact& second) noexcept {
   const auto order = [](const BodyImpact& found) {
     return std::tuple(found.impact.time, found.impact.gap, found.part_a, found.part_b);
@@ -32,29 +32,29 @@ struct BodyImpact {
   return first.impact.hit && (!second.impact.hit || order(first) < order(second));
 }
 
-/// What of an interval is left before an impact.
+/// The part of an interval before an impact.
 [[nodiscard]] inline Interval before(const Interval& within, const BodyImpact& found) noexcept {
   return {within.first, found.impact.hit ? std::min(within.last, found.impact.time) : within.last};
 }
 
-/// What is looked for.
+/// Parameters of a search for an impact.
 struct ImpactRequest {
-  /// A share of the size of the smaller of the parts that meet.
+  /// Relative to the size of the smaller of the two parts that touch.
   double tolerance;
-  /// The bodies are apart before, but for touching at the start.
+  /// The bodies are disjoint before it, except for contact at the start.
   Interval within{0.0, 1.0};
-  /// An impact after it may be given as none; one that is not later is the same whatever it is.
+  /// An impact later than this may be reported as none; other results do not depend on it.
   double until = 1.0;
   StartTouch touch = StartTouch::meets;
 };
 
-/// The first impact within an interval of shapes that are there and motions that are valid; of
-/// bodies that share a point at the start, and meet then, that of the parts that overlap the
-/// deepest. Parts of a composite shape that slide or part along a contact of the bodies at the
-/// start do not meet: see RestingContacts.
+/// Finds the first impact within an interval. Shapes must exist and motions must be valid. If
+/// bodies overlap at the start and StartTouch makes this an impact, the parts that overlap most
+/// deeply are reported. Parts of a composite shape that slide or separate along a contact of the
+/// bodies at the start do not collide: see RestingContacts.
 [[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
                                           const MovingBody& b, const ImpactRequest& request);
-/// The same of an interval in which the balls around the two overlap.
+/// As above, for an interval in which the bounding balls of the two bodies overlap.
 [[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
                                               const MovingBody& b, const ImpactRequest& request);
 

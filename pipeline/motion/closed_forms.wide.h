@@ -1,7 +1,7 @@
 #pragma once
 
-// Closest points of cores that are points and segments, by the closed forms of the narrow phase,
-// of a point and most other cores, and of any core and a half-space.
+// Closed forms for the closest points of two cores: points and segments (by the narrow phase's
+// kernels/round), a point and most other cores, and any core and a half-space.
 
 #include "pipeline/kernels/round/ellipsoid_surface.wide.h"
 #include "pipeline/kernels/round/round.wide.h"
@@ -9,20 +9,22 @@
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Pairs of kinds, in their order, whose closest points need no search.
+/// Pairs of kinds (in the solver's order) whose closest points need no iteration.
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
   if (b == ShapeKind::half_space) return true;
   if (a == ShapeKind::sphere) return b != ShapeKind::hull && b != ShapeKind::support;
   return a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle);
 }
 
-/// From a point of a to the closest of b, and that point from the middle of a.
+/// The vector from the closest point of a to the closest point of b, and the point of a relative to
+/// a's centre.
 struct ClosestWay {
   Vector way;
   Vector on_a;
 };
 
-/// In the plane of a point and an axis: away from the axis, not below 0, and along it.
+/// Coordinates in the half-plane of a point and an axis: the distance from the axis (>= 0), and the
+/// position along it.
 struct Meridian {
   Doubles away;
   Doubles z;
@@ -32,12 +34,12 @@ struct Meridian {
   return {min(p.away, half.x), round::clamp(p.z, -half.z, half.z)};
 }
 
-/// The nearest point of a cone's side or base.
+/// The closest point of a cone's side or base.
 [[gnu::always_inline]] inline Meridian nearest_of_cone(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
   const Doubles rise = half.z + half.z;
-  // From the rim, the side goes inwards by the radius as it rises.
+  // From the rim, the side moves inwards by the radius as it rises.
   const Doubles square = half.x * half.x + rise * rise;
   const Doubles x = p.away - half.x;
   const Doubles y = p.z + half.z;
@@ -52,9 +54,9 @@ struct Meridian {
   return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
 }
 
-/// The nearest point of the convex hull of a point and a ball, which is the upper one where its
-/// height is positive. The normal of the side between them rises with the slope `sine`, and what
-/// is beyond it sees the point or the ball.
+/// The closest point of the convex hull of a point and a ball; the ball is the upper one if half.z
+/// is positive. The normal of the conical side rises with the sine `sine`; points beyond the side's
+/// normals are closest to the point or to the ball.
 [[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
@@ -65,7 +67,7 @@ struct Meridian {
   const Truth is_ball = half.x >= length;
   const Doubles sine = select(is_ball, zero, half.x / length);
   const Doubles cosine = sqrt((one - sine) * (one + sine));
-  // From the point.
+  // Relative to the point.
   const Doubles over = z + height;
   const Doubles along = cosine * over + sine * p.away;
   const Doubles outside = cosine * p.away - sine * over;
@@ -79,7 +81,7 @@ struct Meridian {
   return {positive_part(away), select(up, at, -at)};
 }
 
-/// Of an ellipsoid that is worn off by its least radius of curvature.
+/// The closest point of an ellipsoid eroded by its least radius of curvature.
 static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p) {
   const auto view = round::view_surface(radius, Vector{abs(p.x), abs(p.y), abs(p.z)});
   const auto facing = [](const Doubles& like, const Doubles& size) {
@@ -90,7 +92,7 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
       radius, {facing(p.x, outward.x), facing(p.y, outward.y), facing(p.z, outward.z)});
 }
 
-/// Of a shape that is round about z.
+/// The closest point of a core that is round about its z axis.
 [[gnu::always_inline]] inline Vector nearest_of_spun(const CoreTable& table, const Vector& half,
                                                      const Vector& p) {
   const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
@@ -101,7 +103,7 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
   return {p.x * share, p.y * share, nearest.z};
 }
 
-/// The point of a core that is closest to `p`, which is outside, both in its own frame.
+/// The point of a core closest to `p`, which must be outside; both in the core's frame.
 [[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
                                                 const Vector& p) {
   switch (table.kind) {
@@ -120,8 +122,8 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
   }
 }
 
-/// From the segment s u, |s| <= half, of a to the triangle of b; both in the frame of b, whose
-/// middle is at `offset`. A half of 0 makes it a point.
+/// The closest points of the segment s u, |s| <= half, of a and the triangle of b, in the frame of
+/// b; the segment's centre is at `offset`. If `half` is 0 the segment is a point.
 static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCore& b,
                                                                   const Vector& offset,
                                                                   const Vector& u,
@@ -185,7 +187,7 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
   return {pair.between + e * feet.t - u * feet.s, u * feet.s};
 }
 
-/// Of a core and a half-space that are apart.
+/// Closest points of a core and a half-space that are disjoint.
 static inline ClosestLanes closest_to_half_space(const CorePair& pair, Mask16 lanes) {
   ClosestLanes found;
   found.axis = -pair.b.axes.to_world(pair.b.half);
@@ -200,8 +202,8 @@ static inline ClosestLanes closest_to_half_space(const CorePair& pair, Mask16 la
   return found;
 }
 
-/// Of cores whose kinds have a closed form, and the proof of what is said: along the way between
-/// the closest points they are apart by as much as their farthest points say.
+/// Closest points of cores whose kinds have a closed form. The lower bound is proved by the support
+/// functions along the vector between the closest points.
 static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   if (pair.table_b.kind == ShapeKind::half_space) return closest_to_half_space(pair, lanes);
   const ClosestWay closest = closest_way(pair);
@@ -217,17 +219,17 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   return found;
 }
 
-/// Kinds of which `closing_square` tells.
+/// Kinds for which `closing_square` is defined.
 [[nodiscard]] constexpr bool has_closing_square(ShapeKind a, ShapeKind b) {
   const bool of_segment = b == ShapeKind::capsule || b == ShapeKind::triangle;
   return (a == ShapeKind::sphere && (of_segment || b == ShapeKind::box)) ||
          (a == ShapeKind::capsule && of_segment);
 }
 
-/// What a closest feature leaves of the square of a velocity that is not along it.
+/// Result of removing from a velocity its component along a closest feature.
 struct FeatureAcross {
   Doubles square;
-  /// It is an edge or a face, along which the closest point goes.
+  /// The feature is an edge or a face, along which the closest point moves.
   Truth goes;
 };
 
@@ -240,8 +242,8 @@ struct FeatureAcross {
   return {dot(velocity, velocity) - along * along, inside};
 }
 
-/// Of a triangle whose frame is that of the world: the way to its closest point is square to the
-/// edge that has it, and to all edges if the face has it.
+/// For a triangle in the world frame. The direction to its closest point is orthogonal to the edge
+/// that contains the point, or to all edges if it is in the face.
 [[gnu::always_inline]] inline FeatureAcross across_triangle(const MovingCore& core,
                                                             const Vector& axis,
                                                             const Vector& velocity) {
@@ -264,8 +266,9 @@ struct FeatureAcross {
   return {select(two, slope * slope, dot(velocity, velocity) - along), one};
 }
 
-/// The square of what of a velocity is not along the features that are closest: as long as these
-/// are, cores that do not turn come nearer as a point does that moves so fast.
+/// Squared length of a velocity without its components along the closest features. While these
+/// features stay closest, the distance of two cores that do not rotate changes like the distance of
+/// a point that moves with the remaining velocity.
 static inline Doubles closing_square(const CorePair& pair, const ClosestLanes& closest,
                                      const Vector& velocity) {
   const Doubles zero(0.0);

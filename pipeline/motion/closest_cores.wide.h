@@ -1,7 +1,7 @@
 #pragma once
 
-// Closest points of two cores in each lane: the algorithm of Gilbert, Johnson and Keerthi (1988) in
-// double, from the simplex that the lane ended with where the cores were before.
+// Closest points of two cores in each lane: GJK (Gilbert, Johnson and Keerthi 1988) in double,
+// started from the simplex with which the lane's last search ended (warm start).
 
 #include "pipeline/kernels/hull/simplex.wide.h"
 #include "pipeline/motion/moving_cores.wide.h"
@@ -10,8 +10,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 inline constexpr int kSlots = hull::kSlots;
 
-/// The points of both cores that make the simplex, each in its core's own frame. Of the slots in
-/// use the first is one.
+/// The points of both cores that form the simplex, each in its core's frame. Slot 0 is in use if
+/// any is.
 struct WitnessLanes {
   Vector a[kSlots];
   Vector b[kSlots];
@@ -19,7 +19,7 @@ struct WitnessLanes {
   Doubles present[kSlots];
 };
 
-/// How far a segment or a box reaches along a direction, and back, from its middle.
+/// Support of a segment or a box along a direction, from its centre.
 [[gnu::always_inline]] inline Doubles height_of_segment(const MovingCore& core,
                                                         const Vector& direction) {
   return abs(dot(direction, core.axes.z)) * core.half.z;
@@ -31,13 +31,13 @@ struct WitnessLanes {
          abs(dot(direction, core.axes.z)) * core.half.z;
 }
 
-/// Two cores as they are placed.
+/// Two placed cores.
 struct CorePair {
   const CoreTable& table_a;
   const CoreTable& table_b;
   const MovingCore& a;
   const MovingCore& b;
-  /// From the middle of a to that of b.
+  /// From the centre of a to the centre of b.
   const Vector& between;
 
   [[gnu::always_inline]] Vector to_world(const CoreTable& table, const MovingCore& core,
@@ -45,21 +45,21 @@ struct CorePair {
     return table.in_world ? v : core.axes.to_world(v);
   }
   [[gnu::always_inline]] Vector on_a(const Vector& own) const { return to_world(table_a, a, own); }
-  /// From the middle of b.
+  /// Relative to the centre of b.
   [[gnu::always_inline]] Vector on_b(const Vector& own) const { return to_world(table_b, b, own); }
   [[gnu::always_inline]] Vector own_facing(const CoreTable& table, const MovingCore& core,
                                            const Vector& direction, Mask16 lanes) const {
     const Vector own = table.in_world ? direction : core.axes.to_local(direction);
     return farthest(table, core, own, lanes);
   }
-  /// What of each core is farthest towards the other along a direction from a to b, in their own
+  /// The support points of both cores along a direction from a to b and its opposite, in their own
   /// frames.
   [[gnu::always_inline]] void facing(const Vector& direction, Mask16 lanes, Vector& own_a,
                                      Vector& own_b) const {
     own_a = own_facing(table_a, a, direction, lanes);
     own_b = own_facing(table_b, b, -direction, lanes);
   }
-  /// How far a core reaches along a direction from its middle.
+  /// Support of a core along a direction, from its centre.
   [[gnu::always_inline]] Doubles height(const CoreTable& table, const MovingCore& core,
                                         const Vector& direction, Mask16 lanes) const {
     switch (table.kind) {
@@ -77,46 +77,47 @@ struct CorePair {
   }
 };
 
-/// What is known of the cores of a lane where they are placed.
+/// Bounds on the distance of the placed cores of each lane.
 struct ClosestLanes {
-  /// A unit direction along which they are apart by `lower`: a reaches as high as `high_a`, and -b
-  /// as high as `high_b` from its middle along the opposite one.
+  /// A unit direction from a to b along which the cores are separated by `lower`. `high_a` is the
+  /// support of a along it, `high_b` the support of b along the opposite, from their centres.
   Vector axis;
   Doubles lower;
   Doubles high_a;
   Doubles high_b;
-  /// From a point of a to one of b, and how far: they are no farther apart.
+  /// The vector from a point of a to a point of b, and its length: an upper bound on the distance.
   Vector between;
   Doubles upper;
-  /// These points, from the middles.
+  /// These points, relative to the centres.
   Vector on_a;
   Vector on_b;
 };
 
-/// How well distances are to be known.
+/// Required accuracy of a distance.
 struct ClosestOptions {
-  /// As a share of the distance less `roundings`; where that is below `precise`, as well as can be.
+  /// Relative to the distance minus `roundings`; if that is below `precise`, as accurate as
+  /// possible.
   double share;
   const Doubles& roundings;
   const Doubles& precise;
-  /// Nothing is gained below.
+  /// Smaller gains end the search.
   const Doubles& noise;
 };
 
-/// Where a point of the simplex is the farthest, rounding may make the gap look worse than it is by
-/// this share.
+/// If the support point is already in the simplex, the search ends when the gain is below this
+/// fraction of the distance: rounding can cause that much.
 inline constexpr double kRounding = 1e-2;
 
-/// A point of the difference of two cores, which are farthest there, and what of each it is made
-/// of.
+/// A support point `w` of the Minkowski difference of two cores, and the points of both cores that
+/// it is the difference of, in their own frames.
 struct FarthestPoint {
   const Vector& of_a;
   const Vector& of_b;
   const Vector& w;
 };
 
-/// The nearest feature of a new point and one old one at most, in slot 0: as `hull::nearest_of`
-/// finds it.
+/// The nearest feature of the new point `w` and at most one old one, in slot 0; equal to
+/// `hull::nearest_of`.
 [[nodiscard]] static inline hull::SimplexNearest<double> nearest_of_edge(
     const hull::Simplex<double>& others, const Vector& w) {
   const Doubles zero(0.0);
@@ -132,7 +133,8 @@ struct FarthestPoint {
   return {select(nearer, x, w), {nearer, none, none}, none, none, repeated};
 }
 
-/// The nearest feature with a new point, by no more work than the lane with the most points needs.
+/// The nearest feature that contains the new point, computed only for as many points as the largest
+/// simplex of all lanes has.
 [[nodiscard]] static inline hull::SimplexNearest<double> nearest_feature(
     const hull::Simplex<double>& others, const Vector& w, const Truth& lanes) {
   if (bits(lanes & (others.present[1] | others.present[2])) != 0) {
@@ -143,8 +145,8 @@ struct FarthestPoint {
   return {w, {none, none, none}, none, none, none};
 }
 
-/// A simplex but for a point that is the same: the nearest feature of an old simplex need not be
-/// the nearest any more where its points are now.
+/// The simplex without points equal to `w`. The nearest feature of a warm-started simplex need not
+/// be the nearest at the new positions of its points.
 [[nodiscard]] static inline hull::Simplex<double> without(const hull::Simplex<double>& simplex,
                                                           const Vector& w) {
   hull::Simplex<double> others = simplex;
@@ -162,7 +164,7 @@ struct FarthestPoint {
   return more;
 }
 
-/// Where `moves`: the nearest feature becomes the simplex.
+/// In lanes in `moves`, replaces the simplex by its nearest feature.
 static inline void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves,
                         const FarthestPoint& added, hull::Simplex<double>& simplex,
                         WitnessLanes& witness) {
@@ -177,7 +179,7 @@ static inline void keep(const hull::SimplexNearest<double>& nearest, const Truth
   }
 }
 
-/// A point of a simplex, by shares of its points in slots 1 and 2.
+/// A point of a simplex, by the weights of its points in slots 1 and 2.
 struct Shares {
   Doubles s;
   Doubles t;
@@ -187,7 +189,7 @@ struct Shares {
   }
 };
 
-/// Those that make `gap`.
+/// The weights for which the point is `gap`.
 [[nodiscard]] static inline Shares shares_of(const hull::Simplex<double>& simplex,
                                              const Vector& gap) {
   const Doubles zero(0.0);
@@ -215,7 +217,7 @@ class ClosestSearch {
   ClosestSearch(const CorePair& pair, const ClosestOptions& options, WitnessLanes& witness)
       : pair_(pair), options_(options), witness_(witness) {}
 
-  /// Ends after so many steps, with bounds that hold all the same.
+  /// Runs at most `most_steps` steps; the bounds are valid in any case.
   [[nodiscard]] ClosestLanes run(const Truth& lanes, int most_steps) {
     begin();
     open_ = lanes;
@@ -225,10 +227,12 @@ class ClosestSearch {
   }
 
  private:
-  /// A search that ends this much worse than it may be is begun anew, without what was there.
+  /// A search that stalls with a gain this many times the accepted one is restarted once without
+  /// the old simplex.
   static constexpr double kLost = 4.0;
 
-  /// From the point of the old simplex, as its points have moved, that is closest to the origin.
+  /// Starts from the point nearest to the origin of the old simplex, at the new positions of its
+  /// points.
   void begin() {
     const Doubles zero(0.0);
     const Vector from = select(dot(pair_.between, pair_.between) > zero, pair_.between,
@@ -290,7 +294,7 @@ class ClosestSearch {
     if (bits(lost) != 0) begin_anew(lost);
   }
 
-  /// Keeps the direction that shows the most.
+  /// Keeps the axis with the largest lower bound.
   void note(const Doubles& distance, const Doubles& reach, const Vector& on_a, const Vector& on_b) {
     const Truth better = open_ & (reach > found_.lower * distance);
     const Doubles over = Doubles(1.0) / distance;
@@ -321,7 +325,7 @@ class ClosestSearch {
   WitnessLanes& witness_;
   ClosestLanes found_;
   hull::Simplex<double> simplex_;
-  /// From a to b, between the closest points so far; at first any direction.
+  /// The vector between the closest points found; at first any direction.
   Vector gap_;
   /// There is no simplex yet.
   Truth fresh_;

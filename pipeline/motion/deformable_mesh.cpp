@@ -1,3 +1,7 @@
+// DeformableMesh: a tree over the swept boxes of faces and another over the swept boxes of edges;
+// streams the pairs of features whose boxes overlap, their impacts (feature_impacts.cpp) and
+// proximities (feature_proximity.cpp).
+
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/deformable_mesh.h>
 
@@ -24,9 +28,9 @@ constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
 constexpr std::size_t kMostVertices = 0x7FFFFFFF;
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kPairsPerStretch = 512;
-/// Rows that ask one after another.
+/// Query rows per unit of work.
 constexpr std::uint32_t kRowsAsking = 256;
-/// Differences of numbers that are no larger stay in the range of double, and so do theirs.
+/// Differences of numbers up to this size, and differences of those, stay in the range of double.
 constexpr double kFarthest = 0x1p1020;
 
 bool has_three_columns(const PointView& points) noexcept {
@@ -45,7 +49,8 @@ bool are_near_enough(const PointView& points) noexcept {
   return true;
 }
 
-/// Infinite bounds would meet the empty boxes behind the last row.
+/// Clamps to the finite floats: infinite bounds would overlap the empty boxes that pad the last
+/// block.
 float bound(float x) noexcept {
   constexpr float kMost = std::numeric_limits<float>::max();
   return std::clamp(x, -kMost, kMost);
@@ -55,7 +60,7 @@ bool share_a_number(const std::uint32_t* a, const std::uint32_t* b) noexcept {
   return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
 }
 
-/// Boxes of features in an order of space, and the tree above them. A row's id is the number of its
+/// Boxes of features in spatial order, and the tree over them. A row's id is the number of its
 /// feature.
 class FeatureRows {
  public:
@@ -69,7 +74,8 @@ class FeatureRows {
     return rows;
   }
 
-  /// Rows of as many features, in the order of their numbers.
+  /// Makes rows for `count` features, in the order of their numbers. Returns false if memory is
+  /// refused.
   [[nodiscard]] bool make(std::size_t count) noexcept {
     if (!boxes.reserve_exact(count)) return false;
     boxes.append(count);
@@ -78,7 +84,7 @@ class FeatureRows {
     return true;
   }
 
-  /// Row i gets the box around those of the vertices corner[Corners * id ...].
+  /// Sets row i to the union of the boxes of its vertices, corner[Corners * id ...].
   template <std::size_t Corners>
   void fit(const FeatureRows& vertices, const std::uint32_t* corner,
            const Execution& execution) noexcept {
@@ -102,7 +108,7 @@ class FeatureRows {
                   });
   }
 
-  /// Puts the numbers in an order of space, by the boxes as they stand.
+  /// Writes the ids in spatial order of the current boxes to `order`.
   [[nodiscard]] bool find_order(Column<std::uint32_t>& order,
                                 const Execution& execution) const noexcept {
     const std::size_t count = boxes.rows();
@@ -114,7 +120,7 @@ class FeatureRows {
                            KdParts::blocks);
   }
 
-  /// Takes that order. Boxes do not follow.
+  /// Reorders the ids spatially. Does not move the boxes: call `fit` afterwards.
   [[nodiscard]] bool sort(const Execution& execution) noexcept {
     Column<std::uint32_t> order(memory_);
     if (!find_order(order, execution)) return false;
@@ -129,7 +135,7 @@ class FeatureRows {
   std::pmr::memory_resource* memory_;
 };
 
-/// Hands on what a walk over so many units finds.
+/// Streams the pairs that `walk` finds over all units to `take`.
 template <typename Walk, typename Take>
 Status stream(const DeformableMeshOptions& options, std::uint32_t units, Walk&& walk,
               Take& take) noexcept {
@@ -138,7 +144,8 @@ Status stream(const DeformableMeshOptions& options, std::uint32_t units, Walk&& 
              : Status::out_of_memory;
 }
 
-/// Hands on the pairs of rows that ask, in an order if there is one, and of rows below a tree.
+/// Streams the overlapping pairs of query rows (in `order`, if it is not null) and rows of a tree
+/// to `take`.
 template <typename Take>
 Status ask(const DeformableMeshOptions& options, const FeatureRows& asked,
            const FeatureRows& asking, const std::uint32_t* order, Take& take) noexcept {
@@ -183,7 +190,7 @@ struct DeformableMesh::State {
     return face_corners.data() + std::size_t{3} * face;
   }
 
-  /// Of two features of this mesh.
+  /// For two features of this mesh.
   [[nodiscard]] bool share_a_vertex(FeaturePair kind, const Pair& pair) const noexcept {
     if (kind == FeaturePair::edge_edge) {
       return share_a_number(edge_ends.data() + std::size_t{2} * pair.first,
@@ -193,8 +200,8 @@ struct DeformableMesh::State {
     return corner[0] == pair.first || corner[1] == pair.first || corner[2] == pair.first;
   }
 
-  // Rows of vertices stand in the order of their numbers, where faces and edges find them, and no
-  // tree stands above them.
+  // Rows of vertices stay in the order of their numbers, by which faces and edges index them, and
+  // have no tree.
   FeatureRows vertices;
   FeatureRows faces;
   FeatureRows edges;
@@ -223,8 +230,8 @@ bool DeformableMesh::State::take(const PointView& rest, const IndexView& triangl
          edges.sort(options.execution);
 }
 
-/// Each edge once, sorted by its ends. One between a vertex and itself is none: the others at that
-/// vertex hold it.
+/// Lists each edge once, sorted by its ends. An edge from a vertex to itself is skipped: the
+/// vertex's other edges contain it.
 bool DeformableMesh::State::link() noexcept {
   Column<std::uint64_t> all(face_corners.memory());
   if (!all.reserve(face_corners.size())) return false;
@@ -245,8 +252,8 @@ bool DeformableMesh::State::link() noexcept {
   return true;
 }
 
-/// The boxes of the step. Those of faces and edges are made of their vertices' boxes, which is the
-/// same as to round theirs: rounding keeps the order of numbers.
+/// Computes the swept boxes of the step. The union of rounded vertex boxes equals the rounded
+/// union, because rounding is monotonic.
 void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
   const double half = 0.5 * distance;
   for_stretches(options.execution, vertices.boxes.rows(), kRowsPerStretch,
@@ -340,7 +347,7 @@ Status DeformableMesh::find_self(FeaturePair kind,
                                  const ResultChunks<Pair>& chunks) const noexcept {
   const DefaultEnvironment environment;
   if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
-  // In place, and without a branch: which pairs share a vertex is as hard to foresee as a coin.
+  // In place and branchless, because it is unpredictable which pairs share a vertex.
   const auto take = [&](std::span<Pair> pairs) {
     std::size_t kept = 0;
     for (const Pair pair : pairs) {
@@ -408,7 +415,7 @@ Status DeformableMesh::find_faces(const Aabb& box,
 
 namespace {
 
-/// The vertices of a pair of features: of the first feature's mesh, then of the second's.
+/// The vertices of a pair of features: the first feature's, then the second's.
 template <typename State>
 std::array<std::uint32_t, 4> vertices_of(FeaturePair kind, const Pair& pair, const State& first,
                                          const State& second) noexcept {
@@ -421,7 +428,8 @@ std::array<std::uint32_t, 4> vertices_of(FeaturePair kind, const Pair& pair, con
   return {a[0], a[1], b[0], b[1]};
 }
 
-/// Where these vertices are; the first ones, one of a face or two of an edge, are the first mesh's.
+/// The positions of these vertices. The first one (vertex and face) or two (edges) are of the first
+/// mesh, the others of the second.
 std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t, 4>& vertex,
                                const PointView& first, const PointView& second) noexcept {
   const bool of_edges = kind == FeaturePair::edge_edge;
@@ -429,7 +437,8 @@ std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t,
           second[vertex[3]]};
 }
 
-/// When features first touch, of pairs of a feature of mesh `a` and one of mesh `b`.
+/// Computes the first times of contact for pairs of a feature of mesh `a` and a feature of mesh
+/// `b`.
 template <typename State>
 void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, const State& b,
                 const FeatureImpactOptions& options, double* times) noexcept {

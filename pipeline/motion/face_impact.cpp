@@ -9,9 +9,9 @@
 namespace winnow::impact {
 namespace {
 
-/// An interval is halved where paths bend by more than this share of what the face extends,
+/// An interval is halved if paths bend by more than this fraction of the face's extent,
 constexpr double kLooseWay = 0.1;
-/// but not more often.
+/// but at most this often.
 constexpr int kMostCuts = 12;
 
 class FaceImpactSearch {
@@ -67,7 +67,7 @@ void FaceImpactSearch::test(const MovingShape& part, const Interval& within) noe
   if (comes_before(found, found_)) found_ = found;
 }
 
-/// A corner in the frame of the body.
+/// A corner at a time, in the body's frame.
 Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const noexcept {
   const Pose pose = body_.motion.at(time);
   const Eigen::Matrix3d axes = rotation_of(tame(pose.orientation));
@@ -75,9 +75,9 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
   return axes.transpose() * (corner - Vec::Map(pose.position));
 }
 
-/// A box that contains the face all the time, in the frame of the body, and how much of it is for
-/// paths that bend: in a frame that turns a point has an acceleration of its distance times the
-/// square of the rate, and twice its speed times that.
+/// A box that contains the face during an interval, in the body's frame. `bend` becomes the amount
+/// by which the box is grown for curved paths: in a frame that rotates at `rate`, a point's
+/// acceleration is its distance times rate^2 plus twice its speed times rate.
 PreciseBox FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
   PreciseBox box{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
   const double width = within.last - within.first;

@@ -6,15 +6,15 @@
 
 namespace winnow::impact {
 
-/// A triangle each of whose corners moves linearly, in time from 0 to 1.
+/// A triangle whose corners move linearly over time 0 to 1.
 struct MovingFace {
   std::array<Vec, 3> start;
   std::array<Vec, 3> end;
-  /// Added all around.
+  /// Rounding radius added to the triangle.
   double rounding = 0.0;
 };
 
-/// The first impact of a body, which is `a`, and a face; as `find_body_impact`.
+/// The first impact of a body (as `a`) and a face; as `find_body_impact`.
 [[nodiscard]] BodyImpact find_face_impact(const PartTraversal& parts, const MovingBody& body,
                                           const MovingFace& face, double tolerance);
 

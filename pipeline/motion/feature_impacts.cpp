@@ -11,7 +11,7 @@ WINNOW_DEFINE_KERNELS(FeatureTestKernels, feature_test_kernels)
 
 namespace {
 
-/// The columns one after another: x, y, z of points 0 to 3 at the start, then at the end.
+/// The columns in order: x, y, z of points 0 to 3 at the start, then at the end.
 using Columns = std::array<const double*, 24>;
 
 Columns columns_of(const FeatureColumns& pairs) noexcept {
@@ -25,7 +25,7 @@ Columns columns_of(const FeatureColumns& pairs) noexcept {
   return columns;
 }
 
-/// Eight pairs, of which the first `count` are asked about.
+/// Tests eight pairs; writes the times of the first `count`.
 void find_eight(FeaturePair kind, const Columns& columns, std::size_t first, std::size_t count,
                 double* times, const FeatureImpactOptions& options) noexcept {
   const FeatureTestKernels& kernels = feature_test_kernels();

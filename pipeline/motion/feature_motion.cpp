@@ -1,3 +1,8 @@
+// Continuous collision of two mesh features: finds the first time at which their polygon of
+// differences comes within the separation of the origin. Clips the step to times at which the
+// features may be coplanar, and separates the rest by planes, halving intervals where neither
+// works. Called by feature_impacts.cpp.
+
 #include "pipeline/motion/feature_motion.h"
 
 #include "pipeline/motion/feature_test.kernel.h"
@@ -8,13 +13,13 @@
 namespace winnow {
 namespace {
 
-/// Bounds the error of a direction times a corner at some time, over the sum of the products'
-/// largest magnitudes: 10 roundings, and as many of what is interpolated between two of them.
+/// Error bound of the dot product of a direction and a corner at some time, relative to the sum of
+/// the products' largest magnitudes: 10 roundings, and as many for the interpolation.
 constexpr double kPlaneError = 0x1p-48;
-/// Shorter intervals are not cut in two.
+/// Shorter intervals are not halved.
 constexpr double kShortest = 0x1p-52;
 
-/// Numbers of a vector, which lie one after another.
+/// The three consecutive components of a vector.
 using Numbers3 = const double*;
 
 double dot(Numbers3 a, Numbers3 b) noexcept {
@@ -78,14 +83,15 @@ void find_reach(FeatureMotion& motion) noexcept {
   }
 }
 
-/// det(across, first edge, second edge), a cubic in time by its Bernstein coefficients. Where the
-/// polygon may come within the separation of the origin its magnitude is at most `band`.
+/// det(across, first edge, second edge), a cubic in time, by its Bernstein coefficients. At times
+/// at which the polygon may be within the separation of the origin, its magnitude is at most
+/// `band`.
 struct SpannedVolume {
   double at[4];
   double band;
 };
 
-/// The largest that a determinant can be whose columns have no larger magnitudes than these.
+/// Upper bound on a determinant whose columns have at most these magnitudes.
 double largest_volume(const FeatureMotion& motion) noexcept {
   double most[3][3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +124,8 @@ SpannedVolume volume_of(const FeatureMotion& motion) noexcept {
                         (dot(start, last) + dot(end, mixed)) / 3.0, dot(end, last)},
                        kVolumeError * largest_volume(motion) + kLostByUnderflow};
   if (motion.separation > 0.0) {
-    // The normal is a quadratic polynomial with these coefficients, the middle one doubled.
+    // The normal is a quadratic polynomial with these Bernstein coefficients, the middle one
+    // doubled.
     const double longest =
         std::max({std::sqrt(dot(first, first)), 0.5 * std::sqrt(dot(mixed, mixed)),
                   std::sqrt(dot(last, last))});
@@ -137,7 +144,8 @@ struct TimeInterval {
   double high;
 };
 
-/// Two steps of de Casteljau's scheme at a time: the line that is left of the cubic's polar form.
+/// Two steps of de Casteljau's algorithm at `t`: the remaining linear polynomial of the cubic's
+/// polar form (blossom).
 struct PolarLine {
   double start;
   double end;
@@ -150,7 +158,7 @@ struct PolarLine {
   [[nodiscard]] double at(double t) const noexcept { return mix(start, end, t); }
 };
 
-/// Bernstein coefficients over an interval: what the cubic's polar form says of its ends.
+/// Bernstein coefficients over an interval: values of the polar form at its ends.
 void coefficients_over(const double (&c)[4], const TimeInterval& time, double (&y)[4]) noexcept {
   const PolarLine at_low(c, time.low);
   const PolarLine at_high(c, time.high);
@@ -160,8 +168,8 @@ void coefficients_over(const double (&c)[4], const TimeInterval& time, double (&
   y[3] = at_high.at(time.high);
 }
 
-/// Where, from the side of the first coefficient on, the hull of the coefficients first comes
-/// within `band` of zero: 0 to 1, or 2 if it does nowhere.
+/// The first point, from the first coefficient's side, at which the convex hull of the coefficients
+/// comes within `band` of zero: 0 to 1, or 2 if there is none.
 double first_in_band(double y0, double y1, double y2, double y3, double band) noexcept {
   const double sign = y0 < 0.0 ? -1.0 : 1.0;
   const double z[4] = {sign * y0 - band, sign * y1 - band, sign * y2 - band, sign * y3 - band};
@@ -177,7 +185,8 @@ double first_in_band(double y0, double y1, double y2, double y3, double band) no
   return first;
 }
 
-/// Cuts off times at which the volume is not zero. False if none are left.
+/// Clips off times at which the volume is not zero (Bezier clipping). Returns false if no time is
+/// left.
 bool clip(const SpannedVolume& volume, TimeInterval& time) noexcept {
   constexpr double kWorthAnother = 0.5;
   for (;;) {
@@ -194,13 +203,13 @@ bool clip(const SpannedVolume& volume, TimeInterval& time) noexcept {
   }
 }
 
-/// Looks for a plane that keeps the polygon from the origin at the middle of an interval, and for
-/// how long it does.
+/// Searches for a plane that separates the polygon from the origin at the middle of an interval,
+/// and for the time during which it does.
 class PlaneSearch {
  public:
   explicit PlaneSearch(const FeatureMotion& motion) noexcept : motion_(motion) {}
 
-  /// True if there is one; `apart` is then the part of the interval for which it is.
+  /// Returns whether there is one; `apart` becomes the part of the interval in which it separates.
   bool find(const TimeInterval& time, double middle, TimeInterval& apart) noexcept {
     for (int k = 0; k < motion_.corners; ++k) place(k, middle, at_[k]);
     double n[3] = {};
@@ -218,7 +227,8 @@ class PlaneSearch {
     return keeps_apart(n, time, middle, apart);
   }
 
-  /// True if the plane through the origin across one of the axes does for the whole step.
+  /// Returns whether a plane through the origin orthogonal to an axis separates during the whole
+  /// step.
   [[nodiscard]] bool is_apart_on_axis() const noexcept {
     const double least = motion_.separation * (1.0 + 0x1p-50);
     for (int axis = 0; axis < 3; ++axis) {
@@ -242,8 +252,8 @@ class PlaneSearch {
     }
   }
 
-  /// The point of the polygon's border that is nearest to the origin, as a direction: across the
-  /// side that it lies on even where it is so near that its own digits are few.
+  /// The point of the polygon's border nearest to the origin, as a direction. It is made orthogonal
+  /// to the side that contains it, because few digits are left if it is near the origin.
   void nearest_of_border(double (&nearest)[3]) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < motion_.corners; ++k) {
@@ -293,7 +303,8 @@ class PlaneSearch {
     return true;
   }
 
-  /// The part of the way from a number above zero to another that surely is above zero, too.
+  /// The fraction of the way from a positive number to another one in which interpolated values are
+  /// certainly positive.
   static double part_above(double above, double other) noexcept {
     constexpr double kAlmost = 1.0 - 0x1p-20;
     return other > 0.0 ? 1.0 : kAlmost * (above / (above - other));
@@ -329,7 +340,8 @@ FeatureImpact first_impact(const FeatureMotion& motion,
   if (planes.is_apart_on_axis()) return {};
   const SpannedVolume volume = volume_of(motion);
   const double shortest = std::max(options.tolerance, kShortest);
-  // Intervals that wait are later ones, and each that is begun is at most half as long as before.
+  // A stack of pending intervals, earliest on top. Each interval pushed is at most half as long as
+  // the one it was cut from, which bounds the depth.
   TimeInterval open[64];
   int size = 0;
   open[size++] = {0.0, 1.0};

@@ -5,7 +5,7 @@
 namespace winnow {
 namespace {
 
-/// Where on a segment from a the point is that is nearest to p: 0 at its start, 1 at its end.
+/// Position of the point of a segment nearest to p: 0 at a, 1 at a + side.
 double nearest_on_segment(const Vec3d& p, const Vec3d& a, const Vec3d& side) noexcept {
   const double square = side.squared_norm();
   return square > 0.0 ? std::clamp((p - a).dot(side) / square, 0.0, 1.0) : 0.0;
@@ -15,7 +15,7 @@ void keep_if_nearer(const MeshProximity& candidate, MeshProximity& best) noexcep
   if (candidate.distance < best.distance) best = candidate;
 }
 
-/// Sets points and distance by the weights.
+/// Computes the points and the distance from the weights.
 void place_by_weights(FeaturePair kind, const std::array<Vec3d, 4>& p, MeshProximity& at) noexcept {
   const std::array<double, 4>& w = at.weight;
   if (kind == FeaturePair::vertex_face) {
@@ -26,7 +26,7 @@ void place_by_weights(FeaturePair kind, const std::array<Vec3d, 4>& p, MeshProxi
   at.distance = (at.point[1] - at.point[0]).norm();
 }
 
-/// The border of the face, one side after another, and its plane where the vertex lies above it.
+/// Candidates: each side of the face, and the face's plane if the vertex projects into the face.
 void nearest_of_face(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcept {
   MeshProximity at = best;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -50,7 +50,8 @@ void nearest_of_face(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcep
   keep_if_nearer(at, best);
 }
 
-/// The ends of either edge with the other, and the lines where these are nearest inside of both.
+/// Candidates: each end of an edge against the other edge, and the closest points of both lines if
+/// they are inside both edges.
 void nearest_of_edges(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcept {
   const Vec3d u = p[1] - p[0];
   const Vec3d v = p[3] - p[2];

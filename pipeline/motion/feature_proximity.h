@@ -4,8 +4,8 @@
 
 namespace winnow {
 
-/// The nearest points of two features, their distance and weights; the numbers of the features
-/// stay.
+/// Computes the nearest points of two features, their distance and weights; leaves the feature
+/// numbers unchanged.
 void find_nearest_points(FeaturePair kind, const std::array<Vec3d, 4>& points,
                          MeshProximity& result) noexcept;
 

@@ -7,14 +7,14 @@ namespace winnow {
 
 [[nodiscard]] bool are_in_range(const FeatureImpactOptions& options) noexcept;
 
-/// Up to eight pairs of features, gathered to be asked about together.
+/// Collects up to eight pairs of features, to test them together.
 class FeatureStage {
  public:
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] bool is_full() const noexcept { return size_ == kFeatureLanes; }
   void clear() noexcept { size_ = 0; }
 
-  /// There must be room.
+  /// The stage must not be full.
   void add(const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end) noexcept {
     for (std::size_t k = 0; k < 4; ++k) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -25,12 +25,12 @@ class FeatureStage {
     ++size_;
   }
 
-  /// As `feature_impacts`, with options within their ranges.
+  /// As `feature_impacts`; options must be within their ranges.
   void find(FeaturePair kind, double (&times)[kFeatureLanes],
             const FeatureImpactOptions& options) const noexcept;
 
  private:
-  // What is behind `size_` is tested with the rest, to no effect.
+  // Columns beyond `size_` are tested, too; their results are ignored.
   double column_[24][kFeatureLanes] = {};
   std::size_t size_ = 0;
 };

@@ -14,7 +14,7 @@ struct FeatureState {
   FeatureVector edge[2];
 };
 
-/// The differences in the order of the scalar code.
+/// Computes the differences in the order of the scalar code.
 template <int Corners>
 [[gnu::always_inline]] inline FeatureState<Corners> load_state(const double* const* columns,
                                                                std::size_t first) {
@@ -47,7 +47,7 @@ template <int Corners>
   return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
-/// Lanes in which all corners lie on one side of the origin along an axis.
+/// The lanes in which all corners are on one side of the origin along an axis.
 template <int Corners, typename Coordinate>
 [[gnu::always_inline]] inline LaneMask<double> apart_on(const FeatureState<Corners>& start,
                                                         const FeatureState<Corners>& end,
@@ -64,7 +64,7 @@ template <int Corners, typename Coordinate>
   return (low > least) | (-high > least);
 }
 
-/// Lanes in which all Bernstein coefficients of the volume lie beyond its band on one side.
+/// The lanes in which all Bernstein coefficients of the volume are beyond the band on one side.
 template <int Corners>
 [[gnu::always_inline]] inline LaneMask<double> never_flat(const FeatureState<Corners>& start,
                                                           const FeatureState<Corners>& end,
@@ -106,7 +106,7 @@ std::uint32_t may_touch(const double* const* columns, std::size_t first, double 
   LaneMask<double> numbers = size == size;
   const auto measure = [&](const FeatureVector& v) {
     size = max(size, largest(v));
-    // What is no number is lost in a maximum.
+    // max ignores NaN, so test for it here.
     numbers = numbers & (taxicab(v) <= Doubles(kLargest<double>));
   };
   for (int k = 0; k < Corners; ++k) {

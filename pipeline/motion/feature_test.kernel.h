@@ -7,22 +7,22 @@
 
 namespace winnow {
 
-/// Pairs of features that are tested at a time.
+/// Pairs of features tested at once.
 inline constexpr std::size_t kFeatureLanes = 8;
 
-/// Between these neither cubes nor squares of numbers leave the range of double.
+/// Squares and cubes of numbers between these stay in the range of double.
 inline constexpr double kLeastScaled = 0x1p-200;
 inline constexpr double kMostScaled = 0x1p200;
-/// What products that underflow may lose.
+/// Bound on the loss by underflow of products.
 inline constexpr double kLostByUnderflow = 1e-300;
-/// Bounds the error of the coefficients of the volume that four points span, and of what is cut
-/// from them, over the largest volume that their numbers could span: 60 roundings.
+/// Error bound of the coefficients of the volume that four points span, and of values interpolated
+/// from them, relative to the largest volume their numbers could span: 60 roundings.
 inline constexpr double kVolumeError = 0x1p-46;
 
-/// The cheap tests that `first_impact` begins with, of eight pairs of features in columns: x, y, z
-/// of points 0 to 3 at the start, then at the end. A bit is set for each pair that a coordinate
-/// axis, or a volume that is never zero, does not tell apart, and for all whose numbers are bad or
-/// want to be scaled.
+/// The cheap tests that `first_impact` begins with, for eight pairs of features in columns: x, y, z
+/// of points 0 to 3 at the start, then at the end. Returns a bit for each pair that is not
+/// separated by a coordinate axis or by a volume that is never zero, and for each pair whose
+/// numbers are not finite or need scaling.
 struct FeatureTestKernels {
   std::uint32_t (*vertex_face)(const double* const* columns, std::size_t first, double separation);
   std::uint32_t (*edge_edge)(const double* const* columns, std::size_t first, double separation);

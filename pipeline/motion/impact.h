@@ -4,7 +4,8 @@
 
 namespace winnow::impact {
 
-/// When two shapes meet, as ImpactResult says it. Plain: kernel files include this.
+/// The first impact of two shapes; members as in ImpactResult. A plain struct, because kernel files
+/// include this.
 struct Impact {
   bool hit = false;
   double time = 1.0;
@@ -12,11 +13,11 @@ struct Impact {
   double error_bound = 0.0;
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
-  /// How often distances were computed one pair at a time.
+  /// Number of distance computations by the scalar search (ImpactSearch).
   std::uint32_t samples = 0;
 };
 
-/// True of shapes that share a point at the start.
+/// Returns whether the shapes overlap or touch at the start.
 [[nodiscard]] inline bool touches_at_start(const Impact& impact) noexcept {
   return impact.hit && impact.time == 0.0 && impact.gap <= 0.0;
 }

@@ -1,3 +1,7 @@
+// ImpactBatch: sorts queries into jobs of one pair of kinds and one type of motion, runs the lane
+// kernels (impact_lanes.kernel.cpp), and resolves pairs that touch at the start with the narrow
+// phase's distance kernels. Called by time_of_impact.cpp and scene/swept_impacts.cpp.
+
 #include "pipeline/motion/impact_batch.h"
 
 #include "pipeline/kernels/kernels.h"
@@ -15,9 +19,9 @@ WINNOW_DEFINE_KERNELS(ImpactLaneKernels, impact_lane_kernels)
 namespace impact {
 namespace {
 
-/// Ways to move, which ImpactMotion names.
+/// Number of values of ImpactMotion.
 constexpr std::size_t kMotions = 3;
-/// Of pairs without lanes.
+/// The key of pairs that the lanes do not support.
 constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
 
 [[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
@@ -32,7 +36,7 @@ constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
   return turns_b || !is_straight(query, 0) ? ImpactMotion::turns : ImpactMotion::straight;
 }
 
-/// Of pairs that one job may have: the number of their motion is the rest by kMotions.
+/// The key of a query: equal for queries that one job can have. key % kMotions is the ImpactMotion.
 [[nodiscard]] std::uint16_t kinds_of(const ImpactQuery& query) noexcept {
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
@@ -41,7 +45,8 @@ constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
   return static_cast<std::uint16_t>(kMotions * kinds + static_cast<std::size_t>(motion_of(query)));
 }
 
-/// Distances of pairs of one pair of kinds at the start of their motions, in lanes.
+/// Distances, at the start of their motions, of pairs of one pair of kinds, by the narrow phase's
+/// kernels.
 class StartDistances {
  public:
   explicit StartDistances(const ShapeTables& tables) noexcept {
@@ -72,7 +77,8 @@ class StartDistances {
     ++job_.count;
   }
 
-  /// Puts impacts of those that surely overlap where known(query) says, and forgets all.
+  /// Stores the impact of each pair that certainly overlaps where the callback, given the query's
+  /// index, returns; clears the stage.
   template <typename Known>
   void run(Known&& known) noexcept {
     if (job_.count != 0) answer(known);
@@ -105,7 +111,7 @@ class StartDistances {
   using Row = std::array<T, kRoom>;
 
   NarrowJob job_{};
-  /// As kernels are asked.
+  /// Whether the kernel takes the shapes in the opposite order.
   bool mirrored_ = false;
   Row<std::size_t> queries_;
   Row<const ImpactQuery*> asked_;
@@ -152,7 +158,7 @@ void ImpactBatch::sort_by_kinds() noexcept {
   }
 }
 
-/// Lanes are sure of valid motions alone.
+/// Marks pairs with an invalid motion; the lanes report these as unsure.
 void ImpactBatch::refuse_invalid(const ImpactJob& job) noexcept {
   for (const std::uint16_t query : std::span(job.order, job.count)) {
     if (verdicts_[query] != ImpactVerdict::unsure) continue;
@@ -163,7 +169,7 @@ void ImpactBatch::refuse_invalid(const ImpactJob& job) noexcept {
   }
 }
 
-/// Of pairs that lanes could not tell at the start: most share a point there.
+/// Resolves pairs that the lanes could not decide at time 0; most of them overlap there.
 void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
   const std::span<const std::uint16_t> asked(job.order, job.count);
   const auto at_start = [&](std::uint16_t query) {

@@ -9,29 +9,29 @@
 
 namespace winnow::impact {
 
-/// Pairs of convex shapes that move, which are answered many at a time: by lanes, one kind of pair
-/// after the other, and by `find_impact` where lanes cannot tell. What is said of a pair does not
-/// depend on the others.
+/// Pairs of moving convex shapes, solved many at a time: in SIMD lanes, grouped by pair of kinds,
+/// and by `find_impact` if the lanes cannot decide. The result of a pair does not depend on the
+/// other pairs.
 class ImpactBatch {
  public:
-  /// Of as many as that, `run` has to be called.
+  /// Capacity; if it is reached, call `run`.
   static constexpr std::size_t kRoom = 256;
 
   ImpactBatch(const ShapeTables& tables, double tolerance) noexcept
       : tables_(tables), tolerance_(tolerance) {}
 
   [[nodiscard]] bool is_full() const noexcept { return count_ == kRoom; }
-  /// Whether pairs of these shapes are to be put in.
+  /// Whether the batch supports a pair of these shapes.
   [[nodiscard]] static bool takes(ShapeId a, ShapeId b) noexcept {
     return !a.is_composite() && !b.is_composite();
   }
-  /// `name` is what the answer is given with. The motions outlive the next run. An impact after
-  /// `until` may be given as none.
+  /// Adds a pair; `name` identifies its result. The motions must outlive the next run. An impact
+  /// after `until` may be reported as none.
   void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b, const RigidMotion& of_b,
            double until = 1.0) noexcept;
 
-  /// Calls take(name, impact, valid) for every pair that was added, in any order, and forgets them.
-  /// Of motions that are not both valid there is no impact.
+  /// Calls take(name, impact, valid) for each pair, in any order, and clears the batch. `valid` is
+  /// false, and there is no impact, if a motion is not valid.
   template <typename Take>
   void run(Take&& take) {
     find();
@@ -46,7 +46,7 @@ class ImpactBatch {
  private:
   void find() noexcept;
   void sort_by_kinds() noexcept;
-  /// What lanes have left, and the caller's order.
+  /// Runs the scalar search if the lanes left the pair undecided, and restores the caller's order.
   void finish(std::size_t i) noexcept {
     if (verdicts_[i] == ImpactVerdict::unsure) search(i);
     if (mirrored_[i] && found_[i].hit) {
@@ -62,7 +62,7 @@ class ImpactBatch {
   std::size_t count_ = 0;
   std::array<std::size_t, kRoom> names_;
   std::array<bool, kRoom> mirrored_;
-  // In unions they are not initialised, which would take as long as some answers do.
+  // In unions, so that they are not initialised, which would take as long as some queries.
   union {
     std::array<ImpactQuery, kRoom> queries_;
   };
@@ -70,11 +70,11 @@ class ImpactBatch {
     std::array<Impact, kRoom> found_;
   };
   std::array<ImpactVerdict, kRoom> verdicts_;
-  /// What a job has in common.
+  /// The key by which pairs are grouped into jobs (kinds_of).
   std::array<std::uint16_t, kRoom> kinds_;
-  /// All kinds are the same.
+  /// All keys are equal.
   bool alike_ = true;
-  /// By kinds.
+  /// Indices sorted by key.
   std::array<std::uint16_t, kRoom> order_;
 };
 

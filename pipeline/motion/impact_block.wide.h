@@ -1,68 +1,69 @@
 #pragma once
 
-// Pairs of moving cores, one per lane, what is known of them on their way, and where their answers
-// go.
+// State of pairs of moving cores, one per lane, and the writing of their results. ImpactStep,
+// StraightStart and StraightStep derive from BlockStep. A sample is one evaluation of the closest
+// points or of the gap along an axis, at one time.
 
 #include "pipeline/motion/closed_forms.wide.h"
 #include "pipeline/motion/smooth_guess.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Shapes that stay so long within the tolerance as they near each other have met.
+/// A pair within the tolerance for more samples than this counts as an impact.
 inline constexpr double kMostLooksWithin = 64.0;
-/// What takes more looks takes the search that has one pair alone.
+/// A pair that needs more samples is left to the scalar search (ImpactSearch).
 inline constexpr double kMostLaneLooks = 256.0;
-/// Of the tolerance: pairs that do not turn are not brought nearer.
+/// Fraction of the tolerance: pairs that do not rotate are not advanced to smaller gaps.
 inline constexpr double kNearEnough = 0.375;
-/// Gaps are not seen to be smaller than some noise.
+/// Gaps below this many times the noise count as closed.
 inline constexpr double kClosedNoise = 6.0;
-/// Of the noise: what distances need not be better than.
+/// Fraction of the noise: distances need no better accuracy.
 inline constexpr double kEnough = 0.125;
 
-/// Two moving shapes and what is known of them. All members are lanes.
+/// Two moving shapes and the bounds found for them. All members are lanes.
 struct PairLanes {
   MovingCore a;
   MovingCore b;
-  /// From body a to body b at time 0, and how that changes.
+  /// Position of body b relative to body a at time 0, and its total change.
   Vector start;
   Vector travel;
   Doubles roundings;
   Doubles sizes;
-  /// What rounding does to any gap but for that of the place.
+  /// Bound on the rounding of any gap, except for the rounding of the position.
   Doubles still_noise;
   Doubles tolerance;
   Doubles last;
   Doubles until;
-  /// They are apart before; and the axis of the last look, or of the next one of a pair that does
-  /// not turn.
+  /// The pair is disjoint before `time`. `axis` is the axis of the last sample; for pairs that do
+  /// not rotate, of the next one.
   Doubles time;
   Vector axis;
-  /// Whether the next look is to prove that they are apart until then; of a pair that does not
-  /// turn, that its axis is as good as can be, or, if that has a closed form, that it is looked at
-  /// ahead of what is proved, below 0 that it shall not be any more.
+  /// For pairs that rotate: 1 if the next sample must prove that they are disjoint until then. For
+  /// pairs that do not: 1 if the axis cannot be improved; with a closed form, 1 if the sample is
+  /// ahead of the proved time, below 0 if no more such samples are allowed.
   Doubles proves;
-  /// Until when that is proved.
+  /// The time until which the pair is proved disjoint.
   Doubles free;
-  /// As in ImpactSearch.
+  /// Number of samples within the tolerance, as in ImpactSearch.
   Doubles within;
-  /// So far.
+  /// Number of samples.
   Doubles looks;
-  /// 1 while there is more to do.
+  /// 1 while the pair is not decided.
   Doubles active;
   WitnessLanes witness;
-  /// Of pairs that do not turn and have guesses.
+  /// For pairs that do not rotate and use guesses (has_guesses).
   TriedLanes tried;
-  /// Of pairs that do not turn and look back, the direction that shows the largest gap, unit, once
-  /// there is a simplex; and from the point of a that is farthest along it to that of b, without
-  /// the way between the middles.
+  /// For pairs that do not rotate and use earlier directions (looks_back): the unit direction with
+  /// the largest gap, once there is a simplex; and the vector from a's support point to b's along
+  /// it, without the vector between the centres.
   Vector best;
   Vector best_way;
-  /// Of pairs that turn: how fast they travel; what else is known by the last look, when to look
-  /// next, and as in ImpactSearch.
+  /// For pairs that rotate: the relative speed; the gap, slope and bend of the last sample; the
+  /// time of the next sample; and the rest as in ImpactSearch.
   Doubles speed;
   Doubles gap;
   Doubles slope;
-  /// How fast the slope seems to grow.
+  /// Estimated second derivative of the gap.
   Doubles curve;
   Doubles bend;
   Doubles next;
@@ -82,8 +83,9 @@ struct ImpactBlock {
   PairBlockTables tables;
 };
 
-/// Whether earlier directions are of use: the way between points that nearly touch is short, and
-/// rounding turns it by much. Rims are hit so at any tolerance, other shapes at small ones.
+/// Whether earlier directions help: the vector between points that nearly touch is short, and
+/// rounding changes its direction much. This happens with rims at any tolerance, with other shapes
+/// at small ones.
 [[nodiscard]] inline bool looks_back(const ImpactJob& job, ShapeKind a, ShapeKind b) {
   constexpr double kSmall = 2e-7;
   const auto has_rim = [](ShapeKind kind) {
@@ -92,7 +94,7 @@ struct ImpactBlock {
   return job.tolerance < kSmall || has_rim(a) || has_rim(b);
 }
 
-/// What the lanes show where they are placed.
+/// A sample of the pairs.
 struct LookLanes {
   ClosestLanes closest;
   Vector between;
@@ -103,7 +105,7 @@ struct LookLanes {
   Truth parted;
 };
 
-/// Until when pairs that do not turn are apart along an axis.
+/// The time until which pairs that do not rotate are separated along an axis.
 [[nodiscard]] inline Doubles free_along(const PairLanes& p, const LookLanes& look) {
   const Doubles target = min(p.tolerance * Doubles(0.25), look.gap * Doubles(0.5));
   const Truth closes = look.slope < Doubles(0.0);
@@ -112,12 +114,12 @@ struct LookLanes {
   return select(closes & (until < p.last), until, p.last);
 }
 
-/// Writes answers of some lanes.
+/// Writes the results of some lanes.
 class Answers {
  public:
   Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
 
-  /// They are apart before.
+  /// Not decided; disjoint before `time`.
   void put_unsure(Mask16 lanes, const Doubles& time) {
     if (lanes == 0) return;
     alignas(64) double times[kWidth];
@@ -165,14 +167,14 @@ class Answers {
   }
 
  private:
-  /// In memory: what is made on the stack and copied at once is waited for.
+  /// Static, because copying an object that was just built on the stack would stall.
   static constexpr winnow::impact::Impact kNone{};
 
   const ImpactJob& job_;
   const PairBlockTables& tables_;
 };
 
-/// A step of all lanes of a block that are active: what it looks at, and how lanes end.
+/// A step of all active lanes of a block: its sample, and the ways in which lanes end.
 class BlockStep {
  protected:
   BlockStep(const ImpactJob& job, ImpactBlock& block)
@@ -181,11 +183,11 @@ class BlockStep {
         answers_(job, block.tables),
         active_(p_.active > Doubles(0.0)) {}
 
-  /// Gaps that may be as large have been closed.
+  /// Gaps up to this size count as closed.
   [[nodiscard]] Doubles closed() const {
     return max(p_.tolerance, look_.noise * Doubles(kClosedNoise));
   }
-  /// Of gaps where they are `between` from each other.
+  /// Noise of gaps at the relative position `between`.
   [[nodiscard]] Doubles noise_at(const Vector& between) const {
     return p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(between) + p_.sizes);
   }
@@ -197,7 +199,7 @@ class BlockStep {
     answers_.put_apart(bits(active_ & lanes));
     active_ = active_ & !lanes;
   }
-  /// Notes which lanes go on, and returns them.
+  /// Counts the sample; stores and returns the lanes that continue.
   [[nodiscard]] Mask16 go_on() {
     p_.looks += Doubles(1.0);
     end_unsure(p_.looks >= Doubles(kMostLaneLooks));

@@ -1,8 +1,8 @@
-// When two moving cores in each lane first meet, as impact_search.cpp derives it, which answers
-// what the lanes cannot tell: pairs that touch or all but touch where they are looked at. Each
-// round looks once at all pairs of some blocks; lanes of pairs that are done are then given to
-// others, and blocks that are free to those that wait, so that a hard pair does not hold seven easy
-// ones. What is said of a pair does not depend on the others.
+// Finds the first impact of a pair of moving cores in each SIMD lane, by the method of
+// impact_search.cpp; that file also decides the pairs that the lanes cannot: pairs that touch, or
+// nearly, at a sample. Each round samples all pairs of a few blocks once. Then lanes of finished
+// pairs are refilled from other blocks, and free blocks from the queue, so that a hard pair does
+// not hold up seven easy ones. The result of a pair does not depend on the others.
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
@@ -14,19 +14,19 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::impact {
 namespace {
 
-/// Distances need to be no better than this share of them until the last one.
+/// Relative accuracy of distances, except for the last one.
 constexpr double kGoodEnough = 0.3;
-/// The share of the first gap that is to be left where is looked next.
+/// Initial target for the gap at the next sample, relative to the current gap.
 constexpr double kFirstAim = 0.03;
-/// Steps of one search for closest points; more are not needed but where rounding leads astray.
+/// Limit on the steps of one GJK search; only rounding could require more.
 constexpr int kMostSteps = 32;
-/// Lengths whose products of six are in the range of double, and keep their digits.
+/// Products of six lengths between these stay in the range of double without losing digits.
 constexpr double kShortest = 1e-40;
 constexpr double kLongest = 1e40;
 
-/// The share of an interval in which a gap that is `above` a target at its start, and `then` above
-/// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
-/// ends. Of no interest but in some lanes.
+/// The fraction of an interval in which a gap certainly stays above a target. The gap exceeds the
+/// target by `above` at the start and by `then` at the end; at fraction s it is at most 4 `sag` s
+/// (1 - s) below its chord. The result is needed only in `lanes`.
 [[gnu::always_inline]] inline Doubles share_above(const Doubles& above, const Doubles& then,
                                                   const Doubles& sag, const Truth& lanes) {
   const Doubles zero(0.0);
@@ -34,7 +34,7 @@ constexpr double kLongest = 1e40;
   const Doubles square = sag * Doubles(4.0);
   const Doubles linear = then - above - square;
   const Doubles discriminant = linear * linear - square * above * Doubles(4.0);
-  // What is no number proves nothing.
+  // NaN proves nothing.
   const Truth known = square < Doubles(kLargest<double>);
   const Truth stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
                                         (-linear >= square * Doubles(2.0)));
@@ -48,22 +48,22 @@ constexpr double kLongest = 1e40;
   return job.motion == ImpactMotion::straight;
 }
 
-/// How a point at y from a core's middle moves along an axis.
+/// Velocity along an axis of a point at y from a core's centre.
 [[gnu::always_inline]] inline Doubles speed_along(const CoreTable& table, const MovingCore& core,
                                                   const Vector& axis, const Vector& y) {
   if (!table.turns) return Doubles(0.0);
   return core.angle * dot(axis, cross(core.axis, y));
 }
 
-/// What a core does along an axis as it turns.
+/// Bounds on a rotating core's motion along an axis.
 struct TurningAlong {
-  /// The most that it reaches, of all that it sweeps.
+  /// Support along the axis of the volume that it sweeps.
   Doubles high;
-  /// Of no point more.
+  /// Bound on the acceleration of its points along the axis.
   Doubles acceleration;
 };
 
-/// Of a core that reaches as high as `high` where it is.
+/// `high` is the support of the core where it is placed.
 [[gnu::always_inline]] inline TurningAlong turning_along(const CoreTable& table,
                                                          const MovingCore& core, const Vector& axis,
                                                          const Doubles& high) {
@@ -75,9 +75,10 @@ struct TurningAlong {
           core.angle * core.angle * (across + Doubles(kAxisDoubt)) * core.reach};
 }
 
-/// Along an axis that turns evenly from one to another in `width`, to where they are placed,
-/// `between` from each other, no gap falls below its chord by more than half of this times the
-/// shares to either end; infinite if the axes are farther apart than a radian.
+/// Bound for the gap along an axis that rotates uniformly from `from` to `to` during `width`, which
+/// ends at the current placement, where the centres are `between` apart. At fraction s the gap is
+/// at most half of this times s (1 - s) below its chord. Infinite if the axes differ by more than a
+/// radian.
 [[gnu::always_inline]] inline Doubles bend_between(const PairLanes& p, const Vector& from,
                                                    const Vector& to, const Doubles& width,
                                                    const Vector& between) {
@@ -95,14 +96,14 @@ struct TurningAlong {
 
 class ImpactStep : BlockStep {
  public:
-  /// `coarse`: the first look, before which nothing is known.
+  /// `coarse`: the first sample, before which nothing is proved; one GJK step suffices.
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : BlockStep(job, block),
         is_exact_(has_closed_form(tables_.a.kind, tables_.b.kind)),
         has_plane_(tables_.b.kind == ShapeKind::half_space),
         coarse_(coarse && !is_exact_) {}
 
-  /// Looks at all lanes once. Returns those that go on.
+  /// Samples all lanes once. Returns the lanes that continue.
   [[nodiscard]] Mask16 run() {
     const Vector axis = p_.axis;
     const Doubles gap = p_.gap;
@@ -113,7 +114,7 @@ class ImpactStep : BlockStep {
   }
 
  private:
-  /// The lanes where they are next.
+  /// Samples the lanes at their next time.
   void look() {
     place(tables_.a, p_.next, p_.a);
     place(tables_.b, p_.next, p_.b);
@@ -141,7 +142,7 @@ class ImpactStep : BlockStep {
     return ClosestSearch(pair, options, p_.witness).run(active_, coarse_ ? 1 : kMostSteps);
   }
 
-  /// The gap along the axis of the last look, where the lanes are placed.
+  /// The gap at the current placement along the axis of the last sample.
   [[nodiscard]] Doubles gap_along(const CorePair& pair) const {
     const Mask16 proves = bits(active_ & (p_.proves > Doubles(0.0)));
     if (proves == 0) return Doubles(0.0);
@@ -150,15 +151,15 @@ class ImpactStep : BlockStep {
     return dot(p_.axis, look_.between) - high - p_.roundings - look_.noise;
   }
 
-  /// Moves on as far as is proved from the last look, which showed a gap along an axis, and takes
-  /// the new one where that is all of the way.
+  /// Advances the time as far as is proved from the last sample, which had gap `gap` along `axis`.
+  /// Lanes that are proved up to the new sample adopt it.
   void advance(const Vector& axis, const Doubles& gap) {
     const Truth proves = p_.proves > Doubles(0.0);
     if (bits(active_ & proves) == 0) {
       whole_ = active_;
       p_.time = p_.next;
       p_.curve = Doubles(0.0);
-      // What a coarse look does not tell apart is looked at again.
+      // Lanes that the coarse sample does not separate are sampled again.
       if (coarse_) whole_ = whole_ & look_.parted;
       end_unsure(whole_ & !look_.parted);
       forget_touching();
@@ -170,34 +171,34 @@ class ImpactStep : BlockStep {
     const Doubles left = p_.touching;
     p_.touching = select(proves & !look_.parted, min(left, p_.time + width * Doubles(0.75)), left);
     learn(gap, width, proves & whole);
-    // Where it was not all: to be looked at from there.
+    // Lanes that are not proved up to the new sample continue from the proved time.
     const Doubles reached = max(apart, p_.free);
     const Truth stands = proves & (!whole) & (reached <= p_.time);
     end_unsure(stands);
     whole_ = whole;
     p_.time = select(whole, p_.next, reached);
     end_apart(((!whole) & (p_.time >= p_.last)) | (p_.time > p_.until));
-    // Too near for double to tell, or touching.
+    // Touching, or too close for double to decide.
     end_unsure(whole & !look_.parted);
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
     forget_touching();
   }
 
-  /// What the gap at the end of a step tells of where to look next.
+  /// Adapts the choice of the next sample to the gap found at the end of a step.
   void learn(const Doubles& gap, const Doubles& width, const Truth& lanes) {
     const Doubles half(0.5);
-    // One quotient for two.
+    // One division instead of two.
     const Doubles both = Doubles(1.0) / (gap * width);
     const Doubles over = both * width;
     const Doubles share = look_.gap * over;
     const Doubles expected = gap + width * (p_.slope + p_.curve * width * half);
-    // The error of a prediction falls with the square of the step, and so by the gap as a share of
-    // it; of one that knows the curve with its cube.
+    // The error of a linear prediction is proportional to the square of the step, and so to the
+    // square of the relative gap; of one with curvature, to the cube.
     Doubles aim = abs(look_.gap - expected) * over * share * Doubles(4.0);
     if (is_exact_) {
       aim = aim * share;
-      // Of the cubic with the gaps and slopes at both ends, at the second.
+      // The second derivative, at the end, of the cubic with the gaps and slopes at both ends.
       const Doubles apiece = both * gap;
       const Doubles mean = (look_.gap - gap) * apiece;
       const Doubles curve =
@@ -213,8 +214,8 @@ class ImpactStep : BlockStep {
     p_.touching = select(p_.time >= p_.touching, Doubles(__builtin_inf()), p_.touching);
   }
 
-  /// How far they are surely apart: along the axis of the last look, or along one that turns from
-  /// it to that of the new one.
+  /// The time until which the pair is certainly disjoint: along the axis of the last sample, or
+  /// along an axis that rotates from it to the axis of the new one.
   [[nodiscard]] Doubles proved(const Vector& axis, const Doubles& gap, const Doubles& way) const {
     const Doubles width = way * Doubles(1.0 + 4.0 * kPlace);
     const Doubles least = select(look_.parted & (look_.gap < gap), look_.gap, gap);
@@ -230,12 +231,12 @@ class ImpactStep : BlockStep {
     share = select(look_.parted & (turning > share), turning, share);
     return reached(share, way);
   }
-  /// By a share of the way to the next look.
+  /// The time at a fraction of the way to the next sample.
   [[nodiscard]] Doubles reached(const Doubles& share, const Doubles& way) const {
     return select(share >= Doubles(1.0), p_.next, min(p_.time + share * way, p_.next));
   }
 
-  /// Of lanes with a new look: whether they have met, or when to look next.
+  /// For lanes with a new sample: detects an impact or chooses the time of the next sample.
   void decide() {
     const Truth looked = active_ & whole_;
     if (bits(looked) == 0) return;
@@ -256,7 +257,7 @@ class ImpactStep : BlockStep {
     const Doubles next = next_look(bend);
     const Truth freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
-    // No number left between.
+    // No double is left between.
     end_unsure(looked & freely & (moved <= p_.time));
     p_.axis = select(looked, c.axis, p_.axis);
     p_.gap = select(looked, look_.gap, p_.gap);
@@ -268,9 +269,10 @@ class ImpactStep : BlockStep {
     p_.proves = one_where(looked & !freely);
   }
 
-  /// What a half-space does along its normal n, which turns with it and sweeps without end. The gap
-  /// is n . P, with P from its position to a point of a; its second derivative is
-  /// n'' . P + 2 n' . P' + n . P''. Of the last, `counted` is what a does along n as it is now.
+  /// Bounds for a half-space along its normal n, which rotates with it; the swept volume is
+  /// unbounded. The gap is n . P, with P from the half-space's position to a point of a; its second
+  /// derivative is n'' . P + 2 n' . P' + n . P''. `counted` is the part of the last term that is
+  /// already included: the acceleration of a along the current n.
   [[nodiscard]] TurningAlong turning_plane(const Doubles& counted) const {
     const Doubles& high = look_.closest.high_b;
     if (!tables_.b.turns) return {high, Doubles(0.0)};
@@ -286,7 +288,8 @@ class ImpactStep : BlockStep {
     return {select(turns, Doubles(__builtin_inf()), high), select(turns, bend, Doubles(0.0))};
   }
 
-  /// They are apart until then by what they sweep, which reaches so high from both middles.
+  /// The time until which the swept volumes are disjoint; `high` is the sum of their supports, from
+  /// both centres.
   [[nodiscard]] Doubles free_until(const Doubles& high) const {
     const Vector& axis = look_.closest.axis;
     const Doubles swept = dot(axis, look_.between) - high - p_.roundings - look_.noise -
@@ -300,9 +303,9 @@ class ImpactStep : BlockStep {
     return select(apart, select(closes & (until < p_.last), until, p_.last), p_.time);
   }
 
-  /// Where the gap seems to fall to a share of what it is, but no farther than a proof may reach.
-  /// `bend`: no gap along the axis falls below its chord between two times by more than half of
-  /// this times the product of the times to either end.
+  /// The time at which the gap is expected to have fallen to a fraction of itself, but no later
+  /// than a proof may reach. `bend`: between two times, the gap along the axis is below its chord
+  /// by at most half of this times the product of the times to both ends.
   [[nodiscard]] Doubles next_look(const Doubles& bend) const {
     const Doubles zero(0.0);
     const Doubles one(1.0);
@@ -316,9 +319,9 @@ class ImpactStep : BlockStep {
       const Doubles square = speed * speed - p_.curve * fall * Doubles(2.0);
       speed = (speed + sqrt(positive_part(square))) * Doubles(0.5);
     }
-    // A gap whose slope is constant has a proof if half of the bend times the square of the step is
-    // below the square of the sum of the roots of the gaps at both ends, of which the second is the
-    // first times `rest`. A little less than that root is taken.
+    // If the slope is constant, a proof succeeds if half of the bend times the square of the step
+    // is less than the square of the sum of the roots of the gaps at both ends. The second gap is
+    // `rest` times the first; `root` is slightly less than the root of `rest`.
     const Truth bends = bend > zero;
     const Doubles depth = select(bends, look_.gap * bend, one);
     const Doubles rate = select(falls, speed, one);
@@ -334,24 +337,25 @@ class ImpactStep : BlockStep {
     return min(p_.time + step, end);
   }
 
-  /// Gaps are as good as can be; else to kGoodEnough.
+  /// Gaps are as accurate as possible (closed form); else to kGoodEnough.
   bool is_exact_;
-  /// Of the half-space, whose normal is the only axis: at each time the one there.
+  /// The pair has a half-space, whose normal at each time is the only axis.
   bool has_plane_;
   bool coarse_;
-  /// The new look is where they are surely apart until.
+  /// The pair is proved disjoint up to the new sample.
   Truth whole_;
-  /// The gap along the axis of the last look.
+  /// The gap at the new sample along the axis of the last one.
   Doubles then_;
 };
 
-/// Loads queries into lanes; those that lanes cannot tell of are answered.
+/// Loads queries into the lanes of a block. Queries that the lanes cannot handle get the verdict
+/// unsure.
 class ImpactLoad {
  public:
   ImpactLoad(const ImpactJob& job, std::uint32_t first, ImpactBlock& block)
       : job_(job), first_(first), p_(block.lanes), tables_(block.tables) {}
 
-  /// Returns the lanes that have something to do.
+  /// Returns the lanes that are active.
   [[nodiscard]] Mask16 run() {
     for (int lane = 0; lane < kWidth; ++lane) {
       const std::uint32_t at = first_ + static_cast<std::uint32_t>(lane);
@@ -394,7 +398,7 @@ class ImpactLoad {
     return kind != ShapeKind::sphere && !is_straight(job_);
   }
 
-  /// True where both positions and both ways are surely valid.
+  /// Loads positions and travel; returns the lanes in which they are certainly valid.
   [[nodiscard]] Truth load_way() {
     constexpr double kFarthest = 1e300;
     Vector position[2];
@@ -424,7 +428,7 @@ class ImpactLoad {
     p_.still_noise =
         Doubles(kPlace) * (way * Doubles(8.0) +
                            (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
-    // A half-space's normal turns by rounding, and with it what is far from its position.
+    // A half-space's normal is rotated with rounding, which moves points far from its position.
     if (has_half_space()) {
       p_.still_noise += Doubles(kPlace) * (Doubles(64.0) + p_.b.angle * Doubles(4.0)) * way;
     }
@@ -435,7 +439,8 @@ class ImpactLoad {
 
   [[nodiscard]] bool has_half_space() const { return tables_.b.kind == ShapeKind::half_space; }
 
-  /// Between when the balls around both touch first and last.
+  /// Clips the time to the interval in which the bounding balls overlap. Returns the lanes in which
+  /// it is not empty.
   [[nodiscard]] Truth cut_to_window() {
     const Doubles zero(0.0);
     if (has_half_space()) return p_.time <= p_.until;
@@ -452,7 +457,8 @@ class ImpactLoad {
     return (inside >= zero) & (p_.time <= min(p_.last, p_.until));
   }
 
-  /// Of closest points. The axis is the first one of a pair that does not turn.
+  /// Initialises the search for closest points. `axis` is the first direction for pairs that do not
+  /// rotate.
   void begin_search() {
     const Doubles zero(0.0);
     for (int i = 0; i < kSlots; ++i) {
@@ -497,13 +503,13 @@ class ImpactLoad {
   PairLanes& p_;
   PairBlockTables& tables_;
   const ImpactQuery* query_[kWidth];
-  /// Of each side's bodies and shapes.
+  /// By side and lane: the numbers of the motion, and the index of the shape.
   const double* motion_[2][kWidth];
   std::uint32_t index_[2][kWidth];
   Doubles span_;
 };
 
-/// Copies a lane of members, from one byte of them to another.
+/// Copies one lane of the members between two byte offsets.
 template <std::size_t First, std::size_t Last, typename Members>
 [[gnu::always_inline]] inline void move_members(const Members& from, unsigned lane_from,
                                                 Members& to, unsigned lane_to) {
@@ -515,7 +521,7 @@ template <std::size_t First, std::size_t Last, typename Members>
   }
 }
 
-/// How the core turns, or, of one that is placed for good, its axes; and its lengths.
+/// Copies the rotation, or the axes if the core is placed for good, and its lengths.
 inline void move_core(const CoreTable& table, const MovingCore& from, unsigned lane_from,
                       MovingCore& to, unsigned lane_to) {
   constexpr std::size_t kAngle = offsetof(MovingCore, angle);
@@ -528,7 +534,7 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   if (!table.turns && !table.in_world) move_members<kAxes, kExtent>(from, lane_from, to, lane_to);
 }
 
-/// Where the target has rows of vertices, the lane gets those of its new hull.
+/// If the target has vertex rows, copies the vertices of the lane's new hull.
 inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, unsigned lane_to) {
   to.hull[lane_to] = from.hull[lane_from];
   if (to.kind != ShapeKind::hull || to.rows == 0) return;
@@ -539,7 +545,7 @@ inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, 
   }
 }
 
-/// Gives the place of a lane to another one, as far as more than the next look is made of it.
+/// Moves a pair to another lane; copies only the members that are needed after the next sample.
 inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned lane_from,
                       ImpactBlock& to, unsigned lane_to) {
   const PairBlockTables& tables = from.tables;
@@ -570,7 +576,7 @@ inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned la
   to.tables.query[lane_to] = tables.query[lane_from];
 }
 
-/// All queries of a job.
+/// Processes all queries of a job.
 class ImpactRounds {
  public:
   explicit ImpactRounds(const ImpactJob& job) : job_(job) {
@@ -593,19 +599,19 @@ class ImpactRounds {
   }
 
  private:
-  /// What is needed of them stays in the cache.
+  /// Few enough that their data stay in the cache.
   static constexpr std::uint32_t kBlocks = 6;
 
-  /// Lanes are moved less often if many blocks are filled at once. A search for closest points
-  /// costs less where simplices of all lanes have few points, as those of pairs have that began
-  /// together.
+  /// The number of active blocks at which free blocks are filled. Filling many at once moves lanes
+  /// less often. A GJK search costs less if the simplices of all lanes have few points, which holds
+  /// for pairs that start together.
   [[nodiscard]] std::uint32_t blocks_when_filled() const {
     if (!searches_) return kBlocks / 2;
     return is_straight(job_) ? 0 : 1;
   }
 
-  /// Loads queries while blocks are free, and looks at them once while they are in the cache: of
-  /// some kinds few go on.
+  /// Loads queries while blocks are free, and samples them once while they are in the cache: for
+  /// some kinds, few remain active.
   void fill() {
     while (next_ < job_.count && count_ < kBlocks) {
       const std::uint32_t at = next_;
@@ -631,12 +637,13 @@ class ImpactRounds {
     }
   }
 
-  /// As few blocks as take all lanes that are active: those of the last go to the first.
+  /// Moves active lanes from the last blocks to the first ones, so that as few blocks as possible
+  /// are in use.
   void close_ranks() {
     std::uint32_t lanes = 0;
     for (std::uint32_t i = 0; i < count_; ++i) lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
     const std::uint32_t needed = (lanes + kWidth - 1) / kWidth;
-    // To move lanes takes as long as some looks of those that need no search.
+    // Moving lanes takes as long as several samples in closed form.
     if (!searches_ && needed * 4 > count_ * 3) return;
     std::uint32_t to = 0;
     for (; count_ > needed; --count_) {
@@ -652,11 +659,11 @@ class ImpactRounds {
 
   const ImpactJob& job_;
   bool searches_;
-  /// Of pairs that do not turn StraightStart is the first step.
+  /// For pairs that do not rotate: the first step is StraightStart.
   bool has_start_;
-  /// Steps of pairs that do not turn are StraightStep<true>.
+  /// For pairs that do not rotate: steps are StraightStep<true>.
   bool tries_elsewhere_;
-  /// The first query that is not loaded.
+  /// The first query that is not loaded yet.
   std::uint32_t next_ = 0;
   std::uint32_t count_ = 0;
   Mask16 active_[kBlocks] = {};

@@ -9,37 +9,36 @@
 
 namespace winnow {
 
-/// Two convex shapes that move.
+/// Two convex shapes in motion.
 struct ImpactQuery {
   ShapeId shape[2];
   const RigidMotion* motion[2];
-  /// A later impact is of no interest, and may be none. Whatever it is, an impact that is not later
-  /// is the same.
+  /// An impact later than this may be reported as none; other results do not depend on it.
   double until;
 };
 
 enum class ImpactVerdict : std::uint8_t {
-  unsure,  ///< the lanes cannot tell; apart before the time
+  unsure,  ///< the lanes cannot decide; disjoint before the time
   known,
-  invalid,  ///< a motion is not valid, which lanes never tell: to them it is unsure from the start
+  invalid,  ///< a motion is not valid; the lanes report this as unsure at time 0
 };
 
-/// What turns of the pairs of a job. A sphere never does.
+/// Which bodies of the pairs in a job rotate. A sphere never counts as rotating.
 enum class ImpactMotion : std::uint8_t {
-  straight,     ///< nothing
-  turns,        ///< some of the bodies, but no half-space
+  straight,     ///< none
+  turns,        ///< some bodies, but no half-space
   plane_turns,  ///< the half-spaces, and any of the other bodies
 };
 
-/// Queries of one pair of kinds, all of which have lanes, and where their answers go.
+/// Queries of one pair of kinds that the lanes support, and where their results go.
 struct ImpactJob {
   ImpactMotion motion;
   ShapeTables tables;
   const ImpactQuery* queries;
-  /// Which of the queries: indices, here and of the answers.
+  /// Indices of this job's queries, and of their results.
   const std::uint16_t* order;
   std::uint32_t count;
-  /// A share of the smaller size.
+  /// Relative to the size of the smaller shape.
   double tolerance;
   impact::Impact* found;
   ImpactVerdict* verdicts;

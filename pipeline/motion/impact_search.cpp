@@ -1,10 +1,15 @@
-// The distance of two moving shapes is at least their gap along any direction n. That gap is the
-// least, over pairs of points, of a line (they travel) and cosines (they turn); its second
-// derivative nowhere exceeds M, the sum of |angle|^2 times the shapes' reach from their axes, as
-// far as it is seen along n. So between two times it lies above its chord less M / 2 times the
-// times to both ends, which is positive up to the root of a quadratic: a proof that they are apart
-// until there. With n the direction of the closest points the gap is the distance, and so is its
-// slope: looks at the times where Newton's method would find the gap closed converge as that does.
+// Scalar search for the first impact of two moving convex shapes: conservative advancement (Mirtich
+// 1996) with a bound of second order. impact_batch.cpp calls it for pairs that the lanes cannot
+// decide, body_impact.cpp for parts of composite shapes.
+//
+// The distance of two shapes is at least their gap along any direction n. The gap is the minimum,
+// over pairs of points, of a linear function of time (travel) plus cosines (rotation). Its second
+// derivative nowhere exceeds M, the sum of |angle|^2 times the reach of each shape from its axis,
+// projected on n. So between two times the gap is at most M / 2 times the product of the times to
+// both ends below its chord. This bound is positive up to the root of a quadratic, which proves
+// that the shapes are disjoint until then. If n is the direction of the closest points, the gap
+// equals the distance and has its slope: sampling at the times at which Newton's method would close
+// the gap converges as fast as Newton's method.
 
 #include "pipeline/motion/impact_search.h"
 
@@ -27,12 +32,12 @@ using solver::Simplex;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMostLooks = 200'000;
-/// Shapes that stay so long within the tolerance as they near each other have met.
+/// A pair within the tolerance for more samples than this counts as an impact.
 constexpr std::uint32_t kMostWithin = 64;
-/// Distances need to be no better than this share of them until the last one.
+/// Relative accuracy of distances, except for the last one.
 constexpr double kGoodEnough = 1e-3;
 
-/// Of shapes that are there, at valid poses.
+/// The shapes must exist and the poses be valid.
 [[nodiscard]] PairAnswer distance_of(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                      ShapeId b, const Pose& pose_b) noexcept {
   PairAnswer answer;
@@ -41,23 +46,23 @@ constexpr double kGoodEnough = 1e-3;
   return answer;
 }
 
-/// The pair at one time.
+/// A sample of the pair: bounds at one time.
 struct Look {
-  /// Surely apart along `axis`, by `gap` > 0; or along some axis, if it is zero.
+  /// Certainly separated along `axis` by `gap` > 0; along an unspecified axis if `axis` is zero.
   bool parted = false;
   Vec axis = Vec::Zero();
   double gap = 0.0;
-  /// They are no farther apart.
+  /// Upper bound on the distance.
   double most = 0.0;
-  /// About how fast the gap grows.
+  /// Estimated derivative of the gap.
   double slope = 0.0;
-  /// The closest point of the core of a that was found, and from it to that of b.
+  /// The closest point found on the core of a, and the vector from it to the closest point of b's
+  /// core.
   Vec on_a = Vec::Zero();
   Vec between = Vec::Zero();
 };
 
-/// The simplex of a look, in the axes of the cores. Where they are next, it is made of points of
-/// theirs as well.
+/// The simplex of a sample, in the frames of the cores; it warm-starts GJK at the next sample.
 class Witness {
  public:
   [[nodiscard]] bool is_there() const noexcept { return count_ > 0 && age_ < kOldest; }
@@ -81,7 +86,7 @@ class Witness {
   }
 
  private:
-  /// Each turn there and back rounds: after so many it is found anew.
+  /// Each transformation back and forth rounds, so the simplex is discarded after this many.
   static constexpr int kOldest = 16;
 
   int count_ = 0;
@@ -103,7 +108,7 @@ class ImpactSearch {
         until_(until) {}
 
   [[nodiscard]] Impact run() noexcept;
-  /// How often distances were computed.
+  /// Number of distance computations.
   [[nodiscard]] std::uint32_t looks() const noexcept { return looks_; }
 
  private:
@@ -133,11 +138,11 @@ class ImpactSearch {
   Interval span_;
   double until_;
   Witness witness_;
-  /// Nothing is gained by looking as late as this.
+  /// The pair seems to touch before this time; sampling later is useless.
   double touching_ = kUnbounded;
-  /// The share of a gap that is to be left of it where is looked next.
+  /// The fraction of the gap that should remain at the next sample.
   double aim_ = 0.1;
-  /// Looks within the tolerance so far.
+  /// Number of samples within the tolerance.
   std::uint32_t within_ = 0;
   std::uint32_t looks_ = 0;
 };
@@ -155,7 +160,7 @@ void ImpactSearch::look_at_half_space(Look& result) const noexcept {
   result.slope = pair_.parting(result.axis, y, y + result.between - b.center);
 }
 
-/// From what was closest when last looked at, which moves with the cores.
+/// GJK, started from the simplex of the last sample if there is one.
 GjkResult ImpactSearch::closest_points(double share) const noexcept {
   const double noise = solver::kEnough * pair_.problem().noise();
   const solver::Core& b = pair_.b();
@@ -167,7 +172,7 @@ GjkResult ImpactSearch::closest_points(double share) const noexcept {
   return gjk(pair_.a(), b, start, noise, kUnbounded, share, pair_.roundings());
 }
 
-/// By the iteration for closest points, which ends where the gap is known to a share of it.
+/// Samples by GJK, which ends once the gap has the relative accuracy `share`.
 void ImpactSearch::look_at_cores(double share, Look& result) noexcept {
   const solver::Core& b = pair_.b();
   const double noise = pair_.noise();
@@ -182,8 +187,8 @@ void ImpactSearch::look_at_cores(double share, Look& result) noexcept {
   result.slope = pair_.parting(found.axis, result.on_a, found.simplex.on_b() - b.center);
 }
 
-/// What the solver says of the shapes at a time, and where it puts a. Triangles that bend are put
-/// in a table of their own.
+/// The narrow phase's distance of the shapes at a time, and the pose of a there. Triangles that
+/// deform are put in a separate table.
 PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
   Pose pose_b;
   pair_.poses(time, pose_a, pose_b);
@@ -202,7 +207,7 @@ PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
   return distance_of(tables, a_.shape, pose_a, b_.shape, pose_b);
 }
 
-/// For cores whose closest points iteration does not find.
+/// Samples by the narrow phase, if GJK does not find the closest points.
 void ImpactSearch::look_closer(double time, Look& result) const noexcept {
   Pose pose_a;
   const PairAnswer found = answer_at(time, pose_a);
@@ -237,9 +242,9 @@ Look ImpactSearch::look(double time) noexcept {
   return result;
 }
 
-/// The share of an interval in which a gap that is `above` a target at its start, and `then` above
-/// it at the end, surely stays above: it is above its chord less 4 `sag` times the shares to both
-/// ends.
+/// The fraction of an interval in which a gap certainly stays above a target. The gap exceeds the
+/// target by `above` at the start and by `then` at the end; at fraction s it is at most 4 `sag` s
+/// (1 - s) below its chord.
 double share_above(double above, double then, double sag) noexcept {
   const double square = 4.0 * sag;
   if (!std::isfinite(square)) return 0.0;
@@ -252,8 +257,8 @@ double share_above(double above, double then, double sag) noexcept {
   return std::min(root * (1.0 - 1e-12), 1.0);
 }
 
-/// Where to look after `from`: where the gap seems to fall to a share of what it is, but no farther
-/// than a proof may reach.
+/// The time of the sample after `from`: when the gap is expected to have fallen to a fraction of
+/// itself, but no later than a proof may reach.
 double ImpactSearch::next(double from, double end, const Look& look) const noexcept {
   double step = end - from;
   if (look.slope < 0.0) {
@@ -262,8 +267,8 @@ double ImpactSearch::next(double from, double end, const Look& look) const noexc
   }
   const double curvature = pair_.curvature(look.axis);
   if (curvature > 0.0) {
-    // A gap whose slope is constant has a proof if half of the curvature times the square of the
-    // step is below the square of the sum of the roots of the gaps at both ends.
+    // If the slope is constant, a proof succeeds if half of the curvature times the square of the
+    // step is less than the square of the sum of the roots of the gaps at both ends.
     const double flat = std::sqrt(2.0 * look.gap / curvature);
     const double left = 1.0 + look.slope * flat / look.gap;
     step = std::min(step, 0.95 * flat * (1.0 + std::sqrt(std::clamp(left, 0.0, 1.0))));
@@ -271,8 +276,9 @@ double ImpactSearch::next(double from, double end, const Look& look) const noexc
   return std::min(from + step, end);
 }
 
-/// How far from one time to a later one, where the pair is placed, they are surely apart: along the
-/// axis of the first look, or along one that turns from it to that of the second.
+/// The time, between `from` and `to`, until which the pair is certainly disjoint: along the axis of
+/// the first sample, or along an axis that rotates from it to the axis of the second. The pair is
+/// placed at `to`.
 double ImpactSearch::proved(double from, const Look& first, double to,
                             const Look& second) const noexcept {
   const double width = (to - from) * (1.0 + 4.0 * kEpsilon);
@@ -290,7 +296,8 @@ double ImpactSearch::proved(double from, const Look& first, double to,
   return share >= 1.0 ? to : std::min(from + share * (to - from), to);
 }
 
-/// They are apart until then by what they sweep, or by their speed alone.
+/// The time until which the swept volumes are disjoint; if the sample has no axis, a bound from the
+/// speed only.
 double ImpactSearch::free_until(double time, double end, const Look& look) const noexcept {
   if (look.axis.isZero(0.0)) {
     return std::min(end, time + 0.5 * look.gap / pair_.most_closing());
@@ -301,7 +308,8 @@ double ImpactSearch::free_until(double time, double end, const Look& look) const
   return closing > 0.0 ? std::min(end, time + swept / closing * (1.0 - 8.0 * kEpsilon)) : end;
 }
 
-/// As answered at a time, of a shape a that is at `from` from the position of its body.
+/// Converts an answer at a time; `from` is the position that shape a's points are relative to, from
+/// the position of its body.
 Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&from)[3]) noexcept {
   Impact impact;
   impact.hit = true;
@@ -315,8 +323,8 @@ Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&f
   return impact;
 }
 
-/// They are apart before and within the tolerance here, where the pair is placed, or too near for
-/// double to tell.
+/// The impact at a time at which the pair is placed: disjoint before, and here within the tolerance
+/// or too close for double to decide.
 Impact ImpactSearch::meet_at(double time, Look& look) noexcept {
   if (look.parted) return near_at(time, look);
   if (time == 0.0) return start();
@@ -328,7 +336,8 @@ Impact ImpactSearch::meet_at(double time, Look& look) noexcept {
   return impact;
 }
 
-/// What a look says of shapes that it shows apart; a closer one where there are closest corners.
+/// The impact from a sample that separates the shapes. Polytopes are sampled again if their closest
+/// points are not accurate yet.
 Impact ImpactSearch::near_at(double time, Look& look) noexcept {
   const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
   if (polytopes && look.most - look.gap > 4.0 * pair_.noise()) look_at_cores(0.0, look);
@@ -346,7 +355,7 @@ Impact ImpactSearch::near_at(double time, Look& look) noexcept {
   return impact;
 }
 
-/// They may share a point at the start, which is known to the last bit of where they are.
+/// The answer at the start, where poses are exact; the shapes may overlap there.
 Impact ImpactSearch::start() const noexcept {
   constexpr double kHere[3] = {0.0, 0.0, 0.0};
   const Pose& start_a = a_.motion.start;
@@ -359,14 +368,15 @@ Impact ImpactSearch::start() const noexcept {
   return met(0.0, answer, pose_a.position);
 }
 
-/// True if they are within the tolerance and seem to meet before the end, or stay so for long.
+/// Returns whether the pair is within the tolerance and is expected to touch before the end, or has
+/// been within it for many samples.
 bool ImpactSearch::has_met(double time, double end, const Look& look) noexcept {
   if (look.most > std::max(tolerance_, 8.0 * pair_.noise())) return false;
   return look.gap + look.slope * (end - time) <= 0.0 || ++within_ > kMostWithin;
 }
 
-/// One step on from `time`, where the pair is placed: the time until which they are surely apart.
-/// `look` becomes that at this time, if there is one.
+/// One step from `time`, where the pair is placed. Returns the time until which the pair is
+/// certainly disjoint. If there is a sample at that time, `look` becomes this and `known` is set.
 double ImpactSearch::advance(double time, double end, Look& look, bool& known) noexcept {
   known = false;
   const double free = free_until(time, end, look);
@@ -377,8 +387,8 @@ double ImpactSearch::advance(double time, double end, Look& look, bool& known) n
   const double apart = proved(time, look, to, there);
   if (!there.parted) touching_ = std::min(touching_, time + 0.75 * (to - time));
   if (apart < to) return std::max(apart, free);
-  // The error of a prediction falls with the square of the step, and so by the gap as a share of
-  // it.
+  // The error of a linear prediction is proportional to the square of the step, and so to the
+  // square of the relative gap.
   const double expected = look.gap + look.slope * (to - time);
   aim_ = std::clamp(4.0 * std::abs(there.gap - expected) / look.gap * there.gap / look.gap, 1e-9,
                     0.25);
@@ -404,7 +414,7 @@ Impact ImpactSearch::run() noexcept {
     if (!now.parted || has_met(time, last, now)) return meet_at(time, now);
     const double free = advance(time, last, now, known);
     if (free >= last || free > until_) return {};
-    // No number left between, or none that looks would ever reach.
+    // No double is left between, or too many samples were taken.
     if (free <= time || looks_ >= kMostLooks) {
       now = look(time);
       return meet_at(time, now);

@@ -1,5 +1,5 @@
-// Faces whose boxes meet the way of a rigid shape are looked at one by one, as triangles that bend
-// while they travel.
+// Impacts of a rigid shape with a DeformableMesh: faces whose boxes overlap the shape's swept box
+// are tested one by one, as triangles that deform while they travel.
 
 #include <winnow/pipeline/deformable_mesh.h>
 
@@ -24,7 +24,7 @@ constexpr std::size_t kFacesPerStretch = 16;
   return obstacle.motion.is_valid() ? Status::ok : Status::invalid_pose;
 }
 
-/// Around all of the way, measured from an origin.
+/// The bounding box of the whole motion, relative to `origin`.
 [[nodiscard]] Aabb box_of_way(const PartTraversal& parts, const MeshObstacle& obstacle,
                               const Vec3d& origin) noexcept {
   const RigidMotion frame = RigidMotion::standing(Pose::at(origin.x(), origin.y(), origin.z()));

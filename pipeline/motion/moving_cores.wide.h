@@ -1,7 +1,8 @@
 #pragma once
 
-// Cores of shapes that move, one per lane, all of one kind: their numbers, how they turn about the
-// middle of their motion's axis, where they are at a time, and their farthest points.
+// Cores of moving shapes, one per lane, all of one kind: their numbers, their rotation about an
+// axis through the body's position, their placement at a time, and their support functions. Used by
+// all impact kernels beside this file.
 
 #include "pipeline/kernels/own_support.wide.h"
 #include "pipeline/kernels/pair_lanes.wide.h"
@@ -13,13 +14,13 @@ using Vector = Vec3<double>;
 using Truth = LaneMask<double>;
 
 inline constexpr int kWidth = Doubles::kCount;
-/// The distance from 1 to the next number.
+/// The distance from 1 to the next double.
 inline constexpr double kPlace = 0x1p-52;
-/// Axes that differ by less are the same: what that changes is counted as noise.
+/// Axes that differ by less count as equal; the difference is covered by the noise.
 inline constexpr double kAxisDoubt = 16.0 * kPlace;
-/// Radians.
+/// In radians: hulls that rotate farther are measured by their vertices (measure_turning_hulls).
 inline constexpr double kFarTurn = 2.0;
-/// Of a hull, which are copied to lanes.
+/// Hulls with at most this many vertices have them copied to lanes.
 inline constexpr int kFewVertices = 2 * kWidth;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
@@ -36,7 +37,7 @@ inline constexpr int kFewVertices = 2 * kWidth;
   return select(mask, Doubles(1.0), Doubles(0.0));
 }
 
-/// The nearest whole number, of numbers below 2^51.
+/// Rounds to the nearest integer; |v| must be below 2^51.
 [[gnu::always_inline]] inline Doubles nearest_whole(const Doubles& v) {
   const Doubles shift(0x1.8p52);
   return (v + shift) - shift;
@@ -47,7 +48,7 @@ struct SineCosineLanes {
   Doubles cosine;
 };
 
-/// The same numbers as impact::sine_cosine.
+/// Equal to impact::sine_cosine in every bit.
 [[gnu::always_inline]] inline SineCosineLanes sine_cosine(const Doubles& angle) {
   const Doubles quarters = nearest_whole(angle * Doubles(6.36619772367581382433e-01));
   const Doubles x = (angle - quarters * Doubles(1.57079632673412561417e+00)) -
@@ -65,7 +66,7 @@ struct SineCosineLanes {
     cosine = cosine * z + Doubles(term);
   }
   cosine = Doubles(1.0) + z * cosine;
-  // Of four whole numbers over 4 the nearest whole number to this is the one below.
+  // For a multiple of 1/4 this rounds down to an integer.
   const Doubles turns = nearest_whole(quarters * Doubles(0.25) - Doubles(0.375));
   const Doubles quarter = quarters - turns * Doubles(4.0);
   const Truth back = quarter > Doubles(1.5);
@@ -75,13 +76,13 @@ struct SineCosineLanes {
   return {select(back, -s, s), select(back, -c, c)};
 }
 
-/// Of length 1 to rounding.
+/// A quaternion of length 1, up to rounding.
 struct Orientation {
   Doubles w;
   Vector v;
 };
 
-/// From an orientation, turned about a unit axis by an angle.
+/// An orientation rotated about a unit axis by an angle.
 [[gnu::always_inline]] inline Orientation turned(const Orientation& from, const Vector& axis,
                                                  const Doubles& angle) {
   const SineCosineLanes half = sine_cosine(angle * Doubles(0.5));
@@ -94,35 +95,36 @@ struct Orientation {
   return rotation(Turn<double>{q.w, q.v, Doubles(2.0)});
 }
 
-/// Where the numbers of a RigidMotion begin.
+/// Offsets of the members of RigidMotion, in doubles.
 inline constexpr int kOrientationAt = 3;
 inline constexpr int kTravelAt = 7;
 inline constexpr int kTurnAt = 10;
 static_assert(sizeof(RigidMotion) == 13 * sizeof(double));
 
-/// A core, and how its body turns. All members are lanes: a block may move lanes as numbers.
+/// A core and the rotation of its body. All members are lanes: a block may move lanes as numbers.
 struct MovingCore {
-  /// Of a core that turns; and the unit axis it turns about, how far along it its points reach, the
-  /// radians in all, and the distance from the axis that none exceeds.
+  /// For cores that rotate: the orientation at the start, the unit axis of rotation, and the range
+  /// of the core's points along it.
   Orientation from;
   Vector axis;
   Doubles low;
   Doubles high;
-  /// Both are 0 of a core that does not turn.
+  /// The total angle in radians, and an upper bound on the distance of points from the axis; both
+  /// are 0 for cores that do not rotate.
   Doubles angle;
   Doubles reach;
-  /// Box: half extents. Segment, cylinder, cone: radius, radius, half length. Hull: its middle.
-  /// Ellipsoid: radii. Tapered capsule: by how much one ball is larger than the other, twice, and
-  /// how high its centre is. Half-space: its normal.
+  /// By kind: half extents (box); 0, 0, half length (capsule); radius, radius, half length
+  /// (cylinder, cone); centre (hull); radii (ellipsoid); the difference of the radii, twice, and
+  /// the height of the larger ball's centre (tapered capsule); normal (half-space).
   Vector half;
   Doubles rounding;
-  /// No point of the shape is farther from the body's position.
+  /// Upper bound on the distance of the shape's points from the body's position.
   Doubles size;
-  /// Of a triangle. Of a half-space the first number is its offset.
+  /// Corners of a triangle; for a half-space, the first number is its offset.
   Vector corner[3];
-  /// Where it is placed: its axes in the world.
+  /// Its axes in the world, where it is placed.
   Rotation<double> axes;
-  /// Of which tolerances are shares.
+  /// The size that tolerances are relative to.
   Doubles extent;
 };
 
@@ -134,17 +136,18 @@ struct MovingCore {
   return kind == ShapeKind::box || kind == ShapeKind::hull || kind == ShapeKind::triangle;
 }
 
-/// What of a core is not a number.
+/// The members of a core that are not lanes.
 struct CoreTable {
   ShapeKind kind;
-  /// Its own frame is the world, but for its place.
+  /// Its frame has the axes of the world.
   bool in_world;
-  /// Not so those of spheres, of half-spaces, and where nothing does.
+  /// Whether the core rotates: never for spheres, for half-spaces only in jobs of
+  /// ImpactMotion::plane_turns.
   bool turns;
   const HullShape* hull[kWidth];
   const SupportShape* own[kWidth];
-  /// Of hulls none of which has more than kFewVertices: how many rows of vertices there are, of
-  /// which the last ones may repeat others; else 0.
+  /// For hulls of which none has more than kFewVertices vertices: the number of vertex rows; the
+  /// last rows may repeat vertices. Else 0.
   int rows;
   alignas(64) double vertex[kFewVertices][3][kWidth];
 };
@@ -158,7 +161,7 @@ inline void copy_vertices(CoreTable& table, unsigned lane) {
   }
 }
 
-/// Copies those of all lanes, where they are few.
+/// Copies the vertices of all lanes, if they are few.
 static inline void copy_few_vertices(CoreTable& table) {
   std::uint32_t most = 0;
   for (const HullShape* hull : table.hull) {
@@ -181,8 +184,8 @@ static inline void copy_few_vertices(CoreTable& table) {
   }
 }
 
-/// A point of each lane's hull that is farthest along a direction, both in the hull's frame, of
-/// hulls of few vertices: of several that are as far the one that farthest_of_hulls finds.
+/// Support point of each lane's hull, for hulls of few vertices, in the hull's frame. Breaks ties
+/// as farthest_of_hulls does.
 static inline Vector farthest_of_few(const CoreTable& table, const Vector& d) {
   Doubles most(-__builtin_inf());
   Vector point = zero_vector();
@@ -199,7 +202,7 @@ static inline Vector farthest_of_few(const CoreTable& table, const Vector& d) {
   return point;
 }
 
-/// A point of each lane's hull that is farthest along a direction, both in the hull's frame.
+/// Support point of each lane's hull, in the hull's frame.
 static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& direction,
                                        Mask16 lanes) {
   alignas(64) double d[3][kWidth];
@@ -265,7 +268,7 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
   return {Doubles::load(vertex[0]), Doubles::load(vertex[1]), Doubles::load(vertex[2])};
 }
 
-/// A point of each lane's set of a program's own, likewise.
+/// Support point of each lane's user shape.
 static inline Vector farthest_of_own(const CoreTable& table, const Vector& direction,
                                      Mask16 lanes) {
   alignas(64) double d[3][kWidth];
@@ -285,7 +288,7 @@ static inline Vector farthest_of_own(const CoreTable& table, const Vector& direc
   return {Doubles::load(point[0]), Doubles::load(point[1]), Doubles::load(point[2])};
 }
 
-/// A point on the rim of radius half.x about z.
+/// The support point on the rim of radius half.x about z.
 [[gnu::always_inline]] inline Vector rim(const Vector& half, const Vector& d, const Doubles& z) {
   const Doubles across = sqrt(d.x * d.x + d.y * d.y);
   const Doubles share = select(across > Doubles(1e-150), half.x / across, Doubles(0.0));
@@ -298,14 +301,14 @@ static inline Vector farthest_of_own(const CoreTable& table, const Vector& direc
   return select(is_first, core.corner[0], select(on[1] >= on[2], core.corner[1], core.corner[2]));
 }
 
-/// Of an ellipsoid's surface, the least; 0 of a flat one.
+/// The least radius of curvature of an ellipsoid; 0 for a flat one.
 [[gnu::always_inline]] inline Doubles least_curvature_radius(const Vector& radius) {
   const Doubles least = min(min(radius.x, radius.y), radius.z);
   const Doubles most = max(max(radius.x, radius.y), radius.z);
   return least * select(most > Doubles(0.0), least / most, Doubles(0.0));
 }
 
-/// Of what is left of an ellipsoid once that radius is taken from it everywhere: eroded_core.
+/// Support point of an ellipsoid eroded by that radius; see eroded_core.
 static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d) {
   const Vector stretched{radius.x * d.x, radius.y * d.y, radius.z * d.z};
   const Doubles along = length(stretched);
@@ -315,7 +318,8 @@ static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d
          eroded;
 }
 
-/// Of the smaller ball's centre, and a ball of the difference of the radii about the larger one's.
+/// Support point of the convex hull of the smaller end's centre and a ball, with the difference of
+/// the radii, at the larger end's centre.
 static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   const Doubles zero(0.0);
   const Vector out = d * (half.x / length(d));
@@ -324,8 +328,8 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   return select(dot(small, d) >= dot(large, d), small, large);
 }
 
-/// A point of the core that is farthest along a direction, both in its own frame; of a half-space
-/// along its normal.
+/// Support point of a core, in its own frame; for a half-space, the point of its plane along the
+/// normal.
 [[gnu::always_inline]] inline Vector farthest(const CoreTable& table, const MovingCore& core,
                                               const Vector& d, Mask16 lanes) {
   const auto facing = [](const Doubles& along, const Doubles& reach) {
@@ -360,14 +364,14 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   }
 }
 
-/// Brings a core to where it is at a time.
+/// Places a core at a time.
 [[gnu::always_inline]] inline void place(const CoreTable& table, const Doubles& time,
                                          MovingCore& core) {
   if (!table.turns) return;
   core.axes = rotation_of(turned(core.from, core.axis, core.angle * time));
 }
 
-/// The largest distance of a rim of `radius` at height z from an axis w through the middle.
+/// The largest distance of a rim of `radius` at height z from an axis w through the centre.
 [[gnu::always_inline]] inline Doubles rim_reach(const Doubles& radius, const Doubles& z,
                                                 const Vector& w) {
   const Doubles across = sqrt(w.x * w.x + w.y * w.y);
@@ -418,7 +422,7 @@ static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, c
   }
 }
 
-/// The greatest number of each row, which is a lane's.
+/// The maximum of each row; row i belongs to lane i.
 static inline Doubles greatest_of_rows(const double (&row)[kWidth][kWidth]) {
   Doubles most(-__builtin_inf());
   for (int half = 0; half < kWidth; half += 4) {
@@ -429,8 +433,8 @@ static inline Doubles greatest_of_rows(const double (&row)[kWidth][kWidth]) {
   return most;
 }
 
-/// The same of hulls, and how far along the axis they reach: by the ball about their middle, which
-/// contains all vertices, or by the vertices of those that turn so far that it pays.
+/// As reach_of, for hulls, and their range along the axis: from the bounding ball about their
+/// centre, or from the vertices if a hull rotates so far that this pays.
 static inline void measure_turning_hulls(const CoreTable& table, const Vector& w,
                                          MovingCore& core) {
   const Doubles radius = core.extent - core.rounding;
@@ -471,7 +475,7 @@ static inline void measure_turning_hulls(const CoreTable& table, const Vector& w
   core.low = select(far, -greatest_of_rows(found[2]), core.low);
 }
 
-/// Loads the numbers of shapes; `index(lane)` is that in the table of their kind.
+/// Loads the numbers of shapes; `index(lane)` is a shape's index in the table of its kind.
 template <typename Index>
 [[gnu::always_inline]] inline void load_core(const ShapeTables& tables, Index&& index,
                                              CoreTable& table, MovingCore& core) {
@@ -570,7 +574,7 @@ template <typename Index>
   }
 }
 
-/// Sizes of a core whose numbers are loaded.
+/// Computes the sizes of a core whose numbers are loaded.
 static inline void measure(const CoreTable& table, MovingCore& core) {
   if (table.kind == ShapeKind::triangle) {
     Doubles size(0.0);
@@ -604,15 +608,15 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
   }
 }
 
-/// Of a triangle, whose frame is that of the world then.
+/// Rotates a triangle's corners to world axes; its frame is then the world.
 inline void bring_to_world(MovingCore& core) {
   for (Vector& corner : core.corner) corner = core.axes.to_world(corner);
   const Doubles one(1.0);
   core.axes = rotation_of({one, zero_vector()});
 }
 
-/// How the core turns with its body, of a core that is measured, and where it is at the start; true
-/// where the motion is surely valid, as to that, and double holds it.
+/// Loads the rotation of a core whose sizes are computed, and its orientation at the start. Returns
+/// the lanes in which this part of the motion is certainly valid and in the range of double.
 template <typename Row>
 [[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
                                               MovingCore& core) {
@@ -625,7 +629,7 @@ template <typename Row>
   load_rows4([&](int lane) { return motion(lane) + kOrientationAt; }, q);
   const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
-  // What does not turn its core may be a sphere that turns, or stands.
+  // A sphere's core does not rotate, but its body may, which is validated below.
   if (!table.turns && table.kind != ShapeKind::sphere) {
     core.axes = rotation(Turn<double>{q[0], {q[1], q[2], q[3]}, Doubles(2.0) / square});
     if (table.in_world) bring_to_world(core);

@@ -1,3 +1,6 @@
+// MovingPair: the solver's problem for two moving shapes at any time, and the bounds on gaps,
+// speeds and curvature that impact_search.cpp and resting_contacts.cpp need for their proofs.
+
 #include "pipeline/motion/moving_pair.h"
 
 #include "pipeline/motion/turn.h"
@@ -18,12 +21,12 @@ using solver::kEpsilon;
 using solver::Range;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-/// Squares above this have all their digits.
+/// Squares above this keep all their digits.
 constexpr double kExact = 1e-290;
-/// Axes that differ by less are the same: what that changes is counted as noise.
+/// Axes that differ by less count as equal; the difference is covered by the noise.
 constexpr double kSameAxis = 16.0 * kEpsilon;
 
-/// Of a vector of length 1 at most.
+/// Length of the part orthogonal to z; |w| is at most 1.
 double across_z(const Vec& w) noexcept {
   return std::sqrt(w.x() * w.x() + w.y() * w.y());
 }
@@ -34,7 +37,7 @@ double rim_reach(double radius, double z, const Vec& w) noexcept {
   return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
 }
 
-/// The same of corners of a hull.
+/// As above, for the vertices of a hull.
 double corner_reach(const Core& core, const Vec& w) noexcept {
   const HullShape& hull = *core.hull;
   double square = 0.0;
@@ -50,7 +53,7 @@ double corner_reach(const Core& core, const Vec& w) noexcept {
   return std::sqrt(square);
 }
 
-/// The largest distance of an unturned core's points from the axis w through its center.
+/// The largest distance of an unrotated core's points from the axis w through its centre.
 double reach_of(const Core& core, const Vec& w) noexcept {
   switch (core.kind) {
     case CoreKind::point:
@@ -77,7 +80,7 @@ double reach_of(const Core& core, const Vec& w) noexcept {
   return std::sqrt(square);
 }
 
-/// True of cores that turning about an axis leaves as they are.
+/// Returns whether rotation about the axis leaves the core unchanged.
 bool is_invariant(const Core& core, const Vec& w) noexcept {
   switch (core.kind) {
     case CoreKind::point:
@@ -93,7 +96,7 @@ bool is_invariant(const Core& core, const Vec& w) noexcept {
   }
 }
 
-/// Half of how far a core's points are from each other, about, and its rounding.
+/// About half of the core's diameter, plus its rounding.
 double extent_of(const Core& core) noexcept {
   switch (core.kind) {
     case CoreKind::triangle:
@@ -113,7 +116,7 @@ double extent_of(const Core& core) noexcept {
   }
 }
 
-/// A half-space whose offset is from the position of its body.
+/// Makes a half-space's offset relative to the position of its body.
 void take_arm(Core& core, const Quaternion& from, const Vec& arm) noexcept {
   const solver::Mat to_world = rotation_of(from);
   core.offset += solver::unit(to_world * core.normal).dot(arm);
@@ -132,7 +135,7 @@ void take_drift(Core& core, const Vec* drift, const solver::Scale& scaled,
   core.size += core.rounding;
 }
 
-/// `core` is unturned.
+/// `core` is not rotated yet.
 TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexcept {
   TurningCore result;
   if (core.kind == CoreKind::point && arm.isZero(0.0)) return result;
@@ -190,13 +193,12 @@ void place_core(TurningCore& turning, double time, Core& core) noexcept {
   }
 }
 
-/// The most that an unturned or turned core reaches along the axis, from its center. A half-space's
-/// normal is the axis.
+/// Support of a core along the axis, from its centre. For a half-space the axis must be its normal.
 double high(const Core& core, const Vec& axis) noexcept {
   return core.kind == CoreKind::half_space ? core.offset : highest(core, axis);
 }
 
-/// The same from the body's position, of all that it sweeps as it turns.
+/// Support, from the body's position, of the volume that the core sweeps as it rotates.
 double swept_high(const TurningCore& turning, const Core& core, const Vec& axis) noexcept {
   if (turning.angle == 0.0) return high(core, axis) + axis.dot(turning.arm);
   const double along = axis.dot(turning.axis);
@@ -249,7 +251,7 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
   const Vec start = Vec::Map(apart.difference);
   const Vec way = Vec::Map(of_b.travel) - Vec::Map(of_a.travel);
   const Vec end = start + way;
-  // One unit for all times: that of the places that are farthest apart.
+  // Use one unit for all times: the unit for the largest distance.
   Pose there;
   Vec::Map(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
   there.position[0] += std::copysign(a.arm.norm() + b.arm.norm(), there.position[0]);
@@ -265,7 +267,8 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
   noise_ = kEpsilon * (8.0 * (between_.norm() + travel_.norm()) +
                        (64.0 + 4.0 * (turn_a_.angle + turn_b_.angle)) * sizes);
   if (has_half_space()) {
-    // Its normal turns by rounding, too, and with it what is far from its position.
+    // The normal of a half-space is rotated with rounding, which moves points far from its
+    // position.
     noise_ += kEpsilon * (64.0 + 4.0 * turn_b_.angle) * (between_.norm() + travel_.norm());
   }
   const double least = std::min(extent_of(problem_.a), extent_of(problem_.b));
@@ -300,7 +303,8 @@ Interval MovingPair::window() const noexcept {
 
 Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
-  // Most pairs of a scene pass each other by: their line is too far away, which needs no root.
+  // Most pairs of a scene miss each other; then their line of motion is too far away, which is
+  // tested without a root.
   const double rounding = between.cwiseAbs().sum() + travel.cwiseAbs().sum() + reach;
   const double wide = reach + 128.0 * kEpsilon * rounding;
   const double limit = wide * wide * travel.squaredNorm();
@@ -309,7 +313,7 @@ Interval ball_window(const Vec& between, const Vec& travel, double reach) noexce
   const double path = between.norm() + speed;
   if (!std::isfinite(reach + path)) return kAll;
   const double radius = reach + 64.0 * kEpsilon * (path + reach);
-  // Where the way is too short for its square, both ends are as near as any place between.
+  // If the travel is too short for its square, both ends are as near as any point between.
   const double nearest = speed > 1e-140 ? -(between.dot(travel) / speed) / speed : 0.0;
   const double distance = (between + nearest * travel).norm();
   if (distance > radius + (speed > 1e-140 ? 0.0 : speed)) return {1.0, 0.0};
@@ -338,7 +342,7 @@ double MovingPair::parting(const Vec& axis, const Vec& y_a, const Vec& y_b) cons
 
 double MovingPair::curvature(const Vec& axis) const noexcept {
   if (has_half_space() && turn_b_.angle > 0.0) {
-    // The normal turns, times points that turn about a position that moves: the product rule.
+    // Product rule: the normal rotates, and so do the points, about a position that moves.
     const double far = std::max(between_.norm(), (between_ + travel_).norm()) + arms() + a().size;
     const double fast = travel_.norm() + turn_a_.angle * turn_a_.reach + turn_a_.drift_speed();
     return turn_b_.angle * (turn_b_.angle * far + 2.0 * fast) +
@@ -347,9 +351,10 @@ double MovingPair::curvature(const Vec& axis) const noexcept {
   return acceleration(turn_a_, axis) + acceleration(turn_b_, axis);
 }
 
-// With P between a point of a and one of b, the gap of the two along an axis n of angular speed r
-// is n . P, whose second derivative is n . P'' + 2 n' . P' - r^2 n . P. The last is not above 0 but
-// where the gap is below it, which it is by no more than it can fall from 0.
+// With P the vector from a point of a to a point of b, their gap along an axis n with angular speed
+// r is n . P. Its second derivative is n . P'' + 2 n' . P' - r^2 n . P. The last term is positive
+// only where the gap is negative, and there it is bounded by the amount that the gap can fall below
+// 0.
 double MovingPair::curvature_between(const Vec& from, const Vec& to, double width) const noexcept {
   const double turned = (to - from).norm();
   if (turned > 1.0) return kForever;

@@ -14,8 +14,8 @@
 
 namespace winnow {
 
-/// Pairs on their way from a tree to who takes them: a buffer that is handed on whenever it is
-/// full, so that pairs never take more memory than it has.
+/// Streams pairs from a tree to `take` through a buffer that is passed on whenever it is full, so
+/// that pairs never use more memory than the buffer.
 template <typename Take>
 class PairStream {
  public:
@@ -58,7 +58,7 @@ class PairStream {
   PairSink sink_;
 };
 
-/// Room for the pairs of some units of a walk, which ends where it is full.
+/// A buffer for the pairs of some units of a walk; the walk stops if it is full.
 class PairRoom {
  public:
   explicit PairRoom(std::pmr::memory_resource* memory) noexcept : buffer_(memory) {}
@@ -86,10 +86,10 @@ class PairRoom {
   bool fits_ = false;
 };
 
-/// Hands on all pairs of `walk(begin, end, sink)` over so many units, in their order, a chunk at
-/// most at a time. On several threads some stretches of units are walked side by side, each with a
-/// part of a chunk to fill; one that finds more is walked once more by itself. False if memory is
-/// refused.
+/// Passes all pairs of `walk(begin, end, sink)` over `units` units to `take`, in order, at most a
+/// chunk at a time. With several threads, ranges of units are walked in parallel, each with a part
+/// of a chunk as its buffer; a range that finds more is walked again on its own. Returns false if
+/// memory is refused.
 template <typename Walk, typename Take>
 [[nodiscard]] bool stream_pairs(const Execution& execution, std::pmr::memory_resource* memory,
                                 std::size_t chunk, std::uint32_t units, Walk&& walk,

@@ -4,15 +4,15 @@
 
 namespace winnow::impact {
 
-/// Puts parts of moving bodies where pairs of convex shapes are looked up.
+/// Puts parts of moving bodies into tables of convex shapes, which the impact searches read.
 class PartPair {
  public:
   explicit PartPair(const ShapePool& pool) noexcept : tables_(pool) {}
 
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_.tables(); }
 
-  /// A triangle of a surface keeps its corners in the frame of the body, where they are exactly
-  /// those of its neighbours: nothing gets through between them.
+  /// Adds a part. A triangle of a surface keeps its corners in the body's frame, where they are bit
+  /// for bit equal to its neighbours' corners, so that nothing passes between neighbours.
   [[nodiscard]] MovingPart put(std::size_t slot, const MovingShape& moving) noexcept {
     ConvexPart part = moving.shape;
     MovingPart result{part.shape, moving.motion};

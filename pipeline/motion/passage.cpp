@@ -1,3 +1,7 @@
+// Passage: bounds a moving shape relative to a moving frame, as a swept box, a fixed box, or a time
+// window. body_impact.cpp traverses composite shapes with it; the scene puts boxes around motions
+// with it.
+
 #include "pipeline/motion/passage.h"
 
 #include "pipeline/motion/turn.h"
@@ -14,13 +18,13 @@ namespace {
   return normalized(tame(pose.orientation));
 }
 
-/// Squares that neither overflow nor vanish need no scaling.
+/// The plain root is accurate if the square neither overflows nor underflows.
 [[nodiscard]] double length(const Vec& v) noexcept {
   const double square = v.squaredNorm();
   return square > 1e-200 && square < 1e200 ? std::sqrt(square) : v.stableNorm();
 }
 
-/// Of length 1: turned by a share of a turn, whose angle is `rate`, from an orientation.
+/// The orientation at a time, of length 1; `rate` is the length of `turn`.
 [[nodiscard]] Quaternion turn_at(const Quaternion& from, const double (&turn)[3], double rate,
                                  double time) noexcept {
   if (rate == 0.0) return from;
@@ -82,7 +86,7 @@ Passage::Place Passage::place(double time) const noexcept {
           product(inverse(frame), turn_at(shape_from_, shape_.motion.turn, shape_rate_, time))};
 }
 
-/// The shape where its body is so turned, about its own position.
+/// The box of the shape with its body rotated by `turn`, relative to the shape's own position.
 PreciseBox Passage::about(const Quaternion& turn) const noexcept {
   ConvexPart shape = shape_.shape;
   std::fill_n(shape.pose.position, 3, 0.0);

@@ -7,49 +7,50 @@ namespace winnow::impact {
 
 /// Any shape that moves with a body.
 struct MovingShape {
-  /// In the frame of the body; the whole shape may be composite.
+  /// In the body's frame; a whole shape may be composite.
   ConvexPart shape;
   const RigidMotion& motion;
-  /// No point is farther from the position of the body; none from the shape's own, which is about
-  /// `arm` from it.
+  /// Upper bounds on the distance of points from the body's position and from the shape's own
+  /// position; and the distance between these positions.
   double radius;
   double own_radius;
   double arm;
 };
 
-/// `shape` is the body's own, at its pose.
+/// The body's own shape, at the body's pose.
 [[nodiscard]] MovingShape whole_shape(const PartTraversal& parts, ShapeId shape,
                                       const RigidMotion& motion) noexcept;
-/// A part of a body that moves.
+/// A part of a moving body.
 [[nodiscard]] MovingShape moving_part(const PartTraversal& parts, const ConvexPart& part,
                                       const RigidMotion& motion) noexcept;
 
-/// Piece i of a motion that is cut into so many.
+/// Piece i of a motion that is cut into `pieces` equal pieces.
 [[nodiscard]] inline Interval piece_of(std::uint32_t i, std::uint32_t pieces) noexcept {
   return {static_cast<double>(i) / pieces, static_cast<double>(i + 1) / pieces};
 }
 
-/// A moving shape as a moving frame sees it. A point of it has there a path whose second derivative
-/// has a bound: that of turning, of the shape and of the frame, and of travelling through what
-/// turns. So it leaves the chord between two times by no more than an eighth of the bound times the
-/// square of the time between, which boxes are
-/// grown by; where that is more, the shape stays in a ball.
+/// A moving shape relative to a moving frame. The path of each of its points has a bounded second
+/// derivative there, due to the rotation of the shape and the frame, and to travel in a rotating
+/// frame. So between two times a point leaves the chord by at most an eighth of the bound times the
+/// squared time between. Boxes are grown by this amount; if it is too large, a ball about the shape
+/// is used.
 class Passage {
  public:
-  /// Both must outlive it.
+  /// The arguments must outlive the object.
   Passage(const PartTraversal& parts, const RigidMotion& frame, const MovingShape& shape) noexcept;
 
-  /// A box that contains the shape at all times of an interval, which are t = 0 to 1.
+  /// A moving box that contains the shape at all times of an interval; its t from 0 to 1 spans the
+  /// interval.
   [[nodiscard]] BoxSweep sweep(const Interval& within) const noexcept;
-  /// By how much the box of an interval is grown because paths are bent.
+  /// The amount by which the box of an interval is grown for curved paths.
   [[nodiscard]] double bend(const Interval& within) const noexcept;
-  /// The box that contains the shape at all times of an interval: the union of the boxes of as many
-  /// parts of it as it takes for bends of a few hundredths of the radius.
+  /// A fixed box that contains the shape at all times of an interval: the union of the boxes of its
+  /// parts, which are short enough that curvature adds only a few hundredths of the radius.
   [[nodiscard]] PreciseBox box(const Interval& within) const noexcept;
-  /// Into how many pieces of the motion a way is best cut, at most 8, before boxes are put around
-  /// them: each piece runs across at most two axes by more than the shape measures.
+  /// The number of pieces, at most 8, into which to cut the motion before boxes are put around it.
+  /// With enough pieces, each moves by more than the shape's diameter along one axis at most.
   [[nodiscard]] std::uint32_t piece_count() const noexcept;
-  /// When the shape may come into a ball about the frame's position.
+  /// The times at which the shape may overlap a ball about the frame's position.
   [[nodiscard]] Interval window(double frame_radius) const noexcept {
     return ball_window(apart_, travel_, frame_radius + shape_.radius);
   }
@@ -61,12 +62,12 @@ class Passage {
   };
   [[nodiscard]] Place place(double time) const noexcept;
   [[nodiscard]] PreciseBox about(const Quaternion& turn) const noexcept;
-  /// What of the bend is of orientations, and what of the position.
+  /// The growth due to rotation of orientations, and due to the path of the position.
   [[nodiscard]] double turning_bend(double width) const noexcept;
   [[nodiscard]] double path_bend(double far, double width) const noexcept;
-  /// Of the shape from the frame's position, in the axes of the world.
+  /// From the frame's position to the shape's, in world axes.
   [[nodiscard]] Vec between(double time) const noexcept;
-  /// No farther from the frame's position does the shape's get.
+  /// Upper bound on the distance of the shape's position from the frame's.
   [[nodiscard]] double farthest(const Interval& within) const noexcept;
 
   const PartTraversal& parts_;
@@ -76,7 +77,7 @@ class Passage {
   Vec travel_;
   double frame_rate_;
   double shape_rate_;
-  /// At the start, of length 1.
+  /// At the start; of length 1.
   Quaternion frame_from_;
   Quaternion shape_from_;
 };

@@ -1,8 +1,8 @@
-// A direction along which two parts are apart at the start, and which their motions do not close,
-// is a proof that they are apart all the time. The normals of contacts at the start are such
-// directions to all parts that lie flush with those in contact: to the triangles of a floor that
-// something slides over. Closest points show such a proof anew for each part, but not where the gap
-// is hardly larger than what rounding takes, or below 0.
+// A direction that separates two parts at the start, and along which their motions do not close the
+// gap, proves that they never touch. The normal of a contact at the start is such a direction for
+// all parts that are flush with the parts in contact, for example the triangles of a floor that a
+// body slides over. Closest points would give a proof for each part anew, but not if the gap is
+// hardly above rounding, or negative. body_impact.cpp calls this.
 
 #include "pipeline/motion/resting_contacts.h"
 
@@ -16,20 +16,22 @@
 namespace winnow::impact {
 namespace {
 
-/// Normals that differ by less are the same but for rounding.
+/// Normals that differ by less are equal up to rounding.
 constexpr double kSameNormal = 1e-14;
-/// A face whose normal differs by less than this may be what closest points are on.
+/// The closest points may be on a face whose normal has at least this cosine with the contact
+/// normal.
 constexpr double kFaceOfContact = 0.99;
-/// More than rounding takes of a gap, in units of noise.
+/// Exceeds the rounding of a gap, in units of the noise.
 constexpr double kRounded = 8.0;
 
-/// The smallest of a gap that changes evenly, less what it may fall below its chord.
+/// Lower bound on the gap over the motion: the smaller end, minus the amount by which the gap can
+/// fall below its chord.
 [[nodiscard]] double least_gap(MovingPair& pair, const Vec& normal) noexcept {
   pair.place(0.0);
   const double swept = pair.swept_gap(normal);
   const double least = std::min(swept, swept - pair.swept_closing(normal));
   if (pair.has_half_space()) return least;
-  // What it sweeps as it turns may be far more than what it takes of the gap.
+  // The swept volume may extend far more into the gap than the shape does at any time.
   const double sag = 0.5 * pair.curvature(normal);
   const double first = pair.gap(normal);
   pair.place(1.0);
@@ -40,7 +42,7 @@ constexpr double kRounded = 8.0;
 
 }  // namespace
 
-/// Two parts in the order of the solver. Two half-spaces have no such pair.
+/// Two parts in the solver's order; not defined for two half-spaces.
 class RestingContacts::OrderedPair {
  public:
   OrderedPair(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept
@@ -52,11 +54,11 @@ class RestingContacts::OrderedPair {
   [[nodiscard]] bool is_there() const noexcept {
     return pair_.a().kind != solver::CoreKind::half_space;
   }
-  /// A normal of the caller's order in that of the solver, and back.
+  /// Converts a normal between the caller's order and the solver's.
   [[nodiscard]] Vec turned(const Vec& normal) const noexcept {
     return mirrored_ ? Vec(-normal) : normal;
   }
-  /// False of shapes that the solver refuses.
+  /// Returns false for shapes that the solver rejects.
   [[nodiscard]] bool distance_at_start(const ShapeTables& tables, PairAnswer& answer) noexcept {
     Pose pose[2];
     pair_.poses(0.0, pose[0], pose[1]);
@@ -86,8 +88,8 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
   const Vec normal = Vec::Map(answer.normal);
   Vec best = normal;
   double gap = pair.gap(normal);
-  // Closest points that all but coincide show their direction badly, faces do not; and one face has
-  // the same normal as those that lie flush with it.
+  // The direction between nearly coincident points is inaccurate, the normal of a face is not; and
+  // faces that are flush share the same normal.
   double least = std::min(gap > 0.0 ? 0.0 : gap, gap - pair.noise());
   for (const solver::Core* const core : {&pair.a(), &pair.b()}) {
     for (std::uint32_t i = 0; i < normal_count(*core); ++i) {
@@ -141,7 +143,7 @@ bool RestingContacts::part(const ShapeTables& tables, const MovingPart& a,
   if (!pair.is_there()) return false;
   const auto by = [&](const Contact& contact) { return parts(contact, pair); };
   if (std::any_of(contacts_.begin(), contacts_.begin() + count_, by)) return true;
-  // What it touches beyond those that are kept.
+  // If the store is full, also test the parts' own contact.
   Contact own;
   return count_ == kMost && find(tables, pair, own) && by(own);
 }

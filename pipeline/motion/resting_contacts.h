@@ -8,39 +8,38 @@
 
 namespace winnow::impact {
 
-/// What becomes of shapes that share a point at the start of their motions.
+/// How shapes that overlap at the start of their motions are treated.
 enum class StartTouch : std::uint8_t {
-  meets,      ///< they meet at time 0
-  left_out,   ///< they do not meet
-  is_entered  ///< they meet at time 0 unless they slide or part there
+  meets,      ///< an impact at time 0
+  left_out,   ///< no impact
+  is_entered  ///< an impact at time 0 unless they slide or separate there
 };
 
-/// The contacts that two bodies have at the start of their motions. A motion slides or parts there
-/// if the normal of a contact parts the parts in contact all the time, but for the depth that they
-/// have. Other parts of the bodies that lie flush with these, or lower, do not meet then either.
+/// The contacts of two bodies at the start of their motions. Bodies slide or separate at a contact
+/// if its normal separates the parts in contact all the time, up to their initial depth. Other
+/// parts of the bodies that are flush with these parts, or lower, are then not hit either.
 class RestingContacts {
  public:
-  /// Parts are in contact that are no farther apart than a share of their size and a length. Those
-  /// that share a point do not get deeper if it is by no more than that; they are no contacts if
-  /// they meet at the start.
+  /// Parts are in contact if their distance is at most share * size + length. Overlapping parts may
+  /// get deeper by at most the same amount. They are not contacts if `touch` makes them an impact.
   RestingContacts(double share, double length, StartTouch touch) noexcept
       : share_(share), length_(length), touch_(touch) {}
 
-  /// Notes the contact of two convex parts, if they have one.
+  /// Records the contact of two convex parts, if they have one.
   void note(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
-  /// True if none was noted.
+  /// Returns whether no contact was recorded.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
-  /// True if two parts slide or part along their own contact or along one that was noted.
+  /// Returns whether two parts slide or separate along their own contact or along a recorded one.
   [[nodiscard]] bool part(const ShapeTables& tables, const MovingPart& a,
                           const MovingPart& b) const noexcept;
 
  private:
   struct Contact {
-    /// Unit, from a to b.
+    /// Unit vector from a to b.
     Vec normal;
-    /// Along it, in the caller's lengths; below 0 where the parts overlap.
+    /// The gap along the normal, in the caller's lengths; negative if the parts overlap.
     double gap;
-    /// The gap is surely above 0, and must stay so.
+    /// The gap is certainly positive, and must remain so.
     bool apart;
   };
   class OrderedPair;
@@ -51,7 +50,8 @@ class RestingContacts {
   [[nodiscard]] bool parts(const Contact& contact, OrderedPair& pair) const noexcept;
   void keep(const Contact& contact) noexcept;
 
-  /// Contacts along further normals are not kept: what slides along these may meet other parts.
+  /// Contacts beyond these are not stored; a motion that slides along them may then hit other
+  /// parts.
   static constexpr std::size_t kMost = 8;
 
   double share_;

@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// Results for the caller, handed over when as many as fit a chunk are there.
+/// Collects results and passes them to the caller whenever a chunk is full.
 template <typename Result, typename Chunks>
 class ResultChunk {
  public:

@@ -10,8 +10,8 @@
 namespace winnow {
 namespace {
 
-/// The angle in [0, pi / 2] whose sine and cosine are s, c >= 0, of which one is not 0, to
-/// rounding. Each step takes the sine of what is missing, and so all but its cube.
+/// The angle in [0, pi / 2] with sine s and cosine c (both >= 0, not both 0), up to rounding. Each
+/// step adds the sine of the remaining angle, so that only its cube remains.
 double angle_of(double s, double c) noexcept {
   double angle = 1.5 * s / (s + c);
   for (int i = 0; i < 5; ++i) {
@@ -28,7 +28,7 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
   RigidMotion motion = standing(start);
   for (int i = 0; i < 3; ++i) motion.travel[i] = end.position[i] - start.position[i];
   if (!start.is_valid() || !end.is_valid()) {
-    // What is wrong with the end has to show.
+    // Make an invalid end visible: the motion becomes invalid.
     if (!end.is_valid()) motion.turn[0] = std::numeric_limits<double>::quiet_NaN();
     return motion;
   }
@@ -59,7 +59,7 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 
 bool RigidMotion::is_valid() const noexcept {
   const DefaultEnvironment environment;
-  // Of finite numbers it stays 0, of others it is no number.
+  // Remains 0 for finite numbers, becomes NaN otherwise.
   double sum = 0.0;
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {

@@ -1,42 +1,41 @@
 #pragma once
 
-// Guesses along which direction a pair with a smooth surface is the farthest apart. On such a
-// surface the steps of Gilbert, Johnson and Keerthi near the closest points by a share at a time;
-// the normal changes evenly between points that are near each other, so that where it is that of
-// the closest points is found as by the secant method. A guess may be bad: it is one more direction
-// that was tried, and what it shows is true.
+// Guesses of the direction along which a pair with a smooth surface has the largest gap. Near the
+// closest points of such a surface GJK converges only linearly. The normal changes almost linearly
+// between points that are near each other, so that the normal at the closest points is extrapolated
+// as by the secant method. A bad guess does no harm: it is one more direction to test, and the gap
+// along it is valid.
 
 #include "pipeline/motion/closest_cores.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Pairs of kinds for which guesses save more than they cost. Beside flat faces ellipsoids are
-/// nearest along the face's normal, which a simplex finds.
+/// Pairs of kinds for which guesses save time. Against a flat face the closest direction is the
+/// face's normal, which the simplex finds.
 [[nodiscard]] constexpr bool has_guesses(ShapeKind a, ShapeKind b) {
   if (a == ShapeKind::support || b == ShapeKind::support) return true;
   return (a == ShapeKind::ellipsoid || b == ShapeKind::ellipsoid) && !has_faces(a) && !has_faces(b);
 }
 
-/// A guess is as good as is expected if it leaves no more of the doubt about the distance.
+/// A guess counts as good if it reduces the uncertainty of the distance to this fraction.
 inline constexpr double kGoodGuess = 0.1;
-/// The most looks that are waited after one that is not.
+/// The largest number of samples without a guess after a bad one.
 inline constexpr double kLongestPause = 3.0;
 
-/// The three directions of those that were tried which show the largest gaps, and what is to be
-/// tried next. All members are lanes: a block may move lanes as numbers.
+/// The three tested directions with the largest gaps, and the next guess. All members are lanes: a
+/// block may move lanes as numbers.
 struct TriedLanes {
-  /// Unit.
+  /// Unit vectors.
   Vector axis[kSlots];
-  /// From the point of a that is farthest along the axis to that of b, without the way between the
-  /// middles.
+  /// From a's support point along the axis to b's, without the vector between the centres.
   Vector way[kSlots];
   /// 1 where the slot is in use, else 0.
   Doubles present[kSlots];
   Vector guess;
-  /// Looks until the guess is tried, and how many follow one that was not good.
+  /// Samples until the guess is tested, and the pause after a bad guess.
   Doubles wait;
   Doubles pause;
-  /// By how much the distance may be larger than the largest gap.
+  /// The amount by which the distance may exceed the largest gap.
   Doubles doubt;
 
   void clear() {
@@ -54,7 +53,7 @@ struct TriedLanes {
   }
 };
 
-/// What directions that were tried show where a pair is now.
+/// The gaps along the tested directions at the current position.
 struct TriedGaps {
   Doubles of[kSlots];
 
@@ -62,18 +61,19 @@ struct TriedGaps {
   [[nodiscard]] Doubles largest() const { return max(max(of[0], of[1]), of[2]); }
 };
 
-/// A direction that was tried.
+/// A direction that was tested.
 struct TriedAxis {
   const Vector& axis;
   const Vector& way;
-  /// Where it was a guess.
+  /// The lanes in which it was a guess.
   const Truth& guessed;
 };
 
-/// Notes in some lanes what was tried and, with directions that show less, guesses anew.
+/// In some lanes, replaces the direction with the smallest gap by the one just tested, and computes
+/// the next guess.
 class SmoothGuess {
  public:
-  /// They are `between` from each other, and `simplex` is the nearest point of the simplex.
+  /// `between` is the vector between the centres, `simplex` the nearest point of the simplex.
   SmoothGuess(const Vector& between, const Vector& simplex, TriedLanes& tried)
       : between_(between), simplex_(simplex), tried_(tried) {
     for (int s = 0; s < kSlots; ++s) {
@@ -91,7 +91,7 @@ class SmoothGuess {
   }
 
  private:
-  /// Instead of what shows the least.
+  /// Replaces the direction with the smallest gap.
   void keep(const TriedAxis& last, const Doubles& here, const Truth& lanes) {
     const Doubles least = gaps_.least();
     Truth open = lanes & (here > least);
@@ -105,7 +105,7 @@ class SmoothGuess {
     }
   }
 
-  /// After a guess that was not good others wait, the longer the more there were.
+  /// After a bad guess the next one is delayed, by more with each.
   void pace(const Truth& guessed, const Truth& is_larger) {
     const Doubles zero(0.0);
     const Doubles one(1.0);
@@ -117,8 +117,9 @@ class SmoothGuess {
     tried_.wait = select(guessed, tried_.pause, max(tried_.wait - one, zero));
   }
 
-  /// At the closest points the normal leads from one to the other: the point that is farthest along
-  /// it is the normal times the distance, which is the nearest of the simplex along it.
+  /// At the closest points the normal points from one to the other: the support point of the
+  /// difference along the normal is the normal times the distance. The distance is estimated from
+  /// the nearest point of the simplex.
   void guess() {
     const Doubles zero(0.0);
     const Doubles largest = gaps_.largest();

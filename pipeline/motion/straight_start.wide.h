@@ -1,18 +1,19 @@
 #pragma once
 
-// The first look at pairs that do not turn. Two convex polyhedra are apart along the normal of a
-// face or along the cross product of an edge of each (Gottschalk, Lin, Manocha, "OBBTree", 1996).
-// Along each of these the gap falls or grows evenly: the last one that closes tells when they meet,
-// and one that opens before it that they do not. Round shapes meet along other directions too, and
-// what theirs tell is a good place to go on from. Any direction may be tried: what it shows is
-// true.
+// The first sample of pairs that do not rotate, by the separating axis test (SAT). Two convex
+// polyhedra are separated along the normal of a face or the cross product of an edge of each
+// (Gottschalk, Lin, Manocha, "OBBTree", 1996). Along each of these the gap changes linearly: the
+// last one to close gives the time of impact, and one that opens before it proves that there is
+// none. Round shapes can touch along other directions, too; for them the result is a good starting
+// point. The gap along any direction is valid. impact_lanes.kernel.cpp runs this step;
+// straight_step.wide.h continues.
 
 #include "pipeline/motion/closed_forms.wide.h"
 #include "pipeline/motion/impact_block.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Pairs of kinds, in their order, of which such a look saves more than it costs.
+/// Pairs of kinds (in the solver's order) for which this step saves time.
 [[nodiscard]] constexpr bool has_start(ShapeKind a, ShapeKind b) {
   const auto has_edges = [](ShapeKind kind) {
     return kind == ShapeKind::box || kind == ShapeKind::triangle || kind == ShapeKind::capsule ||
@@ -22,7 +23,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
   return (has_edges(a) && has_edges(b)) || (a == ShapeKind::box && b == ShapeKind::cone);
 }
 
-/// The faces and edges of a core, in the world and of any length; of one that is round its axis.
+/// Directions of the faces and edges of a core, in world axes, of any length; for round cores,
+/// their axis.
 struct AxisCore {
   const CoreTable& table;
   const MovingCore& core;
@@ -50,7 +52,7 @@ struct AxisCore {
     }
   }
 
-  /// How far it reaches along a direction and back, from its middle.
+  /// Support along a direction and its opposite, from the centre.
   [[gnu::always_inline]] void reach(const Vector& n, Doubles& high, Doubles& low) const {
     switch (table.kind) {
       case ShapeKind::triangle: {
@@ -81,7 +83,7 @@ struct AxisCore {
     low = -high;
   }
 
-  /// Its point that is nearest to another, from its middle.
+  /// The point of the core nearest to `p`, both relative to its centre.
   [[nodiscard]] Vector nearest(const Vector& p) const {
     switch (table.kind) {
       case ShapeKind::triangle:
@@ -94,7 +96,7 @@ struct AxisCore {
   }
 };
 
-/// A gap along a direction, and how fast it changes, both times the direction's length.
+/// A gap along a direction and its rate of change, both multiplied by the direction's length.
 struct ChangingGap {
   Vector along;
   Doubles gap;
@@ -128,25 +130,25 @@ class SeparatingAxes {
     }
   }
 
-  /// Where a gap opens before the last of the others has closed.
+  /// The lanes in which a gap opens before the last of the others has closed.
   [[nodiscard]] Truth pass() const {
     return opening.gap * closing.rate + closing.gap * opening.rate > Doubles(0.0);
   }
 
-  /// What closes last, of gaps that are open, and what opens first. None: a gap of 0 that closes,
-  /// and one that is closed and stays.
+  /// The gap that closes last among open gaps, and the gap that opens first. Initially: a gap of 0
+  /// that closes, and a closed gap that does not change.
   ChangingGap closing;
   ChangingGap opening;
-  /// Of what closes last, if it is not of edges: it is the normal of a face of a.
+  /// If the gap that closes last is not of two edges: its direction is the normal of a face of a.
   Truth is_face_of_a;
-  /// It is square to these.
+  /// Its direction is the cross product of these edges.
   Truth is_of_edges;
   Vector edge_a;
   Vector edge_b;
 
  private:
-  /// Looks both ways along a direction: one way the gap closes, the other way it opens. Returns
-  /// where it closes later than those before.
+  /// Tests both senses of a direction: in one the gap closes, in the other it opens. Returns the
+  /// lanes in which it closes later than all before.
   [[gnu::always_inline]] Truth closes_last(const Vector& n) {
     Doubles high_a;
     Doubles low_a;
@@ -183,13 +185,14 @@ class SeparatingAxes {
   bool is_rounded_;
 };
 
-/// The first step of a block. Lanes that it does not end go on from where it has brought them.
+/// The first step of a block. Lanes that it does not end continue at the time to which it has
+/// advanced them.
 class StraightStart : BlockStep {
  public:
   StraightStart(const ImpactJob& job, ImpactBlock& block)
       : BlockStep(job, block), a_(tables_.a, p_.a), b_(tables_.b, p_.b) {}
 
-  /// Returns the lanes that go on.
+  /// Returns the lanes that continue.
   [[nodiscard]] Mask16 run() {
     look_.between = p_.start + p_.travel * p_.time;
     const SeparatingAxes axes(a_, b_, look_.between, p_);
@@ -203,7 +206,7 @@ class StraightStart : BlockStep {
   }
 
  private:
-  /// What a direction shows.
+  /// Samples the gap along a direction.
   void try_along(const Vector& direction) {
     const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
     Vector own_a;
@@ -216,7 +219,7 @@ class StraightStart : BlockStep {
     look_.slope = dot(closest.axis, p_.travel);
     judge();
   }
-  /// The same where the lanes are now.
+  /// Recomputes the gap at the current time.
   void judge() {
     ClosestLanes& closest = look_.closest;
     look_.noise = noise_at(look_.between);
@@ -225,7 +228,7 @@ class StraightStart : BlockStep {
     look_.parted = look_.gap > Doubles(0.0);
   }
 
-  /// To where the direction that was tried shows a gap no longer.
+  /// Advances the lanes to the time at which the tested direction no longer shows a gap.
   void move_on() {
     const Doubles free = free_along(p_, look_);
     end_apart(apart_ & ((free >= p_.last) | (free > p_.until)));
@@ -235,7 +238,7 @@ class StraightStart : BlockStep {
     look_.between = p_.start + p_.travel * p_.time;
   }
 
-  /// Ends lanes that are apart from now on along the direction that opens.
+  /// Ends lanes that are separated from now on along the direction that opens.
   void part(const SeparatingAxes& axes) {
     const LookLanes closing = look_;
     try_along(axes.opening.along);
@@ -243,12 +246,12 @@ class StraightStart : BlockStep {
     look_ = closing;
   }
 
-  /// Ends lanes in which points near where they seem to meet are within the tolerance.
+  /// Ends lanes in which points near the expected contact are within the tolerance.
   void touch(const SeparatingAxes& axes) {
     judge();
     ClosestLanes& closest = look_.closest;
     find_points(place_of(axes), active_);
-    // Where faces or edges are parallel the first corner need not face the other shape.
+    // If faces or edges are parallel, the first corner may not be opposite the other shape.
     const Truth again = active_ & apart_ & !is_near();
     if (bits(again) != 0) find_points(closest.on_a + closest.between, again);
     const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
@@ -258,7 +261,8 @@ class StraightStart : BlockStep {
     p_.axis = select(active_ & apart_ & (closest.upper > Doubles(0.0)), closest.between, p_.axis);
   }
 
-  /// A corner that meets a face, or where two edges meet; from the middle of a.
+  /// The expected contact, relative to the centre of a: a corner that touches a face, or the
+  /// crossing of two edges.
   [[nodiscard]] Vector place_of(const SeparatingAxes& axes) const {
     const ClosestLanes& closest = look_.closest;
     const Vector corner_b = look_.between + closest.on_b;
@@ -272,7 +276,8 @@ class StraightStart : BlockStep {
     return select(axes.is_of_edges, on_edge, select(axes.is_face_of_a, corner_b, closest.on_a));
   }
 
-  /// In some lanes: of a that is closest to a place, and of b that is closest to that.
+  /// In some lanes, sets the point of a closest to a place, and the point of b closest to that
+  /// point.
   void find_points(const Vector& place, const Truth& lanes) {
     ClosestLanes& closest = look_.closest;
     const Vector on_a = a_.nearest(place);

@@ -1,20 +1,20 @@
 #pragma once
 
-// Pairs that travel and do not turn: the difference of the cores stands still and the origin
-// travels along a line, so that what a direction shows is known for all times. Each step of the
-// search for closest points brings the pair at once to where the direction that it tried shows a
-// gap no longer (van den Bergen, "Ray casting against general convex objects with application to
-// continuous collision detection", 2004). Any direction may be tried; on smooth surfaces guesses
-// are in turns with it.
+// Steps of pairs that do not rotate: the Minkowski difference is fixed and the origin moves along a
+// line, so that the gap along a direction is determined for all times. Each step is a GJK step that
+// at once advances the pair to the time at which the tested direction no longer shows a gap (van
+// den Bergen, "Ray casting against general convex objects with application to continuous collision
+// detection", 2004). Any direction may be tested; for smooth surfaces guesses alternate with GJK.
 
 #include "pipeline/motion/impact_block.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// One step of all lanes of a block, which are placed. Of lanes without a closed form `axis` is the
-/// nearest point of the simplex, or any direction while there is none; the witness has, in the axes
-/// of the world, its points of a and the ways from them to those of b. `Elsewhere`: they have no
-/// closed form, and guesses or look back; apart from the others, which this would cost time.
+/// One step of all lanes of a block. For lanes without a closed form, `axis` is the nearest point
+/// of the simplex, or any direction while there is none; the witness contains, in world axes, the
+/// simplex's points of a and the vectors from them to the points of b. `Elsewhere`: the pairs have
+/// no closed form, and use guesses or earlier directions; a template parameter, because the others
+/// would be slowed down.
 template <bool Elsewhere>
 class StraightStep : BlockStep {
  public:
@@ -23,7 +23,7 @@ class StraightStep : BlockStep {
         guesses_(has_guesses(tables_.a.kind, tables_.b.kind)),
         looks_back_(looks_back(job, tables_.a.kind, tables_.b.kind)) {}
 
-  /// Returns the lanes that go on.
+  /// Returns the lanes that continue.
   [[nodiscard]] Mask16 run() {
     look_.between = p_.start + p_.travel * p_.time;
     look_.noise = noise_at(look_.between);
@@ -49,7 +49,7 @@ class StraightStep : BlockStep {
   }
 
  private:
-  /// Which slots of the simplex are in use, and of these which have another point than a new one.
+  /// Computes which slots of the simplex are in use, and which of these differ from the new point.
   void compare_with(const Vector& way) {
     for (int s = 0; s < kSlots; ++s) {
       const Vector& old = p_.witness.b[s];
@@ -62,7 +62,7 @@ class StraightStep : BlockStep {
     for (int s = 1; s < kSlots; ++s) is = is | (used_[s] & !differs_[s]);
     return is;
   }
-  /// The simplex where the lanes are.
+  /// The simplex at the lanes' current positions.
   [[nodiscard]] hull::Simplex<double> placed(const Truth (&present)[kSlots]) const {
     hull::Simplex<double> simplex;
     for (int s = 0; s < kSlots; ++s) {
@@ -72,7 +72,7 @@ class StraightStep : BlockStep {
     return simplex;
   }
 
-  /// What the direction shows.
+  /// Samples the gap along the direction.
   void look_along(const CorePair& pair) {
     const Vector& v = p_.axis;
     ClosestLanes& closest = look_.closest;
@@ -107,12 +107,12 @@ class StraightStep : BlockStep {
     const Doubles left = closest.upper - p_.roundings;
     const Truth ends =
         (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already() & !guessed_;
-    // Rounding turns the direction, by more the shorter it is, and moves what is farthest along it.
+    // Rounding perturbs the direction, by more the shorter it is, and thereby the support point.
     settled_ = used_[0] & ((gain <= look_.noise * Doubles(kEnough) * (closest.upper + p_.sizes)) |
                            ends | (p_.proves > Doubles(0.0)));
   }
 
-  /// Where an earlier direction shows more than what was tried it is taken. Returns those lanes.
+  /// Uses an earlier direction where it shows a larger gap. Returns those lanes.
   [[nodiscard]] Truth take_best() {
     ClosestLanes& closest = look_.closest;
     const Doubles shown = dot(p_.best, look_.between + p_.best_way);
@@ -123,7 +123,7 @@ class StraightStep : BlockStep {
     return known;
   }
 
-  /// What the closest points tell.
+  /// Computes the gap, its slope and the bounds from the closest points.
   void judge() {
     const ClosestLanes& closest = look_.closest;
     look_.gap = closest.lower - p_.roundings - look_.noise;
@@ -132,7 +132,7 @@ class StraightStep : BlockStep {
     look_.parted = look_.gap > Doubles(0.0);
   }
 
-  /// Whether the lanes have met, or until when they are apart.
+  /// Detects impacts, or advances the time.
   void decide() {
     const Truth within = look_.parted & (look_.most <= closed());
     const Truth near = within & settled_;
@@ -143,20 +143,20 @@ class StraightStep : BlockStep {
     if (bits(active_) == 0) return;
     const Doubles free = free_along(p_, look_);
     end_apart(look_.parted & ((free >= p_.last) | (free > p_.until)));
-    // Touching, too near for double to tell, or no number left between.
+    // Touching, too close for double to decide, or no double left between.
     end_unsure(settled_ & ((!look_.parted) | (free <= p_.time)));
-    // What is within the tolerance, or has come near enough for it, is first known as well as can
-    // be.
+    // A pair within the tolerance, or near enough to it, is first sampled as accurately as
+    // possible.
     const Truth far = (!within) & (look_.gap > p_.tolerance * Doubles(kNearEnough));
     p_.time = select(active_ & look_.parted & (far | settled_), free, p_.time);
   }
 
-  /// A lane that was brought ahead of what was proved is apart all the way there if it comes nearer
-  /// along the axis. Others, which are returned, go back and take proved steps alone.
+  /// A lane that was sampled ahead of its proved time is disjoint up to there if the gap still
+  /// closes along the axis. Other lanes are returned; they go back and take only proved steps.
   [[nodiscard]] Truth lost_trials() {
     const Doubles zero(0.0);
     const Truth trial = active_ & (p_.proves > zero);
-    // As rounding may grow on the way back.
+    // Covers the rounding of the slope.
     const Doubles flat = taxicab(p_.travel) * Doubles(-64.0 * kPlace);
     const Truth lost = trial & !(look_.parted & (look_.slope < flat));
     p_.time = select(lost, p_.free, p_.time);
@@ -164,7 +164,7 @@ class StraightStep : BlockStep {
     return lost;
   }
 
-  /// Brings lanes to where they seem to meet, if that is ahead of what is proved.
+  /// Moves lanes to the time at which they seem to touch, if that is ahead of the proved time.
   void try_ahead(const CorePair& pair, const Doubles& here) {
     const ClosestLanes& closest = look_.closest;
     const Doubles reach = p_.roundings + closed() * Doubles(0.5);
@@ -192,7 +192,8 @@ class StraightStep : BlockStep {
     active_ = active_ & !met;
   }
 
-  /// To the next direction, from where the lanes are now; they were elsewhere `before`.
+  /// Chooses the next direction at the lanes' current time; `before` is the time of the last
+  /// sample.
   void move_on(const Doubles& before) {
     look_.between = p_.start + p_.travel * p_.time;
     const Vector w = look_.between + way_;
@@ -210,7 +211,7 @@ class StraightStep : BlockStep {
     }
   }
 
-  /// Where `moves`: the nearest feature becomes the simplex.
+  /// In lanes in `moves`, replaces the simplex by its nearest feature.
   void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves) {
     Truth placed = !moves;
     for (int s = 0; s < kSlots; ++s) {
@@ -225,14 +226,14 @@ class StraightStep : BlockStep {
 
   bool guesses_;
   bool looks_back_;
-  /// Where what was tried was a guess; and the direction, unit.
+  /// The lanes in which the tested direction was a guess; and that direction, a unit vector.
   Truth guessed_;
   Vector tried_;
-  /// No direction shows more than the one that was tried.
+  /// No direction shows a larger gap than the tested one.
   Truth settled_;
-  /// Of the distance to the simplex.
+  /// Squared distance to the simplex.
   Doubles square_;
-  /// From the point of a that is farthest to that of b, without the way between the middles.
+  /// From a's support point to b's, without the vector between the centres.
   Vector way_;
   Truth used_[kSlots];
   Truth differs_[kSlots];

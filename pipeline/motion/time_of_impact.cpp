@@ -1,3 +1,6 @@
+// time_of_impact: checks each pair and distributes pairs of convex shapes to ImpactBatch, pairs
+// with composite shapes to find_body_impact.
+
 #include <winnow/pipeline/time_of_impact.h>
 #include "core/sort/stretches.h"
 #include "core/threads/float_environment.h"
@@ -10,18 +13,18 @@
 namespace winnow {
 namespace {
 
-/// Says quickly of most convex shapes that they are in a pool.
+/// A fast test that most convex shapes are in a pool.
 class KnownShapes {
  public:
   explicit KnownShapes(const ShapePool& pool) noexcept {
     for (const ShapeKind kind : kConvexKinds) {
       const auto index = static_cast<std::size_t>(kind);
       const std::uint32_t count = pool.tables().count[index];
-      // Where none was removed all are there.
+      // If no shape of a kind was removed, all indices below the count are valid.
       if (pool.size(kind) == count) count_[index] = count;
     }
   }
-  /// False of some that are.
+  /// May be false for shapes that are in the pool.
   [[nodiscard]] bool surely_contain(ShapeId shape) const noexcept {
     return shape.kind_index() < kShapeKinds && shape.index() < count_[shape.kind_index()];
   }
@@ -30,7 +33,7 @@ class KnownShapes {
   std::array<std::uint32_t, kShapeKinds> count_{};
 };
 
-/// But for motions of convex shapes, which are judged with their impacts.
+/// Does not validate motions of convex shapes, which ImpactBatch does.
 [[nodiscard]] Status status_of(const PartTraversal& parts, const MovingBodies& bodies,
                                const ImpactOptions& options, const BodyPair& pair) noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
@@ -94,7 +97,7 @@ Footprint ImpactResult::footprint() const noexcept {
   return footprint;
 }
 
-/// The pairs [first, end), no more than fit into a batch.
+/// Solves pairs [first, end), at most as many as fit a batch.
 void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
                                 std::span<const BodyPair> pairs, const ImpactOptions& options,
                                 std::size_t first, std::size_t end) {

@@ -11,10 +11,10 @@ struct SineCosine {
   double cosine;
 };
 
-/// Of an angle of at most RigidMotion::kMostTurn, to some 1e-16. The same on every machine, which
-/// the C library's are not: pi / 2 is taken away in two parts, the first of which has so few digits
-/// that its multiples are exact (Cody, Waite, "Software manual for the elementary functions",
-/// 1980), and what is left goes into the series.
+/// Sine and cosine of an angle of at most RigidMotion::kMostTurn, with an error of about 1e-16.
+/// Equal on every machine, unlike the C library's. pi / 2 is subtracted in two parts, the first of
+/// which has so few digits that its multiples are exact (Cody, Waite, "Software manual for the
+/// elementary functions", 1980); the rest is the argument of the Taylor series.
 [[nodiscard]] inline SineCosine sine_cosine(double angle) noexcept {
   constexpr double kQuarters = 6.36619772367581382433e-01;
   constexpr double kHigh = 1.57079632673412561417e+00;
@@ -50,7 +50,7 @@ struct SineCosine {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/// An orientation of length 1, turned by an angle about a unit axis.
+/// An orientation of length 1, rotated by an angle about a unit axis.
 [[nodiscard]] inline Quaternion turned(const Quaternion& from, const double axis[3],
                                        double angle) noexcept {
   const SineCosine half = sine_cosine(0.5 * angle);

@@ -9,7 +9,8 @@
 
 namespace winnow {
 
-/// Writes to slots[i] which answer is about pair i of the input. Room for all answers.
+/// Writes to slots[i] the index of the answer about pair i of the input. `slots` has room for
+/// answers.size() entries.
 inline void find_slots(const NarrowResult& answers, const Execution& execution,
                        std::uint32_t* slots) noexcept {
   constexpr std::size_t kAnswersPerStretch = 8192;

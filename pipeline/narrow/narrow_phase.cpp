@@ -1,3 +1,8 @@
+// NarrowPhase: PairBuckets validates the pairs and sorts them by the kinds of their shapes;
+// State::run cuts each kind into chunks of up to kJobPairs and answers these in waves, in parallel.
+// A chunk calls the SIMD kernel of its kinds and then the solver for the pairs that the kernel
+// could not certify.
+
 #include <winnow/pipeline/narrow_phase.h>
 #include "core/hooks/stage_scope.h"
 #include "core/memory/columns.h"
@@ -22,8 +27,7 @@ namespace {
 constexpr std::uint32_t kTopBit = 1U << 31U;
 constexpr std::uint8_t kMirrored = 0x80;
 
-/// Of the kinds of two shapes the number of their pair, with kMirrored if they are given the other
-/// way round.
+/// Pair code by two kinds, with kMirrored set if the arguments are swapped.
 struct KindCodes {
   static constexpr std::uint32_t kKinds = ShapeId{}.kind_index() + 1;
   std::uint8_t of[kKinds][kKinds] = {};
@@ -39,14 +43,14 @@ struct KindCodes {
 };
 constexpr KindCodes kKindCodes;
 
-// The length of the stretches of so many pairs that tasks look at.
+// Pairs per parallel task.
 [[nodiscard]] constexpr std::size_t stretch_of(std::size_t pairs) noexcept {
   constexpr std::size_t kLeast = 16384;
   constexpr std::size_t kMostStretches = 64;
   return even_stretch(pairs, kLeast, kMostStretches);
 }
 
-// True if all of a, b < limit <= 2^31: sums and ors alone, so that every compiler makes it wide.
+// True if all of a, b < limit <= 2^31. Only sums and ors, so that every compiler vectorizes it.
 [[nodiscard]] bool all_below(std::span<const BodyPair> pairs, std::uint32_t limit) noexcept {
   std::uint32_t outside = 0;
   for (const BodyPair& pair : pairs) {
@@ -55,7 +59,7 @@ constexpr KindCodes kKindCodes;
   return (outside & kTopBit) == 0;
 }
 
-// The only kind that a pool holds, or kShapeKinds.
+// Returns the only kind of shape that a pool holds, or kShapeKinds if there are several or none.
 [[nodiscard]] std::uint32_t only_kind(const ShapeTables& tables) noexcept {
   std::uint32_t only = kShapeKinds;
   for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
@@ -74,7 +78,7 @@ constexpr KindCodes kKindCodes;
   for_even_stretches(
       execution, shapes.size(), kShapesPerTask, [&](std::size_t first, std::size_t end) {
         std::uint32_t outside = 0;
-        for (const ShapeId& id : shapes.subspan(first, end - first)) {  // no copy: not made wide
+        for (const ShapeId& id : shapes.subspan(first, end - first)) {  // copies do not vectorize
           const std::uint32_t index = id.bits - base;
           outside |= index | (limit - 1 - index);
         }
@@ -85,26 +89,27 @@ constexpr KindCodes kKindCodes;
 
 }  // namespace
 
-/// Pairs sorted by the kinds of their shapes (stable), the smaller kind first in each.
+/// Sorts pairs by the kinds of their shapes (counting sort, stable), the smaller kind first in
+/// each.
 class PairBuckets {
  public:
   explicit PairBuckets(std::pmr::memory_resource* memory) noexcept
       : sorted_(memory), codes_(memory), looks_(memory) {}
 
-  /// Sorts, or finds that nothing is to be sorted. `order` is set to the place of each sorted pair
-  /// in the input. `invalid_argument` for a body that does not exist, `invalid_key` for a shape
-  /// that does not (`bad_body` says whose).
+  /// Sorts the pairs, unless they are in order already; order[i] becomes the input index of sorted
+  /// pair i. Returns `invalid_argument` for a body that does not exist, `invalid_key` for a shape
+  /// that does not exist (`bad_body` is then its body).
   Status sort(const ShapeTables& tables, std::span<const ShapeId> shapes,
               std::span<const BodyPair> pairs, const Execution& execution,
               Column<std::uint32_t>& order, Column<NarrowRun>& runs, std::uint32_t& bad_body);
 
   [[nodiscard]] const BodyPair* pairs() const noexcept { return pairs_; }
-  /// True if some pair is given the other way round than it was.
+  /// True if some pair has its bodies swapped.
   [[nodiscard]] bool any_mirrored() const noexcept { return any_mirrored_; }
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(sorted_, codes_, looks_); }
 
  private:
-  /// Numbers of pairs of kinds, from the lowest to the highest that there is.
+  /// The range of the pair codes that occur.
   struct Codes {
     std::uint32_t low = KindPairs::kCount;
     std::uint32_t high = 0;
@@ -114,13 +119,13 @@ class PairBuckets {
       high = std::max(high, code);
     }
   };
-  /// What a task found that looked at a stretch of the pairs.
+  /// The result of a task that checks and counts a range of the pairs.
   struct Look {
     Status status;
     std::uint32_t bad_body;
     std::uint32_t mirrored;
     Codes codes;
-    /// Of each pair of kinds. Where pairs are sorted, later: where the next of it goes.
+    /// Pairs by code. While pairs are sorted: the place of the next pair with this code.
     std::uint32_t counts[KindPairs::kCount];
 
     void clear() noexcept {
@@ -172,8 +177,9 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   if (pairs.size() == 1) return take_one(tables, shapes, pairs, order, runs, bad_body);
   std::ranges::fill(counts_, 0U);
   there_ = {};
-  // A scene of one kind needs no look at every pair, unless these are few among many bodies.
-  constexpr std::size_t kLook = 8;  // at a pair takes as long as at so many bodies
+  // If the pool holds only one kind, the kinds of the pairs need not be read. Checking the shapes
+  // of all bodies instead pays only if there are not too many bodies per pair.
+  constexpr std::size_t kLook = 8;  // estimated cost of classifying a pair, in checks of a body
   const std::uint32_t only =
       shapes.size() / kLook <= pairs.size() ? only_kind(tables) : kShapeKinds;
   const bool one_kind = only != kShapeKinds && all_are(shapes, only, tables.count[only], execution);
@@ -206,7 +212,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   return add_runs(runs);
 }
 
-// Of one pair there is nothing to count, which takes several times as long as some answers do.
+// A single pair needs no counting sort.
 Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId> shapes,
                              std::span<const BodyPair> pair, Column<std::uint32_t>& order,
                              Column<NarrowRun>& runs, std::uint32_t& bad_body) {
@@ -227,7 +233,7 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   if (!order.resize(1)) return Status::out_of_memory;
   order[0] = 0;
   if (!runs.resize(1)) return Status::out_of_memory;
-  // In place, member by member: a copy of what was just put together would wait for its stores.
+  // Write the members in place: copying a temporary would stall on its stores.
   NarrowRun& run = runs[0];
   run.a = shapes[own.a].kind();
   run.b = shapes[own.b].kind();
@@ -236,7 +242,7 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   return Status::ok;
 }
 
-// Calls body(pairs, the number of the first, look) for each stretch of the pairs.
+// Calls body(pairs, index of the first, look) for each range of the pairs, in parallel.
 template <typename Body>
 void PairBuckets::for_looks(std::span<const BodyPair> pairs, const Execution& execution,
                             Body&& body) {
@@ -246,7 +252,8 @@ void PairBuckets::for_looks(std::span<const BodyPair> pairs, const Execution& ex
   });
 }
 
-// Calls note(i, code) for all pairs, of bodies that exist, unless a shape does not.
+// Calls note(i, code) for all pairs; stops with `invalid_key` at a shape that does not exist. All
+// bodies exist.
 template <typename Note>
 void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
                             std::span<const BodyPair> pairs, std::size_t first, Look& look,
@@ -276,7 +283,8 @@ void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> sh
       look.mirrored += code / kMirrored;
     });
   }
-  // They take turns: where one kind of pair follows itself, none waits for the count before.
+  // Two tables in turn: with one, runs of equal codes would make each increment depend on the one
+  // before.
   constexpr std::size_t kTurns = 2;
   std::uint32_t counts[kTurns][kMirrored + KindPairs::kCount];
   for (auto& some : counts) std::ranges::fill(some, 0U);
@@ -290,7 +298,8 @@ void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> sh
   }
 }
 
-// A body that does not exist comes before a shape that does not, and is not told.
+// A body that does not exist takes precedence over a shape that does not exist, and leaves bad_body
+// unset.
 Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
   const Look* refused = nullptr;
   for (const Look& look : looks_) {
@@ -308,7 +317,7 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
   return refused->status;
 }
 
-// Tells every look where its pairs go.
+// Turns the counts into the first place of each task's pairs, by code.
 void PairBuckets::find_places() noexcept {
   std::uint32_t next = 0;
   for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
@@ -341,24 +350,24 @@ Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
 
 namespace {
 
-// Chunks that parallel tasks answer before their contacts are put in order: bounds how many of the
-// contacts are held twice.
+// Number of chunks that are answered in parallel before their contacts are copied to the result. It
+// bounds how many contacts are stored twice.
 constexpr std::size_t kWave = 64;
-/// Of more, poses take four megabytes and beyond. Of 20,000 to 40,000 to ask ahead costs up to a
-/// fifth of a cheap pair's time, of 80,000 and more it saves a fifth to a half.
+/// With more bodies than this the poses take about four megabytes or more, and kernels prefetch
+/// them.
 constexpr std::size_t kManyBodies = 65536;
 
-// Room for the contacts that a chunk of so many pairs may find, and for what kernels write behind
-// the last one: another chunk's may begin there.
+// Room for the contacts of a chunk of this many pairs, and for the values that kernels write beyond
+// the last contact, where another chunk's contacts may begin.
 [[nodiscard]] std::size_t room_for(std::size_t pairs) noexcept {
   return pairs * kManifoldPoints + kContactSlack;
 }
-// The same for any wave of so many chunks, of so many pairs in all: as many pairs of other kinds
-// need no more.
+// Room for any wave of this many chunks in a call of this many pairs, whatever the kinds of the
+// pairs.
 [[nodiscard]] std::size_t room_for_wave(std::size_t pairs, std::size_t chunks) noexcept {
   return std::min(pairs, kWave * kJobPairs) * kManifoldPoints + chunks * kContactSlack;
 }
-// The same for the largest chunk that there may be of so many pairs in all.
+// Room for the largest chunk in a call of this many pairs.
 [[nodiscard]] std::size_t most_room_for(std::size_t pairs) noexcept {
   return room_for(std::min<std::size_t>(kJobPairs, pairs));
 }
@@ -368,7 +377,6 @@ template <typename T>
   return column == nullptr ? nullptr : column + first;
 }
 
-/// What became of a job.
 struct ChunkOutcome {
   std::uint32_t contacts = 0;
   std::uint32_t uncertified = 0;
@@ -377,20 +385,21 @@ struct ChunkOutcome {
   SolverCounts solver;
 };
 
-/// Pairs of one kind, next to each other, that one task answers.
+/// Consecutive pairs of one kind that one task answers.
 struct Chunk {
   NarrowJob job;
   NarrowKernel kernel;
   std::uint32_t first;
   ChunkOutcome outcome;
-  /// Where its contacts begin among those of a wave.
+  /// The place of its contacts among the contacts of the wave.
   std::size_t contacts_from = 0;
 };
 
-/// Chunks that are answered together. A call of few pairs makes no more than it needs.
+/// Chunks that are answered in parallel. Storage is uninitialized, so that a call with few pairs
+/// constructs only the chunks that it needs.
 class Wave {
  public:
-  /// The job is the caller's to fill in: to make it zero takes as long as some answers do.
+  /// Adds a chunk. The caller must fill in the job, which is not initialized.
   [[nodiscard]] Chunk& add() noexcept { return *new (first() + size_++) Chunk; }
   void clear() noexcept { size_ = 0; }
   [[nodiscard]] bool full() const noexcept { return size_ == kWave; }
@@ -432,7 +441,8 @@ void write_answer(NarrowJob& job, ContactLevel level, std::uint32_t i,
   for (int axis = 0; axis < 3; ++axis) job.point[axis][i] = answer.point[axis];
 }
 
-/// Answers a job: by `kernel` (null: there is none), then one by one what it could not certify.
+/// Answers a job: by `kernel` (null if there is none), then by the solver for each uncertified
+/// pair.
 void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
                 ChunkOutcome& outcome) noexcept {
   std::uint32_t uncertified[kJobPairs];
@@ -460,7 +470,7 @@ void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
   outcome.contacts = job.contacts.size;
 }
 
-/// Answer i of a job becomes that about (b, a).
+/// Turns answer i of a job into the answer about (b, a).
 void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) noexcept {
   if (level == ContactLevel::boolean) return;
   const double* const a = job.poses[job.pairs[i].a].position;
@@ -485,8 +495,8 @@ void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) no
   }
 }
 
-/// What `collide` was given, and what it tells beside answers, in place: who copies counters waits
-/// until they are stored.
+/// The arguments of `collide` and references to its outputs. The counters are updated in place, as
+/// copying them would stall on their stores.
 struct Call {
   const ShapeTables& tables;
   const Bodies& bodies;
@@ -496,7 +506,7 @@ struct Call {
   std::uint32_t& bad_body;
 
   void answer(Chunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
-    // Not set if all pairs have one margin: that would take as long as some answers do.
+    // Left uninitialized if all pairs have one margin.
     double margins[kJobPairs];
     if (!options.margins.empty()) {
       for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
@@ -601,8 +611,8 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
     }
   }
   if (!answer_wave(call, wave.chunks(), result)) return Status::out_of_memory;
-  // Chunks write where there is room for all that they may find: with this much, a call that finds
-  // no more than this one needs no more room, wherever in it its contacts are.
+  // A chunk needs room for the most contacts that it may find. With this much spare room, a later
+  // call that finds no more contacts than this one does not allocate.
   if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
       !result.contacts_.grow(result.contacts() + most_room_for(call.pairs.size()))) {
     return Status::out_of_memory;
@@ -674,7 +684,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
   return true;
 }
 
-// For a chunk that wrote its contacts to where they stay.
+// For a chunk that wrote its contacts directly to the result.
 void NarrowPhase::State::take_contacts(const Chunk& chunk, NarrowResult& result) noexcept {
   const auto base = static_cast<std::uint32_t>(result.contacts());
   for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;

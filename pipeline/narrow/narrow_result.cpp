@@ -41,7 +41,7 @@ NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
 
 bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
   contacts_.set_size(0);
-  // After a call that was refused it is empty.
+  // The size is 0 after a call that failed.
   if (count != 0 && count == size() && level == level_) return true;
   const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };

@@ -1,5 +1,5 @@
-// One pair of shapes: lanes of its kinds answer it where they can certify it, else the solver,
-// which takes many times as long.
+// collide() for a single pair of shapes: calls the SIMD kernel of its kinds and, if that cannot
+// certify the answer, the much slower solver.
 
 #include "core/threads/float_environment.h"
 #include "pipeline/narrow/question.h"
@@ -13,7 +13,8 @@ namespace {
 
 constexpr BodyPair kOnlyPair{0, 1};
 
-/// A job of one pair, and where its answer goes. What is not asked for is not set.
+/// A job of one pair and the storage of its answer. Columns that the level does not need are not
+/// set.
 class OnePair {
  public:
   OnePair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
@@ -30,7 +31,7 @@ class OnePair {
     job_.uncertified = &uncertified_;
   }
 
-  /// False if a pose is not valid: then `answer` is as it was.
+  /// Returns false and leaves `answer` unchanged if a pose is not valid.
   [[nodiscard]] bool find(PairAnswer& answer) noexcept {
     const NarrowKernel kernel = kernel_for(shapes_[0].kind(), shapes_[1].kind(), options_);
     if (kernel != nullptr && is_certified_by(kernel)) {
@@ -78,7 +79,7 @@ class OnePair {
       std::copy_n(point_, 3, answer.point);
       return;
     }
-    // A caller of C may have set nothing, and mirroring reads it.
+    // A C caller may pass an uninitialized answer, and mirror() reads the point.
     std::fill_n(answer.point, 3, 0.0);
     answer.contact_count = contact_count_;
     for (std::uint32_t k = 0; k < contact_count_; ++k) {

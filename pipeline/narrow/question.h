@@ -1,6 +1,6 @@
 #pragma once
 
-// What calls about pairs of shapes have in common: which are refused, and who answers.
+// Checks and kernel selection shared by NarrowPhase::collide and collide() of one pair.
 
 #include <winnow/pipeline/narrow_phase.h>
 #include "pipeline/kernels/kernels.h"
@@ -22,7 +22,7 @@ namespace winnow {
   return kind < kShapeKinds && shape.index() < tables.count[kind];
 }
 
-/// The kernel for pairs of two kinds, a <= b; null where the solver answers.
+/// The kernel for pairs of two kinds, a <= b; null if the solver must answer.
 [[nodiscard]] inline NarrowKernel kernel_for(ShapeKind a, ShapeKind b,
                                              const NarrowOptions& options) noexcept {
   const NarrowKernels* const kernels = narrow_kernels(a, b);

@@ -6,11 +6,13 @@
 
 namespace winnow {
 
-/// A column of so many bytes is small: what stands empty in it is not worth another allocation.
+/// Columns below this many bytes may have spare capacity; avoiding it is not worth another
+/// allocation.
 inline constexpr std::size_t kSmallColumn = std::size_t{1} << 16U;
 
-/// As Column::resize, for what is about as large in every frame: grows by a sixteenth, where halves
-/// would stand empty in all columns from the second frame on; by a half while it is small.
+/// As Column::resize, for columns whose size hardly changes from frame to frame: grows the capacity
+/// by a sixteenth instead of a half, so that less memory stays unused. Small columns grow by a
+/// half.
 template <typename T>
 [[nodiscard]] bool resize_steadily(Column<T>& column, std::size_t count) noexcept {
   if (column.capacity() * sizeof(T) < kSmallColumn) return column.resize(count);

@@ -1,7 +1,6 @@
 #pragma once
 
-// Tiers as files number them, which go back to when there was one of float lanes below robust: 0,
-// which is read as robust.
+// The numbers of the tiers in files. 0 is a retired tier and is read as robust.
 
 #include <winnow/pipeline/narrow_phase.h>
 #include "core/memory/byte_stream.h"

@@ -1,3 +1,6 @@
+// Checks and conversions of numpy arrays, and the cache of memory blocks for large results. See
+// arrays.h.
+
 #include "pipeline/python/arrays.h"
 
 #include "pipeline/python/refusal.h"
@@ -53,7 +56,7 @@ static_assert(std::endian::native == std::endian::little, "keys are read as 64-b
   return py::cast<std::string>(py::str(array.dtype()));
 }
 
-/// The array itself if it is of float or double, aligned, else one of double.
+/// Returns the array itself if it is aligned and of float or double, else a copy in double.
 [[nodiscard]] py::array numbers_in(py::handle object, const char* name) {
   py::array array = array_of(object, name);
   const char kind = array.dtype().kind();
@@ -63,7 +66,7 @@ static_assert(std::endian::native == std::endian::little, "keys are read as 64-b
                          kind_text(array));
   }
   if (is_native(array) && (is_of(array, 'f', 4) || is_of(array, 'f', 8))) return array;
-  // What is single stays so: it has been rounded as its owner wanted.
+  // Float stays float: the caller has rounded it already.
   return array.attr("astype")(is_of(array, 'f', 4) ? "f4" : "f8");
 }
 
@@ -135,7 +138,7 @@ BoxView BoxInput::view(std::vector<Aabb>& room) const {
 
 namespace {
 
-/// Numbers of another type, or not in one piece, as T.
+/// Converts integers of another type, or not contiguous, to T.
 template <typename T>
 [[nodiscard]] py::array converted(const py::array& array, const char* name) {
   const auto out_of_range = [&] {
@@ -159,7 +162,7 @@ template <typename T>
 [[nodiscard]] py::array integers_in(py::handle object, const char* name) {
   py::array array = array_of(object, name);
   const char kind = array.dtype().kind();
-  // An empty list becomes an array of double.
+  // numpy makes an array of double of an empty list.
   if (array.size() == 0 && kind == 'f') return array.attr("astype")("u8");
   if (kind == 'i' || kind == 'u') return array;
   throw py::type_error(std::string(name) + ": whole numbers are wanted, not " + kind_text(array));
@@ -216,7 +219,7 @@ void EachInteger::expect(std::size_t count) const {
 
 namespace {
 
-/// What holds the positions.
+/// Returns the array of positions.
 [[nodiscard]] py::object positions_in(py::handle object) {
   if (py::isinstance<py::tuple>(object) && py::len(object) == 2) {
     return py::reinterpret_borrow<py::tuple>(object)[0];
@@ -290,7 +293,7 @@ std::vector<ClientData> data_of(py::handle object, std::size_t count) {
 
 namespace {
 
-/// Blocks that wait, the one that waits longest first.
+/// Unused blocks, the oldest first.
 class WaitingBlocks {
  public:
   struct Block {
@@ -298,7 +301,7 @@ class WaitingBlocks {
     std::size_t bytes;
   };
 
-  /// The smallest that is large enough, and not much larger; null if there is none.
+  /// Returns the smallest block that is large enough and not much larger, or a null block.
   [[nodiscard]] Block take(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     auto best = waiting_.end();
@@ -343,7 +346,7 @@ class WaitingBlocks {
   bool has_room_ = false;
 };
 
-// Never destroyed: arrays may outlive everything else of the module.
+// Never destroyed: arrays may outlive all other objects of the module.
 WaitingBlocks& waiting_blocks() {
   static auto* const blocks = new WaitingBlocks;
   return *blocks;

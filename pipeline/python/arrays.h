@@ -1,6 +1,7 @@
 #pragma once
 
-// Numpy arrays as winnow reads and writes them.
+// Conversion between numpy arrays and winnow's views, in both directions. All other files of the
+// module use this; arrays.cpp implements it.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -26,27 +27,27 @@ namespace winnow::python {
 
 namespace py = pybind11;
 
-/// An array of numbers in float or double, as it lies in memory: any strides, each entry aligned
-/// and of this machine's byte order. Whatever else converts to double without loss is converted.
+/// An array of float or double numbers, read in place: any strides, but aligned entries in native
+/// byte order. Other types that convert to double without loss are converted.
 class Numbers {
  public:
-  /// `count` entries of `shape` each: an array of one dimension more than `shape`. `name` is for
-  /// messages. With `one` a single entry, of the dimensions of `shape`, stands for all: it has no
-  /// strides of its own then, and takes the count that `repeat` gives.
+  /// Expects `count` entries of `shape` each: an array with one dimension more than `shape`. `name`
+  /// is for messages. If `one`, a single entry with the dimensions of `shape` is accepted for all
+  /// entries: its stride is 0, and `repeat` sets its count.
   Numbers(py::handle object, const char* name, const std::vector<std::size_t>& shape,
           bool one = false);
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] bool is_single() const noexcept { return single_; }
-  /// One entry stands for all.
+  /// A single entry is used for all.
   [[nodiscard]] bool is_one() const noexcept { return one_; }
   void repeat(std::size_t count) noexcept { count_ = count; }
-  /// Throws a size_mismatch unless there are so many entries; repeats the one that stands for all.
+  /// Throws a size_mismatch unless there are `count` entries; repeats a single entry.
   void expect(std::size_t count);
 
   [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
   [[nodiscard]] std::ptrdiff_t inner_stride() const noexcept { return inner_[0]; }
-  /// Component (j, k) of the first entry. T is float where `is_single`, else double.
+  /// Component (j, k) of the first entry. T must be float if `is_single`, else double.
   template <typename T>
   [[nodiscard]] const T* column(std::size_t j, std::size_t k = 0) const noexcept {
     return reinterpret_cast<const T*>(data_ + static_cast<std::ptrdiff_t>(j) * inner_[0] +
@@ -60,7 +61,7 @@ class Numbers {
     if (single_) return to_double(*reinterpret_cast<const float*>(p));
     return *reinterpret_cast<const double*>(p);
   }
-  /// True if entries lie one after another without gaps, components too.
+  /// True if entries and components are contiguous.
   [[nodiscard]] bool is_dense(std::size_t components) const noexcept;
 
  private:
@@ -80,9 +81,9 @@ class BoxInput {
   BoxInput(py::handle lower, py::handle upper);
 
   [[nodiscard]] std::size_t count() const noexcept { return lower_.count(); }
-  /// True where boxes are read from the arrays themselves: of floats, with one stride.
+  /// True if the arrays can be used without a copy: both of float, with one stride.
   [[nodiscard]] bool is_in_place() const noexcept;
-  /// Everything else is rounded outward to `room`. Needs no GIL.
+  /// Returns a view; other arrays are rounded outward into `room`. Needs no GIL.
   [[nodiscard]] BoxView view(std::vector<Aabb>& room) const;
 
  private:
@@ -90,9 +91,8 @@ class BoxInput {
   Numbers upper_;
 };
 
-/// Whole numbers of one dimension, or of two with `columns` in each row, of exactly the type T in
-/// one piece: the array itself where it is so already. Others are copied, if they are in the range
-/// of T.
+/// A contiguous array of integers of type T, with one dimension, or with two and `columns` in each
+/// row. Other integers are copied if they are in the range of T.
 template <typename T>
 class Integers {
  public:
@@ -112,7 +112,7 @@ extern template class Integers<std::uint8_t>;
 extern template class Integers<std::uint32_t>;
 extern template class Integers<std::uint64_t>;
 
-/// Keys as uint64: the id in the lower half, the stamp in the upper one.
+/// Keys as uint64: the id in the lower half, the stamp in the upper half.
 class KeyInput {
  public:
   explicit KeyInput(py::handle object, const char* name = "keys") : words_(object, name) {}
@@ -125,11 +125,11 @@ class KeyInput {
   Integers<std::uint64_t> words_;
 };
 
-/// A whole number for each of n entries: an array, or one number for all.
+/// An integer for each of n entries: an array, or one number for all.
 class EachInteger {
  public:
   EachInteger(py::handle object, const char* name, std::uint64_t most);
-  /// Throws a size_mismatch unless it is one for all or there are so many.
+  /// Throws a size_mismatch unless there is one number for all or `count` numbers.
   void expect(std::size_t count) const;
   [[nodiscard]] std::uint64_t operator[](std::size_t i) const noexcept {
     return words_.empty() ? all_ : words_[i];
@@ -142,7 +142,7 @@ class EachInteger {
   std::uint64_t all_ = 0;
 };
 
-/// Poses: (n, 7) of x, y, z and a quaternion w, x, y, z; (n, 3) of positions alone; or a tuple of
+/// Poses: (n, 7) with x, y, z and a quaternion w, x, y, z; (n, 3) positions only; or a tuple of
 /// positions (n, 3) and quaternions (n, 4).
 class PoseInput {
  public:
@@ -150,14 +150,15 @@ class PoseInput {
 
   [[nodiscard]] std::size_t count() const noexcept { return position_.count(); }
   [[nodiscard]] Pose operator[](std::size_t i) const noexcept;
-  /// Where they lie, if positions are of double; else packed.
+  /// Returns a view of the arrays if positions are of double, else of copies in `room`.
   [[nodiscard]] PoseView view(std::vector<Pose>& room) const;
-  /// Where they lie, if they are (n, 7) of double in one piece; else packed.
+  /// Returns the array itself if it is (n, 7), of double and contiguous, else copies in `room`.
   [[nodiscard]] std::span<const Pose> packed(std::vector<Pose>& room) const;
 
  private:
   Numbers position_;
-  /// Columns 3 to 6 of `position_`, or those of `turn_`, or none.
+  /// Quaternions are columns 3 to 6 of `position_`; otherwise they are in `turn_`, or there are
+  /// none.
   bool is_joined_ = false;
   std::optional<Numbers> turn_;
 };
@@ -165,8 +166,8 @@ class PoseInput {
 /// Client data: none, or a number for each object.
 [[nodiscard]] std::vector<ClientData> data_of(py::handle object, std::size_t count);
 
-// Arrays that are handed out own what they show: directly, or through `owner`, which lives as long
-// as any of them. Those with an owner can only be read.
+// Arrays that are returned own their data, either directly or through `owner`, which lives as long
+// as the array. Arrays with an owner are read-only.
 
 template <typename T>
 [[nodiscard]] py::array shown_strided(const std::shared_ptr<const void>& owner, const T* data,
@@ -196,7 +197,7 @@ template <typename T>
                        {static_cast<py::ssize_t>(stride), static_cast<py::ssize_t>(sizeof(T))});
 }
 
-/// A vector that an array takes over.
+/// Moves a vector into an array.
 template <typename T>
 [[nodiscard]] py::array given(std::vector<T>&& values, std::size_t columns = 0) {
   auto owner = std::make_shared<std::vector<T>>(std::move(values));
@@ -206,19 +207,19 @@ template <typename T>
   return shown_rows(owner, data, count / columns, columns, columns * sizeof(T));
 }
 
-/// Memory of a large array that nobody has any more is written again by the next one of about its
-/// size, so that a frame like an earlier one waits for no page of the system: first writes to pages
-/// cost more than most answers. A few blocks wait at a time. From any thread.
+/// A cache of memory blocks of large arrays. A block that is no longer used goes to the next array
+/// of about its size, so that a steady frame has no page faults, which cost more than most queries.
+/// Keeps a few blocks. Thread-safe.
 class KeptBlocks {
  public:
-  /// Smaller arrays lie on pages that are there.
+  /// Smaller arrays come from the allocator, whose pages are mapped already.
   static constexpr std::size_t kLeastBytes = std::size_t{1} << 16U;
 
-  /// A block of at least so many bytes, and the capsule that gives it back. Needs the GIL.
+  /// Returns a block of at least `bytes` bytes, and the capsule that releases it. Needs the GIL.
   [[nodiscard]] static std::pair<void*, py::capsule> take(std::size_t bytes);
 };
 
-/// A fresh array of the caller's, not yet written.
+/// A new array, not initialized.
 template <typename T, typename... Counts>
 [[nodiscard]] py::array_t<T> fresh(std::size_t count, Counts... columns) {
   const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(count),

@@ -1,6 +1,6 @@
-"""Builds the wheel, for pip (PEP 517) and for `wheel`: CMake makes the module, a zip file holds it
-and the package. Needs what winnow needs, pybind11 and numpy, and no network. The module is fast on this
-machine, as WINNOW_ISAS=native is, or, if `wheel` is told --portable, on all of them.
+"""Builds the wheel, for pip (PEP 517) and for the script `wheel`: CMake builds the module, which is
+zipped together with the package. Needs the build dependencies of winnow, pybind11 and numpy, but no
+network. Optimizes for this machine (WINNOW_ISAS=native), or with `wheel --portable` for all.
 
 WINNOW_PYTHON_BUILD names a folder to build in and keep; otherwise that is a temporary one.
 WINNOW_PYTHON_OPTIONS are further options for CMake.
@@ -36,7 +36,7 @@ def tag():
 
 
 def run(*command):
-    """Tells how far ninja or make is, and what the command says only if it fails."""
+    """Runs a build; prints the progress of ninja or make, and the output only if it fails."""
     said = []
     tenth = 0
     with subprocess.Popen(
@@ -58,7 +58,7 @@ def run(*command):
 
 
 def build_module(folder, isas):
-    """The folder of the package, the module with it."""
+    """Builds the module and returns the folder of the package that contains it."""
     if shutil.which("cmake") is None:
         raise SystemExit("winnow: there is no cmake\nOn Debian: apt-get install " + PACKAGES)
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []

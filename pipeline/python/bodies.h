@@ -1,6 +1,6 @@
 #pragma once
 
-// How bodies of a scene, many at a time, are told something and asked about.
+// Arguments and helpers for calls on many bodies of a scene, or sensors, at once.
 
 #include "pipeline/python/locks.h"
 #include "pipeline/python/refusal.h"
@@ -17,7 +17,7 @@
 
 namespace winnow::python {
 
-/// Changes the scene, for which shapes stay as they are.
+/// Runs body() with exclusive access to the scene and shared access to the shapes.
 template <typename Body>
 auto changing_scene(SharedScene& s, Body&& body) {
   return changing(s.mutex, [&] {
@@ -27,7 +27,7 @@ auto changing_scene(SharedScene& s, Body&& body) {
   });
 }
 
-/// A motion by name for all, or numbers as in FIXED, DYNAMIC, SLEEPING.
+/// A motion by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
 class MotionInput {
  public:
   explicit MotionInput(py::handle object)
@@ -67,7 +67,7 @@ class FilterInput {
   EachInteger environment_;
 };
 
-/// Offsets of bodies as two columns.
+/// Contact and rest offsets of bodies as two columns.
 class OffsetInput {
  public:
   OffsetInput(py::handle contact, py::handle rest)
@@ -97,7 +97,7 @@ class LayerInput {
   EachInteger numbers_;
 };
 
-/// What get(key, one) tells of each key, in order; the status of the first that is not there.
+/// Calls get(key, one) for each key, in order; returns the first status that is not ok.
 template <typename Definition, typename Get>
 [[nodiscard]] Status definitions_of(std::span<const Key> keys, std::vector<Definition>& all,
                                     Get&& get) {
@@ -123,7 +123,7 @@ template <typename Definition>
   return ids;
 }
 
-/// Calls set(i) for each body; where one is refused, undo(i) for those before it.
+/// Calls set(i) for each body; if one call fails, calls undo(i) for the bodies before it.
 template <typename Set, typename Undo>
 [[nodiscard]] Status set_all(std::size_t count, Set&& set, Undo&& undo) {
   for (std::size_t i = 0; i < count; ++i) {

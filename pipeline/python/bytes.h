@@ -9,7 +9,7 @@
 
 namespace winnow::python {
 
-/// What lies in an object that has bytes in one piece, as long as this lives.
+/// The contents of a contiguous bytes-like object, which this keeps alive.
 class BytesInput {
  public:
   explicit BytesInput(const pybind11::buffer& object) : info_(object.request()) {

@@ -1,4 +1,4 @@
-// What becomes of exceptions that leave functions of Python's.
+// Storing and raising exceptions of Python functions.
 
 #include "pipeline/python/callbacks.h"
 
@@ -39,7 +39,7 @@ void raise(const py::object& exception) {
 void Raised::keep() noexcept {
   const py::object exception = caught_exception();
   if (calls_ != 0) {
-    // What was there goes once this has what it needs: it may run code of Python's.
+    // The old exception is released last: that may run Python code.
     const py::object gone = std::exchange(last_, exception);
     ++count_;
     return;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Functions of Python's that winnow calls while it works: from any of its threads, one at a time,
-// for each waits for the GIL. What they raise is kept, the work goes on with some answer, and the
-// call that was under way raises it in the end.
+// Python functions that winnow calls during its work: from any of its threads, one at a time,
+// because each call takes the GIL. An exception in them is stored, the work continues with a
+// default result, and the call from Python that is in progress raises the exception at its end.
 
 #include "pipeline/python/gil.h"
 #include "pipeline/python/refusal.h"
@@ -17,7 +17,7 @@ namespace winnow::python {
 
 namespace py = pybind11;
 
-/// On a thread in such a function, while it is there.
+/// Marks the current thread as being inside such a function.
 class InCallback {
  public:
   InCallback() noexcept { ++depth_; }
@@ -25,7 +25,7 @@ class InCallback {
   InCallback(const InCallback&) = delete;
   InCallback& operator=(const InCallback&) = delete;
 
-  /// Throws `unsupported` on such a thread: what asks holds locks that the call would wait for.
+  /// Throws `unsupported` on such a thread: its caller holds locks that the call would block on.
   static void refuse() {
     if (depth_ != 0) {
       throw Refusal(Status::unsupported, "a function that winnow calls cannot call winnow");
@@ -36,8 +36,8 @@ class InCallback {
   static inline thread_local int depth_ = 0;
 };
 
-/// Calls use(), which calls Python, and keep() while an exception that left it is handled; both
-/// with the GIL. On any thread.
+/// Calls use(), which calls Python, and, if an exception leaves it, keep(), while the exception is
+/// handled. Both run with the GIL. On any thread.
 template <typename Use, typename Keep>
 void call_python(Use&& use, Keep&& keep) noexcept {
   const WithGil hold;
@@ -51,18 +51,19 @@ void call_python(Use&& use, Keep&& keep) noexcept {
   }
 }
 
-/// The exception that is being handled, as Python has it. With the GIL.
+/// Returns the exception that is being handled, as a Python object. With the GIL.
 [[nodiscard]] py::object caught_exception() noexcept;
-/// Raises it. With the GIL.
+/// Raises a Python exception. With the GIL.
 [[noreturn]] void raise(const py::object& exception);
 
-/// What functions raised that any call may ask, for all calls that were under way. With the GIL.
+/// Stores exceptions of functions that any call may run (support functions), for all calls in
+/// progress. With the GIL.
 class Raised {
  public:
-  /// Of an exception that is being handled. Where no call is under way, Python is told that it
-  /// could not be raised.
+  /// Stores the exception that is being handled. If no call is in progress, reports it as
+  /// unraisable.
   void keep() noexcept;
-  /// What work() answers, unless something is kept meanwhile, which is raised then.
+  /// Returns work(), or raises the exception that was stored meanwhile.
   template <typename Work>
   auto during(Work&& work) {
     const Meanwhile meanwhile(*this);
@@ -95,17 +96,17 @@ class Raised {
   unsigned calls_ = 0;
 };
 
-/// A function of Python's, that is let go of with the GIL.
+/// A Python function, released with the GIL.
 class PythonFunction {
  public:
-  /// A TypeError for what cannot be called.
+  /// Throws a TypeError if the object is not callable.
   PythonFunction(py::object function, const char* name);
   ~PythonFunction();
   PythonFunction(const PythonFunction&) = delete;
   PythonFunction& operator=(const PythonFunction&) = delete;
 
   [[nodiscard]] const py::object& object() const noexcept { return function_; }
-  /// Calls use(function), else as `call_python`.
+  /// Calls use(function), as `call_python`.
   template <typename Use, typename Keep>
   void ask(Use&& use, Keep&& keep) const noexcept {
     call_python([&] { use(function_); }, keep);
@@ -115,8 +116,8 @@ class PythonFunction {
   py::object function_;
 };
 
-/// Whether what is answered lets something pass. Once it has raised, nothing passes and nobody asks
-/// it, until `begin`.
+/// A Python predicate. After it has raised an exception it is not called, and rejects everything,
+/// until `begin`.
 class Predicate {
  public:
   Predicate(py::object function, const char* name) : function_(std::move(function), name) {}
@@ -127,9 +128,9 @@ class Predicate {
     return has_failed_.load(std::memory_order_relaxed);
   }
   [[nodiscard]] bool passes(std::uint64_t first, std::uint64_t second) noexcept;
-  /// What it raised. With the GIL.
+  /// Raises its exception. With the GIL.
   [[noreturn]] void raise();
-  /// The same, if it has.
+  /// Raises its exception, if there is one.
   void raise_if_failed() {
     if (has_failed()) raise();
   }
@@ -140,7 +141,7 @@ class Predicate {
   py::object raised_;
 };
 
-/// Asked about pairs, as winnow asks.
+/// The predicate as a PairPredicate.
 [[nodiscard]] PairPredicate pair_predicate(Predicate& predicate) noexcept;
 
 }  // namespace winnow::python

@@ -10,11 +10,11 @@
 
 namespace winnow::python {
 
-/// What is chosen by name in Python.
+/// A table of the names that Python uses for the values of an enum.
 template <typename Enum, std::size_t N>
 using Choices = std::array<std::pair<std::string_view, Enum>, N>;
 
-/// The choice of this name; an invalid_argument names all of them.
+/// Returns the value of a name; throws an invalid_argument that lists all names.
 template <typename Enum, std::size_t N>
 [[nodiscard]] Enum chosen(const Choices<Enum, N>& choices, std::string_view name,
                           const char* what) {

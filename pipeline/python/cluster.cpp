@@ -1,4 +1,4 @@
-// Boxes on ranks.
+// The class Cluster: boxes on ranks.
 
 #include "pipeline/python/cluster.h"
 
@@ -20,7 +20,7 @@
 namespace winnow::python {
 namespace {
 
-/// A cluster and its ranks, one call after another.
+/// A cluster and its ranks; runs one call at a time.
 class SharedCluster : public NeedsInit {
  public:
   SharedCluster(const py::object& communicator, std::uint32_t ranks, const std::string& structure,
@@ -141,12 +141,10 @@ void add_cluster(py::module_& module) {
   using py::arg;
   py::class_<SharedCluster, std::shared_ptr<SharedCluster>> type(
       module, "Cluster",
-      "Boxes on any number of ranks, and which of them overlap: the pairs of one partition of all "
-      "of "
-      "them, each once, whatever the number of ranks. A body has a name, uint64, and belongs to "
-      "the "
-      "rank in whose region its centre lies: there it is moved and removed. Making one, add, "
-      "self_pairs and digest are collective: every process calls them, in the same order.");
+      "Boxes on any number of ranks and their overlapping pairs: the pairs of one partition of all "
+      "boxes, each once, whatever the number of ranks. A body has a name, uint64, and belongs to "
+      "the rank whose region contains its centre; that rank moves and removes it. The constructor, "
+      "add, self_pairs and digest are collective: every process calls them, in the same order.");
   add_ranks(type);
   type.def(py::init([](const py::object& comm, std::uint32_t ranks, const std::string& structure,
                        double imbalance) {
@@ -154,26 +152,24 @@ void add_cluster(py::module_& module) {
            }),
            arg("comm") = py::none(), arg("ranks") = 1, arg("structure") = "LinearBvh",
            arg("imbalance") = 1.1,
-           "`comm`: an mpi4py communicator, whose processes are the ranks; or whatever has its "
-           "rank, "
-           "size, alltoall and allgather. None: so many virtual `ranks` in this process. Space is "
-           "cut "
-           "anew once a rank has more than `imbalance` times the mean work.")
-      .def(
-          "add", &add, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
-          "Adds n bodies, names (n,) that no other has, boxes (n, 3) each; none for a process that "
-          "adds nothing. `rank`: one of this process, by default its first. Collective.")
+           "`comm`: an mpi4py communicator, whose processes are the ranks, or an object with the "
+           "same rank, size, alltoall and allgather. None: `ranks` virtual ranks in this process. "
+           "Space is divided again once a rank has more than `imbalance` times the mean work.")
+      .def("add", &add, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
+           "Adds n bodies: names (n,) that no other body has, boxes (n, 3) each. A process that "
+           "adds nothing passes empty arrays. `rank`: a rank of this process, by default its "
+           "first. Collective.")
       .def("move", &move, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
            "New boxes (n, 3) for bodies (n,) of a rank.")
       .def("remove", &remove, arg("names"), arg("rank") = py::none(), "Removes bodies of a rank.")
       .def("self_pairs", &self_pairs, arg("order") = "fast",
            "Pairs of names, the smaller first, that ranks of this process report: (m, 2) uint64. "
-           "Bodies have come to where they belong then. Collective.")
+           "Moves bodies to the ranks that they belong to first. Collective.")
       .def("bodies", &bodies, arg("rank") = py::none(),
-           "(names, lower, upper) of what belongs to a rank: (n,) uint64 and (n, 3) float32 each.")
+           "(names, lower, upper) of the bodies of a rank: (n,) uint64 and (n, 3) float32 each.")
       .def("digest", &digest,
-           "128 bits of the pairs of all ranks, as 32 digits: the same on any number of them. "
-           "Collective.")
+           "A digest, 128 bits as 32 digits, of the pairs of all ranks: the same on any number of "
+           "ranks. Collective.")
       .def_property_readonly(
           "statistics", &statistics,
           "Counters of all ranks, the same on each: bodies, ghosts, pairs, bytes, "

@@ -1,4 +1,4 @@
-// Bodies with shapes on ranks.
+// The class ClusterScene: bodies with shapes on ranks.
 
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/bytes.h"
@@ -21,8 +21,8 @@
 namespace winnow::python {
 namespace {
 
-/// A cluster, its ranks, and the shapes, which stay for as long as it does: bodies of other
-/// processes come with ids alone.
+/// A cluster, its ranks and the shapes. Shapes are pinned for its lifetime, because bodies that
+/// come from other processes refer to them by id only.
 struct RanksWithBodies {
   RanksWithBodies(std::shared_ptr<SharedShapes> of, const py::object& communicator,
                   std::uint32_t count)
@@ -38,7 +38,8 @@ struct RanksWithBodies {
   std::optional<ClusterScene> cluster;
 };
 
-/// The same as Python has it, and contacts of each rank, which arrays of theirs keep alive.
+/// The Python object: the cluster and the contacts of each rank. Arrays of contacts keep the
+/// cluster alive.
 class SharedClusterScene : public NeedsInit {
  public:
   SharedClusterScene(const std::shared_ptr<SharedShapes>& shapes, const py::object& communicator,
@@ -52,7 +53,7 @@ class SharedClusterScene : public NeedsInit {
         "ClusterScene");
     const std::uint32_t first = cluster().first_hosted();
     for (std::uint32_t rank = first; rank < first + cluster().hosted(); ++rank) {
-      // Nobody changes what is lent.
+      // Lent contacts are never changed through this pointer.
       auto* const shown = const_cast<Contacts*>(&cluster().contacts(rank));
       contacts_.push_back(std::make_shared<HeldContacts>(
           std::shared_ptr<Contacts>(shown, [kept = state_](Contacts*) {})));
@@ -66,7 +67,7 @@ class SharedClusterScene : public NeedsInit {
     return contacts_[hosted(rank) - cluster().first_hosted()];
   }
 
-  /// Without the GIL, while shapes stay as they are.
+  /// Runs body() without the GIL, while shapes do not change.
   template <typename Body>
   void call(Body&& body, const char* name) const {
     state_->shapes->raised.during([&] {
@@ -79,7 +80,7 @@ class SharedClusterScene : public NeedsInit {
       return true;
     });
   }
-  /// The same for calls that fill contacts, of which no array may be alive.
+  /// As `call`, for calls that fill contacts; requires that no array of them is alive.
   template <typename Body>
   void filling(Body&& body, const char* name) const {
     std::vector<std::unique_lock<std::mutex>> held;
@@ -105,7 +106,7 @@ class SharedClusterScene : public NeedsInit {
   return std::make_shared<SharedClusterScene>(shapes, comm, ranks, options);
 }
 
-/// Bodies and their names.
+/// Bodies with their names.
 struct NamedBodies {
   NamedBodies(py::handle name_array, py::handle shape_array, py::handle poses, py::handle motions,
               py::handle layers, py::handle mask, py::handle environment)
@@ -245,17 +246,17 @@ void add_changes(ClusterSceneClass& type) {
   type.def("add", &add, arg("names"), arg("shapes"), arg("poses"), arg("motion") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, py::kw_only(),
            arg("rank") = py::none(),
-           "Adds n bodies, names (n,) uint64 that no other has, else as Scene.add; none for a "
-           "process that adds nothing. They are fixed or dynamic. `rank`: one of this process, by "
-           "default its first. Collective.")
+           "Adds n bodies: names (n,) uint64 that no other body has, otherwise as Scene.add. A "
+           "process that adds nothing passes empty arrays. Bodies are fixed or dynamic. `rank`: a "
+           "rank of this process, by default its first. Collective.")
       .def("replicate", &replicate, arg("names"), arg("shapes"), arg("poses"), arg("layers") = 1,
            arg("mask") = every, arg("environment") = 0,
-           "Adds fixed bodies that are on every rank, such as a ground: every process gives the "
-           "same ones. They stay. Collective.")
+           "Adds fixed bodies that are on every rank, such as a ground. Every process passes the "
+           "same bodies. They cannot be removed. Collective.")
       .def("move_replicated", &move_replicated, arg("names"), arg("poses"),
-           "New poses of those, the same on every process. Collective.")
+           "Sets new poses of replicated bodies, the same on every process. Collective.")
       .def("move", &move, arg("names"), arg("poses"), py::kw_only(), arg("rank") = py::none(),
-           "New poses for bodies (n,) that belong to a rank, as in Scene.move.")
+           "Sets new poses of bodies (n,) that belong to a rank, as in Scene.move.")
       .def("remove", &remove, arg("names"), py::kw_only(), arg("rank") = py::none(),
            "Removes bodies that belong to a rank.");
 }
@@ -263,26 +264,26 @@ void add_changes(ClusterSceneClass& type) {
 void add_answers(ClusterSceneClass& type) {
   using py::arg;
   type.def("collide", &collide, arg("level") = "manifold",
-           "Finds everything that touches, as Scene.collide; see `contacts`. Before, bodies go "
-           "where they belong. Collective.")
+           "Finds all contacts, as Scene.collide; see `contacts`. Moves bodies to the ranks that "
+           "they belong to first. Collective.")
       .def("contacts", &SharedClusterScene::contacts, arg("rank") = py::none(),
-           "What a rank of this process reports; together, the ranks' are all. Client data are "
-           "names. While an array of theirs is alive `collide` is a BufferError, and they are "
-           "filled by nothing else.")
+           "The contacts that a rank of this process reports; all ranks together report all "
+           "contacts. Client data are names. While an array of these contacts is alive, `collide` "
+           "raises a BufferError; no other call can fill them.")
       .def("digest", &digest,
-           "128 bits of the contacts of all ranks, as 32 digits: the same on any number of them. "
-           "Collective.")
+           "A digest, 128 bits as 32 digits, of the contacts of all ranks: the same on any number "
+           "of ranks. Collective.")
       .def("bodies", &body_columns, arg("rank") = py::none(),
-           "What belongs to a rank: columns name, shape, pose (n, 7), motion.")
+           "The bodies of a rank: columns name, shape, pose (n, 7), motion.")
       .def("migrated", &migrated, arg("rank") = py::none(),
-           "Names of bodies that the last `collide` made this rank's, and of those that it made "
-           "another's: (n,) and (m,) uint64.")
+           "Names of bodies that the last `collide` moved to this rank, and of bodies that it "
+           "moved to others: (n,) and (m,) uint64.")
       .def("save", &save, arg("rank") = py::none(),
-           "All that is to be kept of a rank but what is replicated, as bytes.")
+           "The state of a rank, without replicated bodies, as bytes.")
       .def("restore", &restore, arg("saved"),
-           "Adds what ranks of any number kept: bytes for each rank of this process, one after "
-           "the other of several, empty for none. What is replicated is replicated again before "
-           "the first `collide`. Collective.");
+           "Adds the bodies that any number of ranks saved: bytes for each rank of this process "
+           "(several concatenated, or none). Replicated bodies must be added again before the "
+           "first `collide`. Collective.");
 }
 
 }  // namespace
@@ -291,17 +292,17 @@ void add_cluster_scene(py::module_& module) {
   using py::arg;
   ClusterSceneClass type(
       module, "ClusterScene",
-      "Bodies with shapes on any number of ranks, and what touches what: the contacts of one Scene "
-      "of all of them, to the bit, each on one rank. A body has a name, uint64, and belongs to the "
-      "rank in whose region it lies: there it is moved and removed. Every process has made the "
-      "same shapes in the same order; while the cluster lives none can be removed. Calls that are "
-      "collective are made by every process, in the same order.");
+      "Bodies with shapes on any number of ranks and their contacts: the contacts of one Scene of "
+      "all bodies, to the bit, each on one rank. A body has a name, uint64, and belongs to the "
+      "rank whose region contains it; that rank moves and removes it. Every process must have "
+      "added the same shapes in the same order; no shape can be removed while the cluster exists. "
+      "Collective calls are made by every process, in the same order.");
   type.def(py::init(&make_cluster), arg("shapes").none(false), arg("comm") = py::none(),
            arg("ranks") = 1, py::kw_only(), arg("margin") = 0.0, arg("tier") = "robust",
            arg("contact_reduction") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
            arg("parallel") = true, arg("imbalance") = 1.1,
-           "`comm`, `ranks` and `imbalance` as of Cluster, the rest as of Scene.")
+           "`comm`, `ranks` and `imbalance` as for Cluster, the others as for Scene.")
       .def_property_readonly(
           "statistics",
           [](const SharedClusterScene& c) {

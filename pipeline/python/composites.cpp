@@ -1,4 +1,4 @@
-// Triangle meshes, height fields and compounds.
+// Triangle meshes, height fields and compounds of the class Shapes.
 
 #include "pipeline/python/entry_columns.h"
 #include "pipeline/python/locks.h"
@@ -16,7 +16,7 @@
 namespace winnow::python {
 namespace {
 
-/// Points where they lie.
+/// A view of points without a copy.
 [[nodiscard]] PointView view_of(const Numbers& points) {
   const auto stride = static_cast<std::size_t>(points.stride());
   if (points.is_single()) {
@@ -62,7 +62,7 @@ void refit_mesh(SharedShapes& shapes, std::uint32_t mesh, py::handle vertex_arra
          "refit_mesh");
 }
 
-/// Heights (rows, columns), packed unless each row is.
+/// Heights (rows, columns); copied unless each row is contiguous.
 class HeightInput {
  public:
   HeightInput(const py::array& heights, const std::array<double, 2>& spacing)
@@ -160,7 +160,7 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   return py::make_tuple(child, own);
 }
 
-/// Tells surfaces something by set(id, now), all or none: is(id) is what they were told before.
+/// Calls set(id, now) for each surface, all or none: is(id) gives the old value for an undo.
 template <typename Set, typename Is>
 void tell(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
           Is&& is) {
@@ -198,7 +198,7 @@ void set_solid(SharedShapes& shapes, py::handle meshes, bool solid) {
       [&](ShapeId id) { return pool.is_solid(id); });
 }
 
-/// answer(id) of each composite shape; invalid_key where there is none.
+/// Returns answer(id) for each composite shape; invalid_key if there is no such shape.
 template <typename T, typename Answer>
 [[nodiscard]] py::array of_composites(const SharedShapes& shapes, py::handle id_array,
                                       const char* call, Answer&& answer) {
@@ -240,38 +240,40 @@ void add_composites(ShapesClass& type) {
   using py::arg;
   type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
            arg("active_edge_angle") = 0.02,
-           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and gives its id. Edges that "
-           "bend by more than the angle, in radians, have normals of their own.")
+           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and returns its id. Edges at "
+           "which the surface bends by more than the angle, in radians, are active: contacts at "
+           "them have normals of their own.")
       .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
-           "The triangles of a mesh multiplied by three factors, shared: a new id.")
+           "Adds a copy of a mesh that is scaled by three factors and shares its triangles; "
+           "returns the new id.")
       .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
-           "New places (n, 3) for the vertices of a mesh.")
+           "Sets new positions (n, 3) of the vertices of a mesh.")
       .def("add_height_field", &add_height_field, arg("heights"),
            arg("spacing") = std::array<double, 2>{1.0, 1.0},
-           "Adds a surface of heights (rows, columns), NaN for holes, sample (row, column) at "
-           "(column * spacing[0], row * spacing[1], height), and gives its id.")
+           "Adds a height field (rows, columns), NaN for holes, with sample (row, column) at "
+           "(column * spacing[0], row * spacing[1], height), and returns its id.")
       .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
-           arg("heights"), "New heights (rows, columns) from (column, row) on.")
+           arg("heights"), "Sets new heights (rows, columns) from (column, row) on.")
       .def("add_compound", &add_compound, arg("children"), arg("poses"),
-           "Adds a shape of n children, ids (n,) of convex shapes, meshes and height fields, at "
-           "poses (n, 7), and gives its id. Parts are numbered child by child: a convex child is "
-           "one, a surface has all its triangles.")
+           "Adds a compound of n children, ids (n,) of convex shapes, meshes and height fields, at "
+           "poses (n, 7), and returns its id. Parts are numbered child by child: a convex child is "
+           "one part, a surface has one part for each triangle.")
       .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
-           "What parts (n,) of a compound are: (child, part), (n,) uint32 each, part WHOLE_SHAPE "
-           "of convex children.")
+           "Child and part of child of the parts (n,) of a compound: (child, part), (n,) uint32 "
+           "each; part is WHOLE_SHAPE for convex children.")
       .def("compound_children", &compound_children, arg("compound"),
-           "What a compound is made of: (ids (n,) uint32, poses (n, 7) float64).")
+           "The children of a compound: (ids (n,) uint32, poses (n, 7) float64).")
       .def(
           "parts",
           [](const SharedShapes& shapes, py::handle ids) {
             return of_composites<std::uint32_t>(
                 shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
           },
-          arg("shapes"), "How many parts composite shapes (n,) have: (n,) uint32.")
-      .def(
-          "set_one_sided", &set_one_sided, arg("surfaces"), arg("one_sided") = true,
-          "Gives triangles of meshes and height fields (n,) a front, or two sides again: of a mesh "
-          "where corners run counter-clockwise, of a field up. They do not meet what is behind.")
+          arg("shapes"), "Number of parts of composite shapes (n,): (n,) uint32.")
+      .def("set_one_sided", &set_one_sided, arg("surfaces"), arg("one_sided") = true,
+           "Makes meshes and height fields (n,) one-sided, or two-sided again. The front is the "
+           "side from which corners are counter-clockwise; for height fields it is up. Anything "
+           "behind a one-sided triangle does not collide with it.")
       .def(
           "is_one_sided",
           [](const SharedShapes& shapes, py::handle ids) {
@@ -279,18 +281,18 @@ void add_composites(ShapesClass& type) {
               return shapes.composites.is_one_sided(id);
             });
           },
-          arg("shapes"), "Which composite shapes (n,) were told so: (n,) bool.")
+          arg("shapes"), "True for composite shapes (n,) that are one-sided: (n,) bool.")
       .def("set_solid", &set_solid, arg("surfaces"), arg("solid") = true,
-           "Gives meshes (n,) an inside, or takes it away again: they have to be closed, and their "
-           "corners to run counter-clockwise seen from outside, else invalid_shape. Distances and "
-           "overlaps that a scene is asked for then take what is within for a part of the solid.")
+           "Makes meshes (n,) solid, or surfaces again. Solid meshes must be closed, with corners "
+           "counter-clockwise as seen from outside, else invalid_shape. Distance and overlap "
+           "queries of a scene then include the inside.")
       .def(
           "is_solid",
           [](const SharedShapes& shapes, py::handle ids) {
             return of_composites<bool>(shapes, ids, "is_solid",
                                        [&](ShapeId id) { return shapes.composites.is_solid(id); });
           },
-          arg("shapes"), "Which composite shapes (n,) were told so: (n,) bool.");
+          arg("shapes"), "True for composite shapes (n,) that are solid: (n,) bool.");
 }
 
 }  // namespace winnow::python

@@ -1,4 +1,4 @@
-// Contacts of a scene as columns.
+// The class Contacts: contacts of a scene as columns.
 
 #include "pipeline/python/contact_choices.h"
 #include "pipeline/python/entry_columns.h"
@@ -12,7 +12,7 @@
 namespace winnow::python {
 namespace {
 
-/// Defines a property that makes arrays of contacts while nobody fills them.
+/// Defines a property that makes arrays of contacts, locked against a concurrent fill.
 template <typename Class, typename Make>
 void define(Class& type, const char* name, Make make, const char* doc) {
   type.def_property_readonly(
@@ -38,19 +38,19 @@ template <typename T>
   std::ranges::copy(values, copy.mutable_data());
   return copy;
 }
-/// Where all shapes are convex, one number that is shown for every manifold.
+/// If all shapes are convex, the column repeats one number with stride 0.
 [[nodiscard]] py::array part_column(Owner owner, const PartColumn& values) {
   const std::uint32_t* const parts = values.lookup().parts;
   return parts != nullptr ? shown(owner, parts, values.size())
                           : shown(owner, &kWholeShape, values.size(), 0);
 }
-/// Three columns, one for each axis.
+/// A tuple of three columns, one for each axis.
 template <typename Column>
 [[nodiscard]] py::tuple axes(Column&& column) {
   return py::make_tuple(column(0), column(1), column(2));
 }
 
-/// Two numbers of 64 bits of each contact that ended.
+/// Two 64-bit numbers of each contact that ended.
 [[nodiscard]] py::array ended_column(Owner owner, std::span<const EndedContact> ended,
                                      std::size_t offset) {
   return EntryColumns<EndedContact>(owner, ended).rows<std::uint64_t>(offset, 2);
@@ -74,34 +74,33 @@ void add_pairs(Class& type) {
       "Keys of the second bodies, (n,) uint64.");
   define(
       type, "data_a", [](const Contacts& c, Owner) { return looked_up(c.data_a()); },
-      "Client data of the first bodies, (n,) uint64: an array of its own, made when it is asked "
-      "for.");
+      "Client data of the first bodies, (n,) uint64: a new array, made at each access.");
   define(
       type, "data_b", [](const Contacts& c, Owner) { return looked_up(c.data_b()); },
-      "The same of the second bodies.");
+      "Client data of the second bodies, as data_a.");
   define(
       type, "event",
       [](const Contacts& c, Owner o) {
         const auto* const events = reinterpret_cast<const std::uint8_t*>(c.event().data());
         return shown(o, events, c.event().size());
       },
-      "0 for pairs that began, 1 for those that were there before: (n,) uint8.");
+      "0 for pairs that began, 1 for pairs that persist: (n,) uint8.");
   define(
       type, "ended", [](const Contacts& c, Owner o) { return ended_column(o, c.ended(), 0); },
-      "Pairs of keys that were there before and are not now, (k, 2) uint64.");
+      "Pairs of keys that were in contact in the last frame and are not now, (k, 2) uint64.");
   define(
       type, "ended_data",
       [](const Contacts& c, Owner o) {
         return ended_column(o, c.ended(), offsetof(EndedContact, data_a));
       },
-      "Client data of these, (k, 2) uint64.");
+      "Client data of the pairs in `ended`, (k, 2) uint64.");
   define(
       type, "previous_pair", [](const Contacts& c, Owner o) { return all(o, c.previous_pair()); },
-      "Of scenes with `warm_start`, else empty: where each pair was in the last frame, NO_CONTACT "
-      "of those that were not there: (n,) uint32.");
+      "With the scene's `warm_start`, else empty: index of each pair in the last frame, or "
+      "NO_CONTACT for new pairs: (n,) uint32.");
   define(
       type, "runs", [](const Contacts& c, Owner) { return runs_of(c); },
-      "Pairs of one pair of kinds of shape: (kind a, kind b, first, count) each.");
+      "Ranges of pairs with the same two kinds of shapes: (kind a, kind b, first, count) each.");
 }
 
 template <typename Class>
@@ -111,13 +110,13 @@ void add_manifolds(Class& type) {
       "Manifolds of pair i are manifold_first[i] to manifold_first[i + 1]: (n + 1,) uint32.");
   define(
       type, "part_a", [](const Contacts& c, Owner o) { return part_column(o, c.part_a()); },
-      "Triangle or child of a, WHOLE_SHAPE of convex shapes, of each manifold: (m,) uint32.");
+      "Triangle or child of a in each manifold, WHOLE_SHAPE for convex shapes: (m,) uint32.");
   define(
       type, "part_b", [](const Contacts& c, Owner o) { return part_column(o, c.part_b()); },
-      "The same of b.");
+      "Triangle or child of b, as part_a.");
   define(
       type, "distance", [](const Contacts& c, Owner o) { return all(o, c.distance()); },
-      "Negative by the depth, (m,) float64.");
+      "Distance, negative if they overlap: (m,) float64.");
   define(
       type, "error_bound", [](const Contacts& c, Owner o) { return all(o, c.error_bound()); },
       "The true distance is within distance +- this: (m,) float64.");
@@ -126,7 +125,7 @@ void add_manifolds(Class& type) {
       [](const Contacts& c, Owner o) {
         return axes([&](int axis) { return all(o, c.normal(axis)); });
       },
-      "Unit, from a to b, in the axes of the world: three (m,) float64.");
+      "Unit vector from a to b, in world axes: three (m,) float64.");
   define(
       type, "point",
       [](const Contacts& c, Owner o) {
@@ -141,14 +140,14 @@ void add_points(Class& type) {
   const auto span_of = [](const auto& c) { return std::span(c.data(), c.size()); };
   define(
       type, "point_first", [](const Contacts& c, Owner o) { return all(o, c.point_first()); },
-      "Level manifold: points of manifold m are point_first[m] to point_first[m + 1].");
+      "Level manifold: the points of manifold m are point_first[m] to point_first[m + 1].");
   define(
       type, "contact_position",
       [span_of](const Contacts& c, Owner o) {
         return axes(
             [&](int axis) { return all<float>(o, span_of(c.contact_columns().position[axis])); });
       },
-      "Halfway between the surfaces, relative to the position of a: three (p,) float32.");
+      "Position halfway between the surfaces, relative to the position of a: three (p,) float32.");
   define(
       type, "contact_depth",
       [span_of](const Contacts& c, Owner o) {
@@ -157,13 +156,13 @@ void add_points(Class& type) {
       "Positive where they overlap: (p,) float32.");
   define(
       type, "previous_point", [](const Contacts& c, Owner o) { return all(o, c.previous_point()); },
-      "As `previous_pair`, of each point: (p,) uint32.");
+      "Index of each point in the last frame, as `previous_pair`: (p,) uint32.");
   define(
       type, "contact_feature",
       [span_of](const Contacts& c, Owner o) {
         return all<std::uint64_t>(o, span_of(c.contact_columns().feature));
       },
-      "Which features of a and b made it, the same from frame to frame: (p,) uint64.");
+      "The features of a and b that made the point, the same from frame to frame: (p,) uint64.");
 }
 
 }  // namespace
@@ -172,12 +171,12 @@ void add_contacts(py::module_& module) {
   module.attr("NO_CONTACT") = kNoContact;
   py::class_<HeldContacts, std::shared_ptr<HeldContacts>> type(
       module, "Contacts",
-      "What `Scene.collide` found: pairs of bodies, for each pair its manifolds, for each manifold "
-      "its points. Reused from frame to frame: it remembers what was found. Its arrays show what "
-      "winnow wrote, to be read; while one is alive, filling the contacts is a BufferError. "
-      "Vectors are tuples of an array for each axis.");
+      "The results of `Scene.collide`: pairs of bodies, the manifolds of each pair, and the points "
+      "of each manifold. Reused from frame to frame, because it remembers the last results. Its "
+      "arrays are read-only views; while one is alive, filling the contacts raises a BufferError. "
+      "Vectors are tuples of one array for each axis.");
   type.def(py::init([] { return std::make_shared<HeldContacts>(); }),
-           "Contacts that remember nothing.")
+           "Contacts without a last frame.")
       .def("__len__",
            [](const HeldContacts& held) {
              const auto lock = held.hold();
@@ -193,10 +192,10 @@ void add_contacts(py::module_& module) {
   define(
       type, "level",
       [](const Contacts& c, Owner) { return py::str(std::string(name_of(kLevels, c.level()))); },
-      "What was asked.");
+      "The level of the last `collide`.");
   define(
       type, "carried", [](const Contacts& c, Owner) { return py::int_(c.carried()); },
-      "How many pairs kept the manifolds they had.");
+      "Number of pairs that kept their manifolds.");
   add_pairs(type);
   add_manifolds(type);
   add_points(type);

@@ -1,4 +1,5 @@
-// Meshes whose vertices move in every step: what of them may touch, does touch, or is near.
+// The class DeformableMesh: meshes whose vertices move in every step; candidates, impacts and
+// proximity of their features.
 
 #include "pipeline/python/deformable.h"
 
@@ -20,15 +21,15 @@
 namespace winnow::python {
 namespace {
 
-/// A mesh with the places of its vertices, which it goes on reading: they are its own, so that the
-/// caller's arrays may be written to.
+/// A mesh with copies of its vertex positions, which the mesh reads in later calls, so that the
+/// caller may overwrite its arrays.
 struct SharedDeformable : NeedsInit {
   explicit SharedDeformable(const DeformableMeshOptions& options) : mesh(options) {}
 
   using Places = std::vector<Vec3d>;
   mutable std::shared_mutex mutex;
   DeformableMesh mesh;
-  /// Those that the mesh reads, and those that the next step is put into.
+  /// Positions that the mesh reads, and buffers for the next step.
   Places start;
   Places end;
   Places next_start;
@@ -94,7 +95,8 @@ void move(SharedDeformable& s, py::handle starts, py::handle ends, double distan
 
 // --- questions ---------------------------------------------------------------------------------
 
-/// All that ask(take) hands over in chunks; nothing may be thrown through what hands it over.
+/// Collects all chunks that ask(take) passes on. Does not throw, because the caller of `take` must
+/// not be unwound.
 template <typename Result, typename Ask>
 [[nodiscard]] Status gather(std::vector<Result>& all, Ask&& ask) {
   bool has_room = true;
@@ -109,7 +111,7 @@ template <typename Result, typename Ask>
   return status == Status::ok && !has_room ? Status::out_of_memory : status;
 }
 
-/// What is found of a mesh by itself.
+/// Returns results for one mesh.
 template <typename Result, typename Ask>
 [[nodiscard]] std::vector<Result> found(const SharedDeformable& s, const char* call, Ask&& ask) {
   std::vector<Result> all;
@@ -117,7 +119,7 @@ template <typename Result, typename Ask>
   return all;
 }
 
-/// What is found of two.
+/// Returns results for two meshes.
 template <typename Result, typename Ask>
 [[nodiscard]] std::vector<Result> found_of_two(const SharedDeformable& s,
                                                const SharedDeformable& other, const char* call,
@@ -260,31 +262,33 @@ void add_answers(py::module_& module) {
       .def_readonly("features", &MeshImpactTable::features,
                     "A vertex and a face, or two edges, by number: (m, 2) uint32.")
       .def_readonly("time", &MeshImpactTable::time,
-                    "Of the first touch, in [0, 1], never late: (m,) float64.");
+                    "Time of the first touch, in [0, 1], never late: (m,) float64.");
   using Near = MeshProximityTable;
   py::class_<Near>(module, "MeshProximities",
                    "Features of meshes that are near each other at the end of a step.")
       .def_readonly("features", &Near::features,
                     "A vertex and a face, or two edges, by number: (m, 2) uint32.")
-      .def_readonly("distance", &Near::distance, "In units of the vertices, (m,) float64.")
-      .def_readonly("point_a", &Near::point_a, "Nearest, on the first: (m, 3) float64.")
-      .def_readonly("point_b", &Near::point_b, "Nearest, on the second: (m, 3) float64.")
-      .def_readonly("weight", &Near::weight,
-                    "What the points are made of, (m, 4) float64: of the first feature weight[0] "
-                    "of the vertex, or weight[0] and weight[1] of the ends; the rest of the "
-                    "second's corners or ends. Those of a feature add up to 1.");
+      .def_readonly("distance", &Near::distance,
+                    "Distance in the units of the vertices, (m,) float64.")
+      .def_readonly("point_a", &Near::point_a, "Closest point on the first mesh: (m, 3) float64.")
+      .def_readonly("point_b", &Near::point_b, "Closest point on the second mesh: (m, 3) float64.")
+      .def_readonly(
+          "weight", &Near::weight,
+          "Barycentric weights of the points, (m, 4) float64: weight[0] of the vertex, or "
+          "weight[0] and weight[1] of the ends of the first edge; the others are of the corners or "
+          "ends of the second feature. The weights of a feature add up to 1.");
   using Impact = MeshShapeImpactTable;
-  py::class_<Impact>(module, "MeshShapeImpacts", "Faces that meet a rigid shape in a step.")
-      .def_readonly("face", &Impact::face, "By number, (m,) uint32.")
+  py::class_<Impact>(module, "MeshShapeImpacts", "Faces that touch a rigid shape in a step.")
+      .def_readonly("face", &Impact::face, "Number of the face, (m,) uint32.")
       .def_readonly("part", &Impact::part,
-                    "Triangle or child of the shape, WHOLE_SHAPE of a convex one: (m,) uint32.")
-      .def_readonly("time", &Impact::time, "In [0, 1], never late: (m,) float64.")
-      .def_readonly("gap", &Impact::gap, "At that time, beyond the separation: (m,) float64.")
-      .def_readonly("error_bound", &Impact::error_bound, "Of the gap, (m,) float64.")
+                    "Triangle or child of the shape, WHOLE_SHAPE for a convex shape: (m,) uint32.")
+      .def_readonly("time", &Impact::time, "Time in [0, 1], never late: (m,) float64.")
+      .def_readonly("gap", &Impact::gap, "Gap at that time, beyond the separation: (m,) float64.")
+      .def_readonly("error_bound", &Impact::error_bound, "Error bound of the gap, (m,) float64.")
       .def_readonly("normal", &Impact::normal,
-                    "Unit, from the shape to the face, at that time: (m, 3) float64.")
+                    "Unit vector from the shape to the face, at that time: (m, 3) float64.")
       .def_readonly("point", &Impact::point,
-                    "Of the shape at that time, in the world: (m, 3) float64.");
+                    "Point on the shape at that time, in the world: (m, 3) float64.");
 }
 
 using MeshClass = py::class_<SharedDeformable, std::shared_ptr<SharedDeformable>>;
@@ -293,29 +297,28 @@ void add_itself(MeshClass& type) {
   using py::arg;
   type.def(py::init(&make), py::kw_only(), arg("origin") = std::array<double, 3>{0.0, 0.0, 0.0},
            arg("parallel") = true,
-           "A mesh without triangles. Boxes are measured from `origin`: a point near the mesh "
-           "keeps them tight far from 0; meshes that are asked about each other have the same, "
-           "else invalid_argument. It is `build` that refuses an origin that is not finite: "
-           "invalid_bounds. "
-           "`parallel` uses all cores.")
+           "An empty mesh. Boxes are measured from `origin`: a point near the mesh keeps them "
+           "tight far from (0, 0, 0). Two meshes that are tested against each other must have the "
+           "same origin, else invalid_argument. An origin that is not finite makes `build` fail: "
+           "invalid_bounds. `parallel` uses all cores.")
       .def("build", &build, arg("rest"), arg("triangles"),
-           "Takes triangles (m, 3) and sorts them by where vertices are at rest, (n, 3). The mesh "
-           "has to be moved before it is asked. O(m log m).")
+           "Sets triangles (m, 3) and sorts them by the rest positions of vertices, (n, 3). Call "
+           "`move` before any query. O(m log m).")
       .def("move", &move, arg("start"), arg("end"), arg("distance") = 0.0,
-           "The step: vertices move from `start` to `end`, (n, 3) each, of which copies are kept. "
-           "What comes within `distance` (a length) is among the candidates. O(n).")
+           "Sets the motion of a step: vertices move from `start` to `end`, (n, 3) each, which are "
+           "copied. Features that come within `distance` (a length) are candidates. O(n).")
       .def_property_readonly(
           "triangles",
           [](const SharedDeformable& s) {
             return reading(s.mutex, [&] { return s.mesh.triangles(); });
           },
-          "How many; 0 before `build`.")
+          "Number of triangles; 0 before `build`.")
       .def_property_readonly(
           "vertices",
           [](const SharedDeformable& s) {
             return reading(s.mutex, [&] { return s.mesh.vertices(); });
           },
-          "How many; 0 before `build`.")
+          "Number of vertices; 0 before `build`.")
       .def("edges", &edges, "Vertices of all edges, the lower one first: (e, 2) uint32, sorted.")
       .def(
           "footprint",
@@ -323,37 +326,38 @@ void add_itself(MeshClass& type) {
             const Bytes bytes = reading(s.mutex, [&] { return s.mesh.footprint().total(); });
             return py::make_tuple(bytes.used, bytes.reserved);
           },
-          "Bytes (used, reserved), but for the places of vertices.");
+          "Bytes (used, reserved), without the positions of vertices.");
 }
 
 void add_questions(MeshClass& type) {
   using py::arg;
   const FeatureImpactOptions defaults;
   type.def("self_candidates", &self_candidates, arg("kind"),
-           "Pairs of features whose boxes overlap, (m, 2) uint32: `kind` 'vertex_face', of a "
-           "vertex and a face, or 'edge_edge', of two edges, the lower one first. Features that "
-           "share a vertex are no pair.")
+           "Pairs of features whose boxes overlap, (m, 2) uint32. `kind`: 'vertex_face', a vertex "
+           "and a face, or 'edge_edge', two edges, the lower one first. Features that share a "
+           "vertex are left out.")
       .def("candidates_with", &candidates_with, arg("other"), arg("kind"),
-           "The same of features of this mesh, first, and of another.")
+           "Pairs of features of this mesh (first) and of another one, as self_candidates.")
       .def("self_impacts", &self_impacts, arg("kind"), py::kw_only(),
            arg("min_separation") = defaults.min_separation, arg("tolerance") = defaults.tolerance,
            arg("max_intervals") = defaults.max_intervals,
-           "Which of them touch in the step, and when: MeshImpacts. Options as in "
+           "Features that touch in the step, with times: MeshImpacts. Options as in "
            "`feature_impacts`; `min_separation` is at most the distance of the step.")
-      .def("impacts_with", &impacts_with, arg("other"), arg("kind"), py::kw_only(),
-           arg("min_separation") = defaults.min_separation, arg("tolerance") = defaults.tolerance,
-           arg("max_intervals") = defaults.max_intervals,
-           "The same with another mesh; `min_separation` is at most half of both distances.")
+      .def(
+          "impacts_with", &impacts_with, arg("other"), arg("kind"), py::kw_only(),
+          arg("min_separation") = defaults.min_separation, arg("tolerance") = defaults.tolerance,
+          arg("max_intervals") = defaults.max_intervals,
+          "As self_impacts, with another mesh; `min_separation` is at most half of both distances.")
       .def("impacts_with_shape", &impacts_with_shape, arg("shapes"), arg("shape"), arg("motion"),
            py::kw_only(), arg("separation") = 0.0, arg("tolerance") = 1e-6,
-           "Which faces meet a shape of `shapes` that moves by `motion`, (1, 13) as "
-           "`motions_between` gives it, and when: MeshShapeImpacts. `separation` (a length) is at "
-           "most half of the distance of the step; `tolerance` as in `time_of_impact`.")
+           "Faces that touch a shape of `shapes` that moves by `motion`, (1, 13) as returned by "
+           "`motions_between`, with times: MeshShapeImpacts. `separation` (a length) is at most "
+           "half of the distance of the step; `tolerance` as in `time_of_impact`.")
       .def("self_proximity", &self_proximity, arg("kind"), arg("thickness"),
-           "Which features are at a distance of at most `thickness` at the end of the step: "
-           "MeshProximities. It is at most the distance of the step.")
+           "Features with a distance of at most `thickness` at the end of the step: "
+           "MeshProximities. `thickness` is at most the distance of the step.")
       .def("proximity_with", &proximity_with, arg("other"), arg("kind"), arg("thickness"),
-           "The same with another mesh; `thickness` is at most half of both distances.");
+           "As self_proximity, with another mesh; `thickness` is at most half of both distances.");
 }
 
 }  // namespace
@@ -362,10 +366,9 @@ void add_deformable(py::module_& module) {
   add_answers(module);
   MeshClass type(
       module, "DeformableMesh",
-      "A mesh whose vertices move in every step, for cloth and soft bodies: which of its "
-      "vertices and faces, and which of its edges, may touch, do touch, or are near each "
-      "other, among themselves and those of another mesh. Any number of threads may "
-      "call it; a call that raises has changed nothing.");
+      "A mesh whose vertices move in every step, for cloth and soft bodies. Finds vertices and "
+      "faces, or edges, that may touch, do touch or are near each other, in one mesh or between "
+      "two. Any number of threads may call it; a call that raises changes nothing.");
   add_itself(type);
   add_questions(type);
 }

@@ -4,7 +4,7 @@
 
 namespace winnow::python {
 
-/// Meshes whose vertices move in every step.
+/// Adds DeformableMesh.
 void add_deformable(py::module_& module);
 
 }  // namespace winnow::python

@@ -11,7 +11,7 @@ void put(Drawing::Table& table, std::initializer_list<float> numbers, Colour col
   table.colours.insert(table.colours.end(), {colour.r, colour.g, colour.b, colour.a});
 }
 
-/// Copies: a drawing is made once and looked at once.
+/// Copies, because a drawing is made and read once.
 template <typename T>
 [[nodiscard]] py::array rows(const std::vector<T>& values, std::size_t columns) {
   return given(std::vector<T>(values), columns);
@@ -53,7 +53,7 @@ void add_drawing(py::module_& module) {
   colours(drawing, "line_colours", &Drawing::lines);
   property(drawing, "spheres", &Drawing::spheres, 4, "Centres and radii, (n, 4) float32.");
   colours(drawing, "sphere_colours", &Drawing::spheres);
-  property(drawing, "text_places", &Drawing::labels, 3, "Where texts stand, (n, 3) float32.");
+  property(drawing, "text_places", &Drawing::labels, 3, "Positions of texts, (n, 3) float32.");
   colours(drawing, "text_colours", &Drawing::labels);
   drawing.def_property_readonly(
       "texts", [](const Drawing& d) { return d.texts; }, "The texts.");

@@ -12,7 +12,7 @@
 
 namespace winnow::python {
 
-/// What a debug drawing consists of, as columns.
+/// Collects a debug drawing as columns.
 class Drawing final : public DebugDraw, public EmptyIfZero {
  public:
   void box(const Aabb& box, Colour colour) override;

@@ -10,20 +10,19 @@
 
 namespace winnow::python {
 
-/// Members of structs that lie one after another, as columns that show them: each is `offset` bytes
-/// into its struct.
+/// Shows members of an array of structs as columns; each member is `offset` bytes into its struct.
 template <typename Entry>
 class EntryColumns {
  public:
   EntryColumns(std::shared_ptr<const void> owner, std::span<const Entry> entries)
       : owner_(std::move(owner)), entries_(entries) {}
 
-  /// (n,) of T.
+  /// An array (n,) of T.
   template <typename T>
   [[nodiscard]] py::array column(std::size_t offset) const {
     return shown(owner_, member<T>(offset), entries_.size(), sizeof(Entry));
   }
-  /// (n, columns) of T.
+  /// An array (n, columns) of T.
   template <typename T>
   [[nodiscard]] py::array rows(std::size_t offset, std::size_t columns) const {
     return shown_rows(owner_, member<T>(offset), entries_.size(), columns, sizeof(Entry));
@@ -40,7 +39,7 @@ class EntryColumns {
   std::span<const Entry> entries_;
 };
 
-/// Those of entries that the columns take over.
+/// Moves entries into the owner of such columns.
 template <typename Entry>
 [[nodiscard]] EntryColumns<Entry> columns_of(std::vector<Entry>&& entries) {
   auto owner = std::make_shared<std::vector<Entry>>(std::move(entries));

@@ -1,4 +1,4 @@
-// Filters of questions, with functions of Python's.
+// The class Filter, with Python functions as predicates.
 
 #include "pipeline/python/filters.h"
 
@@ -57,17 +57,17 @@ namespace {
 void add_filters(py::module_& module) {
   using py::arg;
   constexpr std::uint32_t every = ~0U;
-  py::class_<PythonFilter>(module, "Filter",
-                           "What a query asks for: who may meet the one who asks.")
+  py::class_<PythonFilter>(module, "Filter", "Selects the objects that a query may find.")
       .def(py::init(&make_filter), arg("layers") = every, arg("mask") = every,
            arg("environment") = every, py::kw_only(), arg("accept") = py::none(),
            arg("layer") = py::none(),
-           "Layers it is in, mask of layers it meets, environment. `accept(key, data)` has the "
-           "last word on each object that the rest lets pass. It is called from any thread that "
-           "works, one at a time, for each needs the GIL: some microseconds a call. It answers "
-           "the same each time and asks winnow nothing (unsupported); what it raises the call "
-           "raises. `layer`, of questions to a scene: meets bodies whose layers that one meets, "
-           "see Scene.set_layers_meet.")
+           "`layers`: layers of the query; `mask`: layers that it may find; `environment`: as in "
+           "`Partition.set_filter`. `accept(key, data)` is called for each object that passes the "
+           "other conditions. Calls come from any working thread, one at a time, because each "
+           "needs the GIL: some microseconds a call. It must return the same result each time and "
+           "must not call winnow (unsupported); the query raises its exceptions. `layer`, for "
+           "queries of a scene: finds bodies in layers that collide with this layer, see "
+           "Scene.set_layers_meet.")
       .def_property_readonly("layers", [](const PythonFilter& f) { return f.filter.layers; })
       .def_property_readonly("mask", [](const PythonFilter& f) { return f.filter.mask; })
       .def_property_readonly("environment",

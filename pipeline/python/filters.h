@@ -1,6 +1,6 @@
 #pragma once
 
-// Who may meet the one who asks, as Python says it.
+// The class Filter, and its use by queries of partitions and scenes.
 
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/made.h"
@@ -17,19 +17,19 @@
 
 namespace winnow::python {
 
-/// A filter, and what Python adds to it.
+/// A filter with its Python parts.
 struct PythonFilter : EmptyIfZero {
   Filter filter;
-  /// Null: all pass.
+  /// A predicate; null accepts all.
   py::object accept;
-  /// Of a scene, that the one who asks is in.
+  /// For queries of a scene: the layer that the query belongs to.
   std::optional<std::uint16_t> layer;
 };
 
-/// The filter of one call, which raises what the function raised.
+/// The filter of one call, which raises the exception of its function.
 class FilterOfCall {
  public:
-  /// Of a question to a scene, or null.
+  /// `scene`: that the query is for, or null.
   explicit FilterOfCall(const Scene* scene) noexcept : scene_(scene) {}
   FilterOfCall(const FilterOfCall&) = delete;
   FilterOfCall& operator=(const FilterOfCall&) = delete;
@@ -61,12 +61,12 @@ class FilterOfCall {
   return &*s.scene;
 }
 
-/// What stands in Python for an argument of a question.
+/// The Python form of an argument of a query.
 template <typename Argument>
 using Asked =
     std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter&, Argument>;
 
-/// A question that takes a Filter, as one that takes a PythonFilter.
+/// Converts a query that takes a Filter to one that takes a PythonFilter.
 template <typename Answer, typename Owner, typename... Arguments>
 [[nodiscard]] auto filtered(Answer (*question)(Owner, Arguments...)) {
   return [question](Owner owner, Asked<Arguments>... given) -> Answer {
@@ -84,7 +84,7 @@ template <typename Answer, typename Owner, typename... Arguments>
   };
 }
 
-/// The class `Filter`.
+/// Adds the class `Filter`.
 void add_filters(py::module_& module);
 
 }  // namespace winnow::python

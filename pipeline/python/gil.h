@@ -12,23 +12,24 @@
 
 namespace winnow::python {
 
-/// What unwinds a thread that is to end, where that can be caught.
+/// The exception that unwinds a thread at thread exit, on platforms on which it can be caught.
 #if defined(__GLIBCXX__)
 using ThreadEnds = abi::__forced_unwind;
 #else
 struct ThreadEnds {};
 #endif
 
-/// For a thread that the interpreter does not let in any more, for it is at its end: CPython then
-/// unwinds the thread, which must not go through what does not throw.
+/// Blocks a thread forever that needs the GIL after the interpreter has ended. CPython would unwind
+/// the thread, which must not happen in a noexcept function.
 [[noreturn]] inline void stay_here() noexcept {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Once the interpreter goes, threads that are at work stay where they would go back to it.
+/// Handles the end of the interpreter: threads at work then block instead of returning to Python.
 class InterpreterEnd {
  public:
-  /// Of the thread that ends it, with the GIL: waits for those that are inside, but not for long.
+  /// Called with the GIL on the thread that ends the interpreter. Waits at most a second for
+  /// threads that are inside Python.
   static void begin() {
     by_ = std::this_thread::get_id();
     begun_ = true;
@@ -40,7 +41,7 @@ class InterpreterEnd {
   static void stay_if_begun() noexcept {
     if (begun_ && std::this_thread::get_id() != by_) stay_here();
   }
-  /// Counted until `leave`.
+  /// Counts this thread as inside until `leave`.
   static void enter() noexcept {
     ++inside_;
     if (!begun_ || std::this_thread::get_id() == by_) return;
@@ -55,7 +56,7 @@ class InterpreterEnd {
   static inline std::thread::id by_;
 };
 
-/// Without the GIL, which the thread has, to the end of the scope.
+/// Releases the GIL, which the thread must hold, for the scope.
 class WithoutGil {
  public:
   WithoutGil() noexcept : state_(PyEval_SaveThread()) {}
@@ -74,7 +75,7 @@ class WithoutGil {
   PyThreadState* state_;
 };
 
-/// With the GIL to the end of the scope, on whatever thread.
+/// Holds the GIL for the scope, on any thread.
 class WithGil {
  public:
   WithGil() noexcept {

@@ -1,4 +1,4 @@
-// What profilers and logs are told, by functions of Python's.
+// Hooks for profilers and logs, which call Python functions.
 
 #include "pipeline/python/hooks.h"
 
@@ -12,12 +12,12 @@
 namespace winnow::python {
 namespace {
 
-/// A function that winnow calls for the whole process, from anywhere. With the GIL. Kept to the
-/// very end, as winnow may call it till then.
+/// A function that winnow calls for the whole process, from any thread. Used with the GIL. Never
+/// destroyed, because winnow may call it until the process ends.
 struct Hook {
   PyObject* function = nullptr;
 
-  /// Null for None. Gives what was there.
+  /// Replaces the function; None removes it. Returns the old one.
   [[nodiscard]] py::object exchange(const py::object& other, const char* name) {
     if (!other.is_none() && PyCallable_Check(other.ptr()) == 0) {
       throw py::type_error(std::string(name) +
@@ -28,7 +28,7 @@ struct Hook {
     return before == nullptr ? py::none() : py::reinterpret_steal<py::object>(before);
   }
 
-  /// Calls it with what arguments() makes. What it raises goes to `sys.unraisablehook`.
+  /// Calls the function with arguments(). Exceptions go to `sys.unraisablehook`.
   template <typename Arguments>
   void call(Arguments&& arguments) const noexcept {
     call_python(
@@ -91,16 +91,17 @@ void tell_log(const LogEntry& entry) {
 
 void add_hooks(py::module_& module) {
   using py::arg;
-  module.def("set_stage_hook", &exchange_stage_hook, arg("hook"),
-             "`hook(stage, begins)` is called when a stage of work begins and when it ends, by the "
-             "thread that called winnow: 'refresh', 'build', 'pairs', 'mid_phase', 'narrow_phase' "
-             "or 'contacts'. Stages nest. For the whole process; None for no hook; gives the one "
-             "before. It asks winnow nothing (unsupported); what it raises goes to "
-             "sys.unraisablehook.");
-  module.def("set_log_hook", &exchange_log_hook, arg("hook"),
-             "`hook(entry)` is called, as that of stages, with a dict: of kind 'choice' where "
-             "AutoPartition changed its structure (what, before, reason, objects), of kind "
-             "'refusal' where a call of a partition or scene was refused (what, reason, status).");
+  module.def(
+      "set_stage_hook", &exchange_stage_hook, arg("hook"),
+      "Sets a process-wide hook: `hook(stage, begins)` is called at the begin and end of each "
+      "stage of work, by the thread that called winnow: 'refresh', 'build', 'pairs', 'mid_phase', "
+      "'narrow_phase' or 'contacts'. Stages nest. None removes the hook; returns the old one. A "
+      "hook must not call winnow (unsupported); its exceptions go to sys.unraisablehook.");
+  module.def(
+      "set_log_hook", &exchange_log_hook, arg("hook"),
+      "Sets a process-wide hook: `hook(entry)` is called, as the stage hook, with a dict: kind "
+      "'choice' if AutoPartition changed its structure (what, before, reason, objects), kind "
+      "'refusal' if a call of a partition or scene failed (what, reason, status).");
   py::module_::import("atexit").attr("register")(py::cpp_function([] {
     set_stage_hook(nullptr);
     set_log_hook(nullptr);

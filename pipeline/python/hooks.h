@@ -4,7 +4,7 @@
 
 namespace winnow::python {
 
-/// What profilers and logs are told.
+/// Adds set_stage_hook and set_log_hook.
 void add_hooks(pybind11::module_& module);
 
 }  // namespace winnow::python

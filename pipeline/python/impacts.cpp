@@ -1,4 +1,4 @@
-// When moving shapes, and features of meshes, first meet.
+// Times of impact of moving shapes and of mesh features.
 
 #include "pipeline/python/impacts.h"
 
@@ -16,13 +16,13 @@
 namespace winnow::python {
 namespace {
 
-/// Answers about pairs of shapes, which nobody writes to any more.
+/// Results for pairs of shapes, which are not changed any more.
 struct Impacts : NeedsInit, std::enable_shared_from_this<Impacts> {
   ImpactResult result;
 };
 using HeldImpacts = std::shared_ptr<Impacts>;
 
-/// Throws what is wrong with the first pair that was not answered.
+/// Throws the error of the first pair that failed.
 void accept_all(const ImpactResult& result) {
   const auto bad = std::find_if(result.status().begin(), result.status().end(),
                                 [](Status status) { return status != Status::ok; });
@@ -65,9 +65,8 @@ template <typename T>
 void add_result(py::module_& module) {
   py::class_<Impacts, HeldImpacts>(
       module, "Impacts",
-      "When pairs of shapes first meet, an answer for each pair in the order given. Columns show "
-      "what winnow wrote, to be read, and never change. Vectors are tuples of an array for each "
-      "axis.")
+      "Times of impact of pairs of shapes, in the order of the pairs. Columns are read-only views "
+      "that never change. Vectors are tuples of one array for each axis.")
       .def("__len__", [](const Impacts& held) { return held.result.size(); })
       .def_property_readonly(
           "hit",
@@ -76,15 +75,15 @@ void add_result(py::module_& module) {
             std::copy(held.result.hit().begin(), held.result.hit().end(), hits.mutable_data());
             return hits;
           },
-          "Whether they meet: (n,) bool. False is certain.")
+          "True if they touch: (n,) bool. False is certain.")
       .def_property_readonly(
           "time", [](const Impacts& held) { return column(held, held.result.time()); },
-          "In [0, 1], never late: at every earlier time they are apart. 1 where they do not meet. "
-          "(n,) float64.")
+          "Time in [0, 1], never late: at every earlier time they are apart. 1 if they do not "
+          "touch. (n,) float64.")
       .def_property_readonly(
           "gap", [](const Impacts& held) { return column(held, held.result.gap()); },
-          "Distance at that time; negative by the depth where they overlap at the start, 0 where "
-          "they do not meet. (n,) float64.")
+          "Distance at that time; negative if they overlap at the start, 0 if they do not touch. "
+          "(n,) float64.")
       .def_property_readonly(
           "error_bound",
           [](const Impacts& held) { return column(held, held.result.error_bound()); },
@@ -96,7 +95,7 @@ void add_result(py::module_& module) {
                                   column(held, held.result.normal(1)),
                                   column(held, held.result.normal(2)));
           },
-          "Unit, from a to b at that time, in the axes of the world: three (n,) float64.")
+          "Unit vector from a to b at that time, in world axes: three (n,) float64.")
       .def_property_readonly(
           "point",
           [](const Impacts& held) {
@@ -104,17 +103,17 @@ void add_result(py::module_& module) {
                                   column(held, held.result.point(1)),
                                   column(held, held.result.point(2)));
           },
-          "The point of a, relative to the position of a then; that of b is gap * normal farther. "
-          "Three (n,) float64.")
+          "Point on a, relative to the position of a at that time; the point on b is gap * normal "
+          "farther. Three (n,) float64.")
       .def_property_readonly(
           "part_a", [](const Impacts& held) { return column(held, held.result.part_a()); },
-          "Triangle or child of a that meets b, WHOLE_SHAPE of convex shapes: (n,) uint32.")
+          "Triangle or child of a that touches b, WHOLE_SHAPE for convex shapes: (n,) uint32.")
       .def_property_readonly(
           "part_b", [](const Impacts& held) { return column(held, held.result.part_b()); },
-          "The same of b.");
+          "Triangle or child of b, as part_a.");
 }
 
-/// Four points of each of n features as columns: coordinate (k, axis) of feature i is
+/// Converts four points of each of n features to columns: coordinate (k, axis) of feature i is
 /// numbers[(3 * k + axis) * n + i].
 [[nodiscard]] std::vector<double> feature_columns(const Numbers& points) {
   const std::size_t count = points.count();
@@ -164,26 +163,25 @@ void add_impacts(py::module_& module) {
   module.def(
       "time_of_impact", &shape_impacts, arg("shapes"), arg("shape_of"), arg("motions"),
       arg("pairs"), py::kw_only(), arg("tolerance") = 1e-6, arg("parallel") = true,
-      "When the shapes of pairs (m, 2) uint32 of bodies first meet: body i has the shape "
-      "shape_of[i] of `shapes`, (n,) or one for all, convex or composite, and moves by motions "
-      "(n, 13), as `motions_between` and `motions_by_velocities` give them. At the time of impact "
-      "the gap is at most `tolerance`, in (0, 1], of the smaller shape's size. A bad pair refuses "
-      "the call: size_mismatch, invalid_key for a shape that is not there, invalid_pose for a "
-      "motion that is not "
-      "valid, invalid_argument for a body that does not exist or a bad tolerance. Some three looks "
-      "for closest points for each pair, up to |turn| / sqrt(tolerance) where shapes whirl around "
-      "each other; of composite shapes that for each pair of parts whose boxes meet.");
+      "Times of impact of pairs (m, 2) uint32 of bodies. Body i has the shape shape_of[i] of "
+      "`shapes`, (n,) or one for all, convex or composite, and moves by motions (n, 13), as "
+      "returned by `motions_between` and `motions_by_velocities`. At the time of impact the gap is "
+      "at most `tolerance`, in (0, 1], of the smaller shape's size. One bad pair makes the call "
+      "fail: size_mismatch, invalid_key for an unknown shape, invalid_pose for an invalid motion, "
+      "invalid_argument for an unknown body or a bad tolerance. A pair takes about three "
+      "closest-point computations, up to |turn| / sqrt(tolerance) if shapes rotate fast around "
+      "each other; composite shapes take as many for each pair of parts whose boxes overlap.");
   const FeatureImpactOptions defaults;
   module.def(
       "feature_impacts", &feature_times, arg("kind"), arg("start"), arg("end"), py::kw_only(),
       arg("min_separation") = defaults.min_separation, arg("tolerance") = defaults.tolerance,
       arg("max_intervals") = defaults.max_intervals,
-      "When features of meshes first touch whose points move from `start` to `end`, (n, 4, 3) "
-      "each. `kind`: 'vertex_face', point 0 against the triangle of the others, or 'edge_edge', 0 "
-      "and 1 against 2 and 3. Times (n,) float64 in [0, 1], never late; infinity without an "
-      "impact, NaN where a coordinate is not finite. They touch at a distance of `min_separation`; "
-      "times are early by `tolerance` at most, in (0, 1], or by what `max_intervals` of work leave "
-      "open.");
+      "Times at which mesh features first touch, whose points move from `start` to `end`, (n, 4, "
+      "3) each. `kind`: 'vertex_face', point 0 and the triangle of the others, or 'edge_edge', the "
+      "edge of points 0 and 1 and the edge of points 2 and 3. Times (n,) float64 in [0, 1], never "
+      "late; infinity without an impact, "
+      "NaN if a coordinate is not finite. They touch at a distance of `min_separation`. Times are "
+      "early by at most `tolerance`, in (0, 1], or more if `max_intervals` ends the search.");
 }
 
 }  // namespace winnow::python

@@ -10,7 +10,7 @@ namespace winnow::python {
 inline constexpr Choices<FeaturePair, 2> kFeaturePairs{
     {{"vertex_face", FeaturePair::vertex_face}, {"edge_edge", FeaturePair::edge_edge}}};
 
-/// Times of impact of pairs of shapes and of features.
+/// Adds time_of_impact and feature_impacts.
 void add_impacts(py::module_& module);
 
 }  // namespace winnow::python

@@ -10,11 +10,11 @@
 
 namespace winnow::python {
 
-// Work is done without the GIL, and a lock keeps threads from changing what others look at. It is
-// waited for without the GIL, and let go before that is taken again: no two threads can wait for
-// each other. A function of Python's that winnow calls is under such locks, and takes none.
+// Work runs without the GIL, and a lock protects objects from changes by other threads. A lock is
+// acquired without the GIL and released before the GIL is taken again, so that no deadlock is
+// possible. A Python function that winnow calls runs under such locks and must not acquire any.
 
-/// For calls that may run at once.
+/// Runs body() with shared access.
 template <typename Body>
 auto reading(std::shared_mutex& mutex, Body&& body) {
   InCallback::refuse();
@@ -23,8 +23,8 @@ auto reading(std::shared_mutex& mutex, Body&& body) {
   return std::forward<Body>(body)();
 }
 
-/// For calls that read two objects, or one twice: no lock is taken twice, and two always in the
-/// order of their addresses.
+/// Runs body() with shared access to two objects, which may be the same one. Takes no lock twice,
+/// and two locks in the order of their addresses.
 template <typename Body>
 auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
   const bool in_order = std::less<>()(&a, &b);
@@ -36,7 +36,7 @@ auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
   return std::forward<Body>(body)();
 }
 
-/// For calls that want the object to themselves.
+/// Runs body() with exclusive access.
 template <typename Body>
 auto changing(std::shared_mutex& mutex, Body&& body) {
   InCallback::refuse();

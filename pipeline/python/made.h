@@ -8,10 +8,11 @@
 
 namespace winnow::python {
 
-// Where Python made an object by `__new__` alone, pybind11 gets memory for it when it is first
-// used, and leaves that as it is.
+// If Python makes an object by `__new__` only, without `__init__`, pybind11 allocates memory for it
+// at its first use and does not initialize it.
 
-/// Base of what is of no use then; it is made by `std::make_shared`, which does not come here.
+/// Base of classes that are unusable in that state: operator new then throws. Objects made by
+/// `std::make_shared` do not use it.
 struct NeedsInit {
   [[noreturn]] static void* operator new(std::size_t) {
     throw pybind11::type_error("__init__ was not called");
@@ -20,7 +21,7 @@ struct NeedsInit {
   static void operator delete(void*) noexcept {}
 };
 
-/// Base of what is empty if all of its bytes are 0.
+/// Base of classes that are empty if all their bytes are 0.
 struct EmptyIfZero {
   static void* operator new(std::size_t bytes) {
     return std::memset(::operator new(bytes), 0, bytes);

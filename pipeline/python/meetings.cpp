@@ -1,4 +1,5 @@
-// Which bodies of a scene meet, from where on, and which of their contacts hang together.
+// Pair filters of a scene (filters, layers, ignored pairs, predicate), offsets of bodies, and
+// groups of contacts.
 
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/contact_choices.h"
@@ -11,7 +12,8 @@
 namespace winnow::python {
 namespace {
 
-/// Calls set(i) for each body, and undo(i, body) with what it was where a later one is refused.
+/// Calls set(i) for each body; if one call fails, calls undo(i, body) with the old definition of
+/// each body before it.
 template <typename Set, typename Undo>
 void set_of_each(SharedScene& s, std::span<const Key> keys, const char* call, Set&& set,
                  Undo&& undo) {
@@ -112,7 +114,7 @@ void set_layers_meet(SharedScene& s, py::handle pairs, bool meet) {
   return result;
 }
 
-/// Pairs of keys where they lie.
+/// Pairs of keys, read in place.
 class KeyPairInput {
  public:
   explicit KeyPairInput(py::handle object) : words_(object, "pairs", 2) {}
@@ -186,19 +188,20 @@ template <typename Make>
 void add_groups(py::module_& module, SceneClass& scene) {
   using py::arg;
   module.attr("REST_COLOUR") = kRestColour;
-  py::class_<GroupTable>(module, "ContactGroups", "Pairs of contacts in groups, none empty.")
-      .def_readonly("group", &GroupTable::group, "By pair of the contacts: (n,) uint32.")
-      .def_readonly("first", &GroupTable::first,
-                    "Pairs of group g are order[first[g]] to order[first[g + 1]]: (g + 1,) uint32.")
+  py::class_<GroupTable>(module, "ContactGroups", "Groups of contact pairs, none of them empty.")
+      .def_readonly("group", &GroupTable::group, "Group of each pair of the contacts: (n,) uint32.")
+      .def_readonly(
+          "first", &GroupTable::first,
+          "The pairs of group g are order[first[g]] to order[first[g + 1]]: (g + 1,) uint32.")
       .def_readonly("order", &GroupTable::order,
-                    "Pairs, group by group, ascending in each: (n,) uint32.");
+                    "Pairs sorted by group, ascending in each: (n,) uint32.");
   scene
       .def("islands", &islands, arg("contacts"),
-           "Groups of the pairs in contacts that this scene filled last, by bodies that connect "
-           "them; fixed bodies connect nothing. invalid_key for other contacts.")
+           "Islands of the pairs in contacts that this scene filled last: pairs connected by "
+           "bodies that are not fixed. invalid_key for other contacts.")
       .def("colours", &colours, arg("contacts"),
-           "Groups of which no two pairs share a body that is not fixed, so that they can be "
-           "solved side by side; but for group REST_COLOUR, of pairs that found no colour.");
+           "Groups in which no two pairs share a body that is not fixed, so that they can be "
+           "solved in parallel; except group REST_COLOUR, the pairs that got no colour.");
 }
 
 }  // namespace
@@ -210,20 +213,21 @@ void add_meetings(py::module_& module, SceneClass& scene) {
       .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1, arg("mask") = every,
            arg("environment") = 0, "As Partition.set_filter.")
       .def("set_offsets", &set_offsets, arg("keys"), arg("contact"), arg("rest") = 0.0,
-           "Two bodies are a contact from a gap of the sum of their `contact` on, beside the "
-           "scene's margin, and rest where they are the sum of their `rest` apart: (n,) lengths, "
-           "or one for all, contact >= 0 and >= rest.")
+           "Sets contact and rest offsets. Two bodies are in contact from a gap of the sum of "
+           "their `contact` on, in addition to the scene's margin, and rest at a distance of the "
+           "sum of their `rest`: (n,) lengths, or one for all, contact >= 0 and >= rest.")
       .def("set_layer", &set_layer, arg("keys"), arg("layer"),
-           "Puts bodies into other layers, (n,) below 4096 or one for all: see "
-           "`set_layers_meet`. They have nothing to do with the 32 of a filter.")
+           "Puts bodies into layers, (n,) below 4096 or one for all: see `set_layers_meet`. These "
+           "are independent of the 32 layers of a filter.")
       .def("set_layers_meet", &set_layers_meet, arg("layers"), arg("meet") = true,
-           "Whether bodies of two layers, pairs (n, 2), meet; all do until they are told not to.")
-      .def("layers_meet", &layers_meet, arg("layers"), "Whether pairs of layers (n, 2) do.")
+           "Sets whether bodies of two layers, pairs (n, 2), collide. By default all do.")
+      .def("layers_meet", &layers_meet, arg("layers"),
+           "True for pairs of layers (n, 2) that collide.")
       .def("set_ignored", &set_ignored, arg("pairs"), arg("ignored") = true,
-           "Bodies that never meet, pairs of keys (n, 2), whatever their filters say; or that meet "
-           "again. All or none.")
+           "Makes pairs of bodies, keys (n, 2), never collide, whatever their filters are; or "
+           "collide again. All or none.")
       .def("is_ignored", &is_ignored, arg("pairs"),
-           "Whether pairs of keys (n, 2) were told so: (n,) bool.");
+           "True for pairs of keys (n, 2) that are ignored: (n,) bool.");
   add_groups(module, scene);
 }
 

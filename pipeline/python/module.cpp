@@ -1,4 +1,5 @@
-// The module: what a status becomes, names, and everything else in the order of its sources.
+// The module `_core`: converts Status to exceptions, defines constants, and adds the contents of
+// the other files.
 
 #include <pybind11/pybind11.h>
 
@@ -56,7 +57,7 @@ void accept(Status status, const std::string& what) {
 
 namespace {
 
-// Kept by the module, and needed for as long as exceptions may be thrown: to the very end.
+// Never released: exceptions may be thrown until the process ends.
 PyObject* status_error = nullptr;
 
 void raise(const Refusal& refusal) {
@@ -75,9 +76,9 @@ void add_errors(py::module_& module) {
   members["status"] = "";
   status_error = PyErr_NewExceptionWithDoc(
       "winnow.StatusError",
-      "A call was refused and has changed nothing. `status` names why: invalid_bounds, "
-      "invalid_key, invalid_argument, size_mismatch, too_many_objects, unsupported_volume, "
-      "invalid_shape, invalid_pose or unsupported. out_of_memory is a MemoryError.",
+      "A call failed and has changed nothing. `status` is the reason: invalid_bounds, invalid_key, "
+      "invalid_argument, size_mismatch, too_many_objects, unsupported_volume, invalid_shape, "
+      "invalid_pose or unsupported. out_of_memory raises a MemoryError.",
       PyExc_ValueError, members.ptr());
   if (status_error == nullptr) throw py::error_already_set();
   module.add_object("StatusError", py::reinterpret_borrow<py::object>(status_error));
@@ -123,7 +124,7 @@ void add_instruction_sets(py::module_& module) {
         for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));
         return names;
       },
-      "Instruction sets of this build that the machine has, narrowest first.");
+      "Instruction sets of this build that the machine supports, narrowest first.");
   module.def(
       "set_isa",
       [](const std::string& name) { accept(set_isa(std::string_view(name)), "set_isa"); },
@@ -133,7 +134,7 @@ void add_instruction_sets(py::module_& module) {
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "winnow in C++; everything is to be had from `winnow`.";
+  module.doc() = "The C++ part of winnow; use the package `winnow`.";
   add_errors(module);
   module.attr("NULL_KEY") = ~std::uint64_t{0} >> 32U;
   module.attr("NO_OBJECT") = kNoObject;
@@ -147,9 +148,9 @@ PYBIND11_MODULE(_core, module) {
   add_recordings(module);
   PartitionClass partition(
       module, "Partition",
-      "Takes boxes, hands out keys, and says which may touch; it never misses a pair. Any number "
-      "of threads may call it. A call that raises has changed nothing. Arrays must not be written "
-      "to by other threads while a call reads them.");
+      "Stores boxes, returns keys, and finds pairs that may touch; it never misses a pair. Any "
+      "number of threads may call it. A call that raises changes nothing. Other threads must not "
+      "write to arrays while a call reads them.");
   add_filters(module);
   add_hooks(module);
   add_queries(module, partition);

@@ -1,4 +1,4 @@
-// Motions of bodies between two moments, as rows of numbers.
+// Motions of bodies between two times, as rows of numbers.
 
 #include "pipeline/python/motions.h"
 
@@ -31,8 +31,7 @@ std::span<const RigidMotion> RigidMotionInput::packed(std::vector<RigidMotion>& 
 
 namespace {
 
-/// Calls write(i) for each motion, without the GIL, and throws what is wrong with the first one
-/// that is refused.
+/// Calls write(i) for each motion without the GIL; throws the error of the first one that fails.
 template <typename Write>
 void write_each(std::size_t count, const char* call, Write&& write) {
   Status status = Status::ok;
@@ -47,7 +46,7 @@ void write_each(std::size_t count, const char* call, Write&& write) {
   accept(status, std::string(call) + ", motion " + std::to_string(i));
 }
 
-/// Rows of `count` motions, of which `make` gives the i-th.
+/// Returns rows of `count` motions; make(i) returns the i-th.
 template <typename Make>
 [[nodiscard]] py::array motion_rows(std::size_t count, const char* call, Make&& make) {
   auto rows = fresh<double>(count, kMotionNumbers);
@@ -108,20 +107,18 @@ template <typename Make>
 
 void add_motions(py::module_& module) {
   using py::arg;
-  module.def(
-      "motions_between", &between, arg("start"), arg("end"),
-      "Motions from poses (n, 7), (n, 3) or a tuple, to others, while time runs from 0 to 1: (n, "
-      "13) float64 of the pose at the start (x, y, z and a quaternion w, x, y, z), the way of the "
-      "position, and the turn, an axis of the world times an angle in radians; both even. It turns "
-      "by the shorter way around.");
-  module.def(
-      "motions_by_velocities", &by_velocities, arg("poses"), arg("linear"), arg("angular"),
-      arg("duration") = 1.0,
-      "The same of bodies at poses (n, 7) with velocities, linear and angular (n, 3) or (3,), in "
-      "lengths and radians of the unit of time that `duration`, (n,) or one for all, counts. At "
-      "most 1e6 radians.");
+  module.def("motions_between", &between, arg("start"), arg("end"),
+             "Motions between poses (n, 7), (n, 3) or tuples, from time 0 to 1: (n, 13) float64 of "
+             "the pose at the start (x, y, z and a quaternion w, x, y, z), the translation, and "
+             "the rotation, an axis in the world times an angle in radians; both at constant "
+             "speed. The rotation is the shorter one.");
+  module.def("motions_by_velocities", &by_velocities, arg("poses"), arg("linear"), arg("angular"),
+             arg("duration") = 1.0,
+             "Motions of bodies at poses (n, 7) with velocities, linear and angular (n, 3) or "
+             "(3,), in lengths and radians per unit of time, during `duration` units, (n,) or one "
+             "for all. At most 1e6 radians.");
   module.def("poses_at", &poses_at, arg("motions"), arg("times"),
-             "Where motions (n, 13) are at times in [0, 1], (n,) or one for all: (n, 7) float64.");
+             "Poses of motions (n, 13) at times in [0, 1], (n,) or one for all: (n, 7) float64.");
 }
 
 }  // namespace winnow::python

@@ -10,7 +10,7 @@
 
 namespace winnow::python {
 
-/// Numbers of a RigidMotion: its pose at the start, the way and the turn.
+/// Numbers of a RigidMotion: the pose at the start, the translation and the rotation.
 inline constexpr std::size_t kMotionNumbers = 13;
 static_assert(sizeof(RigidMotion) == kMotionNumbers * sizeof(double));
 
@@ -21,7 +21,7 @@ class RigidMotionInput {
 
   [[nodiscard]] std::size_t count() const noexcept { return numbers_.count(); }
   [[nodiscard]] RigidMotion operator[](std::size_t i) const noexcept;
-  /// Where they lie, if they are of double in one piece; else packed.
+  /// Returns the array itself if it is of double and contiguous, else copies in `room`.
   [[nodiscard]] std::span<const RigidMotion> packed(std::vector<RigidMotion>& room) const;
 
  private:

@@ -1,4 +1,4 @@
-// Pairs of convex shapes: overlaps, distances, contacts.
+// The class NarrowPhase: overlaps, distances and contacts of pairs of convex shapes.
 
 #include "pipeline/python/contact_choices.h"
 #include "pipeline/python/locks.h"
@@ -12,7 +12,7 @@
 namespace winnow::python {
 namespace {
 
-/// A narrow phase with its scratch memory, for one call at a time.
+/// A narrow phase with its scratch memory; runs one call at a time.
 struct SharedNarrowPhase : NeedsInit {
   std::shared_mutex mutex;
   NarrowPhase narrow;
@@ -20,7 +20,7 @@ struct SharedNarrowPhase : NeedsInit {
   std::shared_ptr<Pool<NarrowResult>> results = std::make_shared<Pool<NarrowResult>>();
 };
 
-/// Columns of a result that nobody writes to any more.
+/// Columns of a result that is not changed any more.
 struct NarrowAnswers : NeedsInit {
   std::shared_ptr<NarrowResult> result;
 };
@@ -83,19 +83,19 @@ void add_answers(py::module_& module) {
   const auto span_of = [](const auto& c) { return std::span(c.data(), c.size()); };
   py::class_<Answers, std::shared_ptr<Answers>>(
       module, "NarrowResult",
-      "Answers as columns, sorted by the kinds of shapes. They show what winnow wrote, to be read, "
-      "and never change. Vectors are tuples of an array for each axis: numpy.stack(v, axis=1) "
-      "makes rows of them.")
+      "Results as columns, sorted by the kinds of shapes. They are read-only views that never "
+      "change. Vectors are tuples of one array for each axis: numpy.stack(v, axis=1) makes rows of "
+      "them.")
       .def("__len__", [](const Answers& a) { return a.result->size(); })
       .def_property_readonly(
           "level", [](const Answers& a) { return name_of(kLevels, a.result->level()); },
-          "What was asked.")
+          "The level of the call.")
       .def_property_readonly("pair", &pair_numbers,
-                             "Which pair of the input each answer is about: (n,) uint32.")
-      .def_property_readonly("overlaps", &overlaps, "Whether they share a point: (n,) bool.")
+                             "Index of the input pair of each result: (n,) uint32.")
+      .def_property_readonly("overlaps", &overlaps, "True if they overlap: (n,) bool.")
       .def_property_readonly(
           "distance", [](const Answers& a) { return column(a, a.result->distance()); },
-          "Levels distance and manifold: negative by the depth. (n,) float64.")
+          "Levels distance and manifold: distance, negative if they overlap. (n,) float64.")
       .def_property_readonly(
           "error_bound", [](const Answers& a) { return column(a, a.result->error_bound()); },
           "The true distance is within distance +- this. (n,) float64.")
@@ -105,21 +105,22 @@ void add_answers(py::module_& module) {
             return py::make_tuple(column(a, a.result->normal(0)), column(a, a.result->normal(1)),
                                   column(a, a.result->normal(2)));
           },
-          "Unit, from a to b, in the axes of the world: three (n,) float64.")
+          "Unit vector from a to b, in world axes: three (n,) float64.")
       .def_property_readonly(
           "point",
           [](const Answers& a) {
             return py::make_tuple(column(a, a.result->point(0)), column(a, a.result->point(1)),
                                   column(a, a.result->point(2)));
           },
-          "Level distance: the closest or deepest point of a, relative to its "
-          "position; that of b is distance * normal farther. Three (n,).")
+          "Level distance: the closest or deepest point of a, relative to its position; the point "
+          "of b is distance * normal farther. Three (n,).")
       .def_property_readonly(
           "contact_first", [](const Answers& a) { return column(a, a.result->contact_first()); },
-          "Level manifold: contacts of answer i are contact_first[i], + contact_count[i]. (n,).")
+          "Level manifold: index of the first contact of each result, which has contact_count "
+          "contacts. (n,).")
       .def_property_readonly(
           "contact_count", [](const Answers& a) { return column(a, a.result->contact_count()); },
-          "At most 4 each, (n,) uint32.")
+          "Number of contacts, at most 4 each, (n,) uint32.")
       .def_property_readonly(
           "contact_position",
           [span_of](const Answers& a) {
@@ -127,21 +128,21 @@ void add_answers(py::module_& module) {
             return py::make_tuple(column<float>(a, span_of(c[0])), column<float>(a, span_of(c[1])),
                                   column<float>(a, span_of(c[2])));
           },
-          "Halfway between the surfaces, relative to the position of a: three "
-          "(m,) float32.")
+          "Position halfway between the surfaces, relative to the position of a: three (m,) "
+          "float32.")
       .def_property_readonly(
           "contact_depth",
           [span_of](const Answers& a) {
             return column<float>(a, span_of(a.result->contact_columns().depth));
           },
-          "Positive where they overlap: (m,) float32.")
+          "Depth, positive if they overlap: (m,) float32.")
       .def_property_readonly(
           "contact_feature",
           [span_of](const Answers& a) {
             return column<std::uint64_t>(a, span_of(a.result->contact_columns().feature));
           },
-          "Which features of a and b made it, the same from frame to frame: "
-          "(m,) uint64.");
+          "The features of a and b that made the contact, the same from frame to frame: (m,) "
+          "uint64.");
 }
 
 }  // namespace
@@ -152,8 +153,8 @@ void add_narrow(py::module_& module) {
   using Phase = SharedNarrowPhase;
   py::class_<Phase, std::shared_ptr<Phase>>(
       module, "NarrowPhase",
-      "Pairs of convex shapes to overlaps, distances or contacts. Keeps its scratch memory; calls "
-      "of several threads wait for each other.")
+      "Tests pairs of convex shapes for overlaps, distances or contacts. Keeps its scratch memory; "
+      "calls from several threads run one at a time.")
       .def(py::init([](bool parallel) {
              auto phase = std::make_shared<Phase>();
              if (!parallel) phase->execution = Execution::serial();
@@ -162,11 +163,11 @@ void add_narrow(py::module_& module) {
            py::kw_only(), arg("parallel") = true, "`parallel` uses all cores.")
       .def("collide", &collide, arg("shapes"), arg("shape_of"), arg("poses"), arg("pairs"),
            py::kw_only(), arg("level") = "manifold", arg("tier") = "robust", arg("margin") = 0.0,
-           "Answers pairs (m, 2) uint32 of bodies: body i has the shape shape_of[i], (n,) or one "
-           "for all, at poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of "
-           "both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'robust' or "
-           "'reference'. Pairs no farther apart than `margin` get contacts, too. Pairs of uint32 "
-           "and poses (n, 7) of double in one piece are read where they lie.")
+           "Computes results for pairs (m, 2) uint32 of bodies: body i has the shape shape_of[i], "
+           "(n,) or one for all, at poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), "
+           "or a tuple of both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'robust' or "
+           "'reference'. Pairs at most `margin` apart get contacts too. Contiguous pairs of uint32 "
+           "and poses (n, 7) of double are read in place.")
       .def(
           "statistics",
           [](Phase& phase) {

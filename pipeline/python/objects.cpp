@@ -1,4 +1,4 @@
-// Objects of a partition: how they come, move and go, and what is known of them.
+// Objects of a partition: insert, update, remove, and their properties.
 
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
@@ -15,7 +15,7 @@ namespace {
 
 // --- coming, moving, going -----------------------------------------------------------------------
 
-/// Adds `count` volumes by `insert(data, keys)` and gives their keys.
+/// Inserts `count` volumes by `insert(data, keys)` and returns their keys.
 template <typename Insert>
 [[nodiscard]] py::array inserted(SharedPartition& p, std::size_t count, py::handle data,
                                  const char* call, Insert&& insert) {
@@ -42,7 +42,7 @@ void change_objects(SharedPartition& p, std::size_t count, const char* call, Cha
   });
 }
 
-/// Numbers of the entries that are meant: those that are listed, or where a mask of bool is set.
+/// Returns the indices of the selected entries: the given ones, or those set in a bool mask.
 [[nodiscard]] py::object entry_numbers(py::handle entries) {
   const py::array array = py::array::ensure(entries);
   if (array && array.dtype().kind() == 'b') return array.attr("nonzero")().attr("__getitem__")(0);
@@ -63,7 +63,7 @@ void update_boxes(SharedPartition& p, py::handle key_array, py::handle lower, py
   });
 }
 
-/// Balls that contain those given.
+/// Returns spheres in float that contain the given ones.
 [[nodiscard]] std::vector<Sphere> spheres_of(py::handle centers, py::handle radii) {
   const Numbers center(centers, "centers", {3});
   Numbers radius(radii, "radii", {}, true);
@@ -106,7 +106,7 @@ template <int K>
   return kdops;
 }
 
-/// Calls `body` with the k-DOPs of the partition's volume.
+/// Calls `body` with k-DOPs of the partition's type.
 template <typename Body>
 auto with_kdops(const SharedPartition& p, py::handle lower, py::handle upper, Body&& body) {
   switch (p.partition->volume()) {
@@ -164,7 +164,7 @@ void remove_objects(SharedPartition& p, py::handle key_array) {
 
 // --- what is known of objects ------------------------------------------------------------------
 
-/// Calls `ask(i)` for each of `count` objects until one is refused.
+/// Calls `ask(i)` for each of `count` objects until one call fails.
 template <typename Ask>
 void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask&& ask) {
   accept(reading(p.mutex,
@@ -268,29 +268,29 @@ void add_changes(PartitionClass& partition) {
   using py::arg;
   partition
       .def("insert", &insert_boxes, arg("lower"), arg("upper"), arg("data") = py::none(),
-           "Adds n boxes and gives their keys, (n,) uint64. `lower`, `upper`: (n, 3), in units of "
-           "the scene; lower <= upper, ends may be infinite. Floats of any strides are read where "
-           "they lie, if both arrays have the same stride from box to box; all else is rounded "
-           "outward to float. `data`: (n,) uint64, given back by queries.")
+           "Adds n boxes and returns their keys, (n,) uint64. `lower`, `upper`: (n, 3), in units "
+           "of the scene; lower <= upper, may be infinite. Floats of any strides are read in place "
+           "if both arrays have the same stride from box to box; all others are rounded outward to "
+           "float. `data`: (n,) uint64, returned by queries.")
       .def("update", &update_boxes, arg("keys"), arg("lower"), arg("upper"),
            arg("entries") = py::none(),
-           "Gives the n objects of `keys` (n,) new boxes, (n, 3) each. With `entries`, numbers "
-           "(m,) or a mask (n,) of bool, only those entries of the arrays.")
+           "Sets new boxes, (n, 3) each, of the n objects of `keys` (n,). With `entries`, indices "
+           "(m,) or a mask (n,) of bool, only of these entries.")
       .def("insert_spheres", &insert_spheres, arg("centers"), arg("radii"),
            arg("data") = py::none(),
-           "Adds n balls, where volume is 'sphere', and gives their keys, (n,) uint64. `centers`: "
-           "(n, 3), `radii`: (n,) or one for all, finite and >= 0.")
+           "Adds n spheres, if the volume is 'sphere', and returns their keys, (n,) uint64. "
+           "`centers`: (n, 3), `radii`: (n,) or one for all, finite and >= 0.")
       .def("update_spheres", &update_spheres, arg("keys"), arg("centers"), arg("radii"),
-           "Gives the n objects of `keys` (n,) new balls: `centers` (n, 3), `radii` (n,) or one "
-           "for all.")
+           "Sets new spheres of the n objects of `keys` (n,): `centers` (n, 3), `radii` (n,) or "
+           "one for all.")
       .def("insert_kdops", &insert_kdops, arg("lower"), arg("upper"), arg("data") = py::none(),
-           "Adds n k-DOPs, where volume is one: lower and upper ends (n, k/2) of the slabs along "
-           "`kdop_directions(k)`. Gives their keys, (n,) uint64.")
+           "Adds n k-DOPs, if the volume is one: lower and upper ends (n, k/2) of the slabs along "
+           "`kdop_directions(k)`. Returns their keys, (n,) uint64.")
       .def("update_kdops", &update_kdops, arg("keys"), arg("lower"), arg("upper"),
-           "Gives the n objects of `keys` (n,) new k-DOPs, lower and upper ends (n, k/2).")
+           "Sets new k-DOPs of the n objects of `keys` (n,), lower and upper ends (n, k/2).")
       .def("remove", &remove_objects, arg("keys"),
-           "Removes the objects of `keys` (n,). A key that is stale, of another partition or there "
-           "twice refuses all.");
+           "Removes the objects of `keys` (n,), all or none. Fails for a key that is stale, of "
+           "another partition or given twice.");
 }
 
 void add_knowledge(PartitionClass& partition) {
@@ -300,21 +300,21 @@ void add_knowledge(PartitionClass& partition) {
            [](const SharedPartition& p) {
              return reading(p.mutex, [&] { return p.partition->size(); });
            })
-      .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
+      .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live objects: (n,) bool.")
       .def("bounds", &bounds, arg("keys"),
            "Boxes (lower, upper) of the objects of `keys` (n,), (n, 3) float32 each, as they are "
-           "tested: larger than given by the margin, around other volumes.")
+           "tested: grown by the margin, and around other volumes.")
       .def("client_data", &client_data, arg("keys"),
-           "What `insert` was given as data for the objects of `keys` (n,): (n,) uint64.")
+           "Client data of the objects of `keys` (n,): (n,) uint64.")
       .def("keys_of", &keys_of, arg("ids"),
-           "Keys (n,) uint64 of objects by id (n,); NULL_KEY for those that are not alive.")
+           "Keys (n,) uint64 of objects by id (n,); NULL_KEY for objects that do not exist.")
       .def("client_data_of", &client_data_of, arg("ids"),
-           "Client data (n,) uint64 of objects by id (n,); 0 for those that are not alive.")
+           "Client data (n,) uint64 of objects by id (n,); 0 for objects that do not exist.")
       .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1,
            arg("mask") = ~std::uint32_t{0}, arg("environment") = 0,
-           "Sets what the objects of `keys` (n,) let themselves be paired with: `layers` they are "
-           "in and `mask` of layers they meet, a bit each, and `environment`, which must be equal "
-           "or EVERY_ENVIRONMENT. (n,) uint32 each, or one for all.")
+           "Sets filters of the objects of `keys` (n,): `layers` that they are in and `mask` of "
+           "layers that they may be paired with, a bit each, and `environment`, which must be "
+           "equal or EVERY_ENVIRONMENT. (n,) uint32 each, or one for all.")
       .def("filters", &filters_of, arg("keys"),
            "(layers, mask, environment) of the objects of `keys` (n,), (n,) uint32 each.");
 }
@@ -337,8 +337,8 @@ void add_objects(py::module_& module, PartitionClass& partition) {
         return reinterpret_cast<std::uintptr_t>(view.min[0]);
       },
       arg("lower"), arg("upper"),
-      "Where a call reads the lower corner of the first of these boxes: in `lower` itself, "
-      "unless they have to be copied.");
+      "Address from which a call reads the lower corner of the first box: in `lower` itself, "
+      "unless the boxes must be copied.");
 }
 
 }  // namespace winnow::python

@@ -1,4 +1,4 @@
-// Pairs of a partition's objects, and what changed of them.
+// Pairs of a partition's objects, and their changes from frame to frame.
 
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/locks.h"
@@ -21,7 +21,7 @@ std::shared_ptr<PairBuffer> SharedPartition::take_pairs(bool incremental, bool w
     return last;
   }
   std::shared_ptr<PairBuffer> out = pair_pool->take();
-  // Where much has moved, all pairs are asked for anew, wherever they are written.
+  // If many objects have moved, all pairs are found again, and the old ones are of no use.
   const bool few = changes < partition->size() / 4;
   const bool carries = with_events || (incremental && few);
   if (last && carries && !out->assign(*last)) out->clear();
@@ -40,7 +40,8 @@ py::array shown_pairs(const std::shared_ptr<PairBuffer>& pairs) {
 
 namespace {
 
-/// What a predicate lets pass: all pairs anew, for a buffer does not tell whom it asked.
+/// Pairs that a predicate accepts. Finds all pairs again, because a buffer does not store which
+/// predicate filtered it.
 [[nodiscard]] py::array passing_pairs(SharedPartition& p, Order order, const py::object& function) {
   Predicate predicate(function, "predicate");
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
@@ -84,7 +85,7 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
   if (!function.is_none()) predicate.emplace(function, "predicate");
   const std::unique_lock<std::mutex> filling = events.hold();
   PairEvents& changes = events.to_fill("events");
-  // What a predicate said of pairs that did not move would stand.
+  // A kept result of a predicate would persist for pairs that did not move.
   const bool anew = events.is_filtered.exchange(predicate.has_value()) || predicate;
   PairOptions options{Order::fast, !anew, {}};
   if (predicate) options.predicate = pair_predicate(*predicate);
@@ -128,50 +129,49 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
   using py::arg;
   py::class_<Events, std::shared_ptr<Events>>(
       module, "PairEvents",
-      "What changed between two frames. Its arrays show what winnow wrote; while "
-      "one of them is alive, filling the events again is a BufferError.")
+      "Changes of pairs between two frames. Its arrays are views; while one of them is alive, "
+      "filling the events again raises a BufferError.")
       .def(py::init([](bool client_data) { return std::make_shared<Events>(client_data); }),
            py::kw_only(), arg("client_data") = false,
-           "Events that remember nothing. With `client_data` they give that with the pairs, for 8 "
-           "bytes an object and 16 a pair that begins or ends.")
+           "Events without a last frame. With `client_data` they include it, for 8 bytes an object "
+           "and 16 a pair that begins or ends.")
       .def_property_readonly(
           "begun",
           [](const Events& e) {
             const auto held = e.hold();
             return shown_twos(e.value(), e.value()->begun());
           },
-          "Pairs of this frame that the last one had not: (m, 2) uint64 of "
-          "keys, sorted by id.")
+          "Pairs of this frame that are not in the last one: (m, 2) uint64 of keys, sorted by id.")
       .def_property_readonly(
           "ended",
           [](const Events& e) {
             const auto held = e.hold();
             return shown_twos(e.value(), e.value()->ended());
           },
-          "Pairs of the last frame that this one has not: (m, 2) uint64 of "
-          "keys, sorted by id; those of removed objects are stale.")
+          "Pairs of the last frame that are not in this one: (m, 2) uint64 of keys, sorted by id; "
+          "keys of removed objects are stale.")
       .def_property_readonly(
           "begun_data",
           [](const Events& e) {
             const auto held = e.hold();
             return shown_twos(e.value(), e.value()->begun_data());
           },
-          "Client data of the pairs in `begun`: (m, 2) uint64; (0, 2) unless they were asked for.")
+          "Client data of the pairs in `begun`: (m, 2) uint64; (0, 2) without `client_data`.")
       .def_property_readonly(
           "ended_data",
           [](const Events& e) {
             const auto held = e.hold();
             return shown_twos(e.value(), e.value()->ended_data());
           },
-          "Client data of the pairs in `ended`, of removed objects as of others: (m, 2) uint64; "
-          "(0, 2) unless they were asked for.")
+          "Client data of the pairs in `ended`, including removed objects: (m, 2) uint64; (0, 2) "
+          "without `client_data`.")
       .def_property_readonly(
           "persisting",
           [](const Events& e) {
             const auto held = e.hold();
             return e.value()->persisting();
           },
-          "How many pairs are in both frames.")
+          "Number of pairs that are in both frames.")
       .def(
           "clear",
           [](const Events& e) {
@@ -182,20 +182,20 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
   partition
       .def("self_pairs", &self_pairs, arg("events") = py::none(), py::kw_only(),
            arg("order") = "fast", arg("incremental") = true, arg("predicate") = py::none(),
-           "All pairs of objects whose volumes overlap: (m, 2) uint32 of ids, first < second. An "
-           "array that shows what winnow wrote, to be read; it never changes. Drop it before the "
-           "next call, and that updates it in place where little moved; else pairs go to another "
-           "buffer. `order`: 'fast' or 'canonical' (sorted). With `events`, what changed since the "
-           "last call is written there. `predicate(first, second)`, which goes without events "
-           "(unsupported), has the last word on each pair of ids. It is called from any thread "
-           "that works, one at a time, for each needs the GIL: filters, or a look at the array of "
-           "pairs, take a hundredth of that. It asks winnow nothing (unsupported); what it raises "
-           "the call raises.")
+           "Finds all pairs of objects whose volumes overlap: (m, 2) uint32 of ids, first < "
+           "second. The array is a read-only view that never changes. Drop it before the next "
+           "call, which then updates it in place if few objects moved; else pairs are written to "
+           "another buffer. `order`: 'fast' or 'canonical' (sorted). With `events`, the changes "
+           "since the last call are written there. `predicate(first, second)`, which cannot be "
+           "combined with events (unsupported), is called for each pair of ids and decides. Calls "
+           "come from any working thread, one at a time, because each needs the GIL; filters, or a "
+           "test of the resulting array of pairs, are much faster. It must not call winnow "
+           "(unsupported); this call raises its exceptions.")
       .def("pair_changes", &pair_changes, arg("events"), py::kw_only(),
            arg("predicate") = py::none(),
-           "What changed of all pairs since the last call with these events, alone: costs what "
-           "moved, or with a `predicate`, as in `self_pairs`, all pairs. Where that raises, the "
-           "events forget everything.")
+           "Finds only the changes of all pairs since the last call with these events, in time "
+           "proportional to the objects that moved, or with a `predicate`, as in `self_pairs`, in "
+           "the time of all pairs. If the predicate raises, the events are cleared.")
       .def("pairs_with", &pairs_with, arg("other"), py::kw_only(), arg("order") = "fast",
            arg("predicate") = py::none(),
            "All pairs (object of this, object of `other`) whose boxes overlap: (m, 2) uint32 of "

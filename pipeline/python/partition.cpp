@@ -1,4 +1,5 @@
-// A partition itself: what it is made of, how it stands, what it holds.
+// The class Partition itself: construction, structure, statistics and drawing. Other members are in
+// objects.cpp, pairs.cpp, queries.cpp and snapshots.cpp.
 
 #include "pipeline/python/partition.h"
 
@@ -47,7 +48,7 @@ py::dict footprint_dict(const Footprint& footprint) {
 
 namespace {
 
-/// The structure with a parameter of its own.
+/// Returns the structure, with its own parameter if given.
 [[nodiscard]] StructureKind structure_with(const std::string& name, std::optional<float> loose) {
   const StructureKind kind = structure_of(name);
   if (!loose) return kind;
@@ -133,11 +134,11 @@ void add_itself(PartitionClass& partition) {
            arg("volume") = "aabb", arg("margin") = 0.0F, arg("margin_share") = 0.0F,
            arg("parallel") = true, arg("build_budget") = 0, arg("loose") = py::none(),
            arg("recorder") = py::none(),
-           "An empty partition. `structure` prunes (see `structures`), `volume` bounds an object: "
-           "'aabb', 'sphere', 'kdop14', 'kdop18' or 'kdop26'. Volumes are stored larger by "
-           "`margin` (a length) + `margin_share` * longest edge: moves within are free. `loose` is "
-           "the parameter of LooseOctree and LooseQuadtree. What is done with it is written to "
-           "`recorder`.")
+           "An empty partition. `structure`: the spatial structure (see `structures`). `volume`: "
+           "the bounding volume of objects: 'aabb', 'sphere', 'kdop14', 'kdop18' or 'kdop26'. "
+           "Volumes are stored larger by `margin` (a length) + `margin_share` * longest edge: "
+           "moves within this margin are free. `loose`: parameter of LooseOctree and "
+           "LooseQuadtree. `recorder`: records all calls.")
       .def(
           "clear",
           [](SharedPartition& p) {
@@ -156,10 +157,10 @@ void add_itself(PartitionClass& partition) {
               p.hit_pool->release();
             });
           },
-          "Gives back memory that an empty partition, or scratch, holds.")
+          "Frees memory that an empty partition, or scratch, holds.")
       .def("reserve", &reserve, arg("objects"), arg("pairs") = 0, arg("touch") = false,
-           "Makes ready the memory that a first frame of so many objects and pairs takes; `touch` "
-           "writes to each page of it.")
+           "Reserves the memory for a first frame with this many objects and pairs; `touch` writes "
+           "to each page of it.")
       .def(
           "refresh",
           [](const SharedPartition& p) {
@@ -174,24 +175,24 @@ void add_itself(PartitionClass& partition) {
                    "set_structure");
           },
           arg("structure"), arg("loose") = py::none(),
-          "Exchanges the structure; objects, keys, filters and events stay.")
+          "Replaces the structure; objects, keys, filters and events stay.")
       .def_property_readonly(
           "structure",
           [](const SharedPartition& p) {
             return reading(p.mutex, [&] { return std::string(p.partition->name()); });
           },
-          "Name of the structure it was given last.")
+          "Name of the current structure, as it was set.")
       .def_property_readonly(
           "volume",
           [](const SharedPartition& p) { return name_of(kVolumes, p.partition->volume()); },
-          "What bounds an object.")
+          "The bounding volume of objects.")
       .def_property_readonly(
           "margin",
           [](const SharedPartition& p) {
             const Margin m = p.partition->margin();
             return py::make_tuple(m.distance, m.share);
           },
-          "(distance, share of the longest edge).")
+          "Margin: (length, share of the longest edge).")
       .def_property_readonly(
           "is_exact",
           [](const SharedPartition& p) {
@@ -200,9 +201,9 @@ void add_itself(PartitionClass& partition) {
           "True if `self_pairs` gives exactly the pairs whose given boxes "
           "overlap.")
       .def("choice", &choice_dict,
-           "What AutoPartition holds and why, and what is known of the scene; of any other "
-           "structure that one itself.")
-      .def("statistics", &statistics_dict, "How it stands and what it did: counters, no timings.")
+           "The structure that AutoPartition uses and the reason, with the properties of the "
+           "scene; for any other structure that structure itself.")
+      .def("statistics", &statistics_dict, "Counters of its state and work, no timings.")
       .def(
           "footprint",
           [](const SharedPartition& p) {

@@ -34,27 +34,29 @@ inline constexpr Choices<Volume, 5> kVolumes{{{"aabb", Volume::aabb},
 inline constexpr Choices<Order, 2> kOrders{
     {{"fast", Order::fast}, {"canonical", Order::canonical}}};
 
-/// The structure of this name, or an invalid_argument that names all.
+/// Returns the structure with this name; throws an invalid_argument that lists all names.
 [[nodiscard]] StructureKind structure_of(const std::string& name);
 
-/// What holds the results of a frame while arrays show them, and cannot be filled again till then.
+/// A result object that is filled once per frame and shown by arrays. It cannot be filled while
+/// such arrays are alive.
 template <typename Result>
 class Exported : public NeedsInit {
  public:
   Exported() = default;
-  /// Of a result that something else fills, if it is `lent`.
+  /// `lent`: the value is filled by another object.
   explicit Exported(std::shared_ptr<Result> value, bool lent = true)
       : value_(std::move(value)), is_lent_(lent) {}
 
   [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
-  /// A BufferError while an array shows it.
+  /// Throws a BufferError if an array shows it.
   void expect_unseen(const char* what) const {
     if (value_.use_count() <= 1) return;
     PyErr_Format(PyExc_BufferError,
                  "arrays of these %s are alive: delete them, or keep copies of them", what);
     throw py::error_already_set();
   }
-  /// To be filled, while no array shows it. Throws `unsupported` if something else fills it.
+  /// Returns the value to be filled; requires that no array shows it. Throws `unsupported` if
+  /// another object fills it.
   [[nodiscard]] Result& to_fill(const char* what) const {
     if (is_lent_) {
       throw Refusal(Status::unsupported, std::string(what) + ": what they are of fills them");
@@ -62,7 +64,7 @@ class Exported : public NeedsInit {
     expect_unseen(what);
     return *value_;
   }
-  /// Nobody else fills it or makes arrays of it meanwhile. Waits without the GIL.
+  /// Locks out other threads that fill it or make arrays of it. Blocks without the GIL.
   [[nodiscard]] std::unique_lock<std::mutex> hold() const {
     InCallback::refuse();
     const WithoutGil release;
@@ -79,21 +81,21 @@ struct Events : Exported<PairEvents> {
       : Exported(std::make_shared<PairEvents>(PairEventsOptions{default_memory(), client_data}),
                  false) {}
 
-  /// By a predicate, the last time.
+  /// The last fill used a predicate.
   std::atomic<bool> is_filtered{false};
 };
 
-/// A partition as several threads of Python may use it.
+/// A partition that several Python threads may use.
 class SharedPartition : public NeedsInit {
  public:
   SharedPartition(StructureKind structure, const PartitionOptions& options,
                   RecorderPointer recorder_in);
 
-  /// A buffer for all pairs, which carries over those of the last frame: where that helps, if it
-  /// is `incremental`, and in any case if it is told what changed.
+  /// Returns a buffer for all pairs. It starts from the pairs of the last frame if `with_events`,
+  /// or if `incremental` and few objects have changed.
   [[nodiscard]] std::shared_ptr<PairBuffer> take_pairs(bool incremental, bool with_events = false);
   void keep_pairs(std::shared_ptr<PairBuffer> pairs);
-  /// So many objects have changed since.
+  /// Counts objects that have changed since the last pairs.
   void count_changes(std::size_t objects) noexcept { changes_ += objects; }
 
   mutable std::shared_mutex mutex;
@@ -101,7 +103,7 @@ class SharedPartition : public NeedsInit {
   const RecorderPointer recorder;
   RecordablePartition partition;
   Execution execution;
-  /// Boxes that are not read in place.
+  /// Boxes that cannot be read in place.
   std::vector<Aabb> room;
   std::shared_ptr<Pool<PairBuffer>> pair_pool = std::make_shared<Pool<PairBuffer>>();
   std::shared_ptr<Pool<HitBuffer>> hit_pool = std::make_shared<Pool<HitBuffer>>();
@@ -119,7 +121,7 @@ class SharedPartition : public NeedsInit {
 
 using PartitionClass = py::class_<SharedPartition, std::shared_ptr<SharedPartition>>;
 
-// Each adds what its source is named after.
+// Each function adds the contents of the source file with its name.
 void add_partition(py::module_& module, PartitionClass& partition);
 void add_objects(py::module_& module, PartitionClass& partition);
 void add_pairs(py::module_& module, PartitionClass& partition);

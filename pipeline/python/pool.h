@@ -9,12 +9,12 @@
 
 namespace winnow::python {
 
-/// Buffers of results that go round: one that no array shows any more is filled again, so that a
-/// frame like an earlier one needs no memory.
+/// Buffers for results. A buffer that no array shows any more is used again, so that a steady frame
+/// allocates nothing.
 template <typename Buffer>
 class Pool : public std::enable_shared_from_this<Pool<Buffer>> {
  public:
-  /// One that nobody else has. May be taken and let go of by any thread.
+  /// Returns a buffer that has no other owner. Any thread may take and release one.
   [[nodiscard]] std::shared_ptr<Buffer> take() {
     std::unique_ptr<Buffer> buffer;
     {
@@ -32,14 +32,14 @@ class Pool : public std::enable_shared_from_this<Pool<Buffer>> {
     return result;
   }
 
-  /// Gives the memory of those that wait back.
+  /// Frees the unused buffers.
   void release() {
     const std::lock_guard lock(mutex_);
     free_.clear();
   }
 
  private:
-  /// More than a program shows at a time would only keep memory.
+  /// Limit of unused buffers; programs rarely show more results at once.
   static constexpr std::size_t kMost = 4;
 
   void put(Buffer* buffer) noexcept {
@@ -48,7 +48,7 @@ class Pool : public std::enable_shared_from_this<Pool<Buffer>> {
     try {
       if (free_.size() < kMost) free_.push_back(std::move(back));
     } catch (const std::bad_alloc&) {
-      // It is given back instead.
+      // The buffer is freed instead.
     }
   }
 

@@ -1,4 +1,4 @@
-// Rays, swept volumes, regions and nearest objects of a partition, many at a time.
+// Queries of a partition, in batches: rays, swept volumes, regions and nearest objects.
 
 #include "pipeline/python/filters.h"
 #include "pipeline/python/locks.h"
@@ -21,13 +21,13 @@ enum class Find { closest, any, all };
 constexpr Choices<Find, 3> kFinds{
     {{"closest", Find::closest}, {"any", Find::any}, {"all", Find::all}}};
 
-/// One hit for each question at most, as columns.
+/// At most one hit for each query, as columns.
 struct HitTable : EmptyIfZero {
   py::array key;
   py::array data;
   py::array t;
 };
-/// Hits of each question, one after another.
+/// All hits of each query, concatenated.
 struct HitTables : EmptyIfZero {
   py::array first;
   py::array key;
@@ -40,7 +40,7 @@ struct OverlapTables : EmptyIfZero {
   py::array ids;
 };
 
-/// A HitTable whose columns are still to be written. Without the GIL, too.
+/// A HitTable with columns that are not written yet. Usable without the GIL.
 class FreshHits {
  public:
   template <typename... Shape>
@@ -82,7 +82,7 @@ class FreshHits {
           shown(owner, t, hits.size(), sizeof(Hit))};
 }
 
-/// Sweeps of one kind, and the range of t that they have in common or each.
+/// Directions and ranges of t of swept volumes.
 struct Sweeps {
   Sweeps(py::handle directions, py::handle least, py::handle most)
       : direction(directions, "directions", {3}),
@@ -105,7 +105,7 @@ struct Sweeps {
   }
 };
 
-/// Answers `count` casts, the i-th of which `cast_at` makes.
+/// Runs `count` casts; cast_at(i) makes the i-th.
 template <typename CastAt>
 [[nodiscard]] py::object cast_many(const SharedPartition& p, std::size_t count, Find find,
                                    const Filter& filter, const char* call, CastAt&& cast_at) {
@@ -140,7 +140,7 @@ template <typename CastAt>
 
 // --- rays --------------------------------------------------------------------------------------
 
-/// Rays where they lie, if all of their columns are of float and have one stride; else packed.
+/// Rays, read in place if all columns are of float and have one stride, else copied.
 class RayInput {
  public:
   RayInput(py::handle origins, py::handle directions, py::handle least, py::handle most)
@@ -247,7 +247,7 @@ class RayInput {
 
 // --- regions -----------------------------------------------------------------------------------
 
-/// Answers `count` regions, the i-th of which `region_at` makes.
+/// Runs `count` region queries; region_at(i) makes the i-th.
 template <typename RegionAt>
 [[nodiscard]] OverlapTables overlap_many(const SharedPartition& p, std::size_t count,
                                          const std::string& order_name, const Filter& filter,
@@ -281,7 +281,7 @@ template <typename RegionAt>
                                            const std::string& order, const Filter& filter) {
   const Numbers point(points, "points", {3});
   return overlap_many(p, point.count(), order, filter, "overlap_points", [&](std::size_t i) {
-    // A point that no float is lies in the box of its neighbours.
+    // A point in double is replaced by the box of its float neighbours.
     return point.is_single() ? Region(point_at(point, i)) : Region(box_at(point, point, i));
   });
 }
@@ -319,7 +319,7 @@ template <typename RegionAt>
   return overlap_many(
       p, center.count(), order, filter, "overlap_oriented_boxes", [&](std::size_t i) {
         OrientedBox box{point_at(center, i), {}, Mat3f::identity()};
-        // What rounding the axes moves corners by, at most.
+        // Upper bound on the displacement of corners by the rounding of the axes.
         double reach = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis) reach += half.at(i, axis);
         const double off =
@@ -386,7 +386,7 @@ constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
 
 // --- frusta ------------------------------------------------------------------------------------
 
-/// Calls `make(i)` for each of `count` frusta and gives them as rows of numbers.
+/// Calls make(i) for each of `count` frusta and returns them as rows of numbers.
 template <typename Make>
 [[nodiscard]] py::array frustum_rows(std::size_t count, Make&& make) {
   auto result = fresh<float>(count, kFrustumFloats);
@@ -470,21 +470,21 @@ void add_casts(PartitionClass& partition) {
       .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
            arg("filter") = PythonFilter{},
-           "What the rays origins + t * directions, (n, 3) each, min_t <= t <= max_t, (n,) or one "
-           "for all, meet of the objects' boxes. `find`: 'closest' or 'any', giving Hits, or "
-           "'all', giving HitLists sorted by t. Floats with one stride are read where they lie.")
+           "Finds the objects whose boxes the rays origins + t * directions, (n, 3) each, min_t <= "
+           "t <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning Hits, or "
+           "'all', returning HitLists sorted by t. Floats with one stride are read in place.")
       .def("cast_boxes", filtered(&cast_boxes), arg("lower"), arg("upper"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
            arg("filter") = PythonFilter{},
-           "The same for boxes (n, 3), (n, 3) that move by t * directions (n, 3).")
+           "As cast_rays, for boxes (n, 3), (n, 3) that move by t * directions (n, 3).")
       .def("cast_spheres", filtered(&cast_spheres), arg("centers"), arg("radii"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
            arg("filter") = PythonFilter{},
-           "The same for balls: centres (n, 3), radii (n,) or one for all.")
+           "As cast_rays, for spheres: centres (n, 3), radii (n,) or one for all.")
       .def("cast_capsules", filtered(&cast_capsules), arg("a"), arg("b"), arg("radii"),
            arg("directions"), arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F,
            arg("max_t") = kForever, arg("filter") = PythonFilter{},
-           "The same for capsules: ends a and b (n, 3), radii (n,) or one for all.");
+           "As cast_rays, for capsules: ends a and b (n, 3), radii (n,) or one for all.");
 }
 
 void add_regions(PartitionClass& partition) {
@@ -492,33 +492,34 @@ void add_regions(PartitionClass& partition) {
   partition
       .def("overlap_boxes", filtered(&overlap_boxes), arg("lower"), arg("upper"), py::kw_only(),
            arg("order") = "fast", arg("filter") = PythonFilter{},
-           "All pairs (number of the box, id of the object) that overlap: (m, 2) uint32. Boxes "
-           "(n, 3), (n, 3) are taken as by `insert`.")
+           "All overlapping pairs (number of the box, id of the object): (m, 2) uint32. Boxes (n, "
+           "3), (n, 3) as in `insert`.")
       .def("overlap_points", filtered(&overlap_points), arg("points"), py::kw_only(),
            arg("order") = "fast", arg("filter") = PythonFilter{},
            "Objects whose boxes contain the points (n, 3), as Overlaps.")
       .def("overlap_spheres", filtered(&overlap_spheres), arg("centers"), arg("radii"),
            py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes meet the balls: centres (n, 3), radii (n,) or one for all.")
+           "Objects whose boxes overlap the spheres: centres (n, 3), radii (n,) or one for all.")
       .def("overlap_capsules", filtered(&overlap_capsules), arg("a"), arg("b"), arg("radii"),
            py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes meet the capsules: ends (n, 3), radii (n,) or one for all.")
+           "Objects whose boxes overlap the capsules: ends (n, 3), radii (n,) or one for all.")
       .def("overlap_oriented_boxes", filtered(&overlap_oriented_boxes), arg("centers"), arg("half"),
            arg("axes"), py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes meet boxes that are turned: centres (n, 3), half extents (n, 3) "
-           "or (3,), axes as columns of (n, 3, 3) or (3, 3).")
+           "Objects whose boxes overlap oriented boxes: centres (n, 3), half extents (n, 3) or "
+           "(3,), axes as columns of (n, 3, 3) or (3, 3).")
       .def("overlap_frusta", filtered(&overlap_frusta), arg("frusta"), py::kw_only(),
            arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects that cameras see: (n, 30), as `perspective` and `frusta_of` give them.")
+           "Objects whose boxes overlap frusta of cameras: (n, 30), as returned by `perspective` "
+           "and `frusta_of`.")
       .def("overlap_planes", filtered(&overlap_planes), arg("planes"), py::kw_only(),
            arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes are not wholly outside of one of p planes: (n, p, 4), a normal "
-           "that faces inward and an offset each, normal . x + offset >= 0 inside.")
+           "Objects whose boxes are not entirely outside of one of p planes: (n, p, 4), an inward "
+           "normal and an offset each, normal . x + offset >= 0 inside.")
       .def("nearest", filtered(&nearest), arg("lower"), arg("count") = 1, py::kw_only(),
            arg("upper") = py::none(), arg("radius") = kForever, arg("filter") = PythonFilter{},
            "The `count` objects whose boxes are nearest to each point `lower` (n, 3), or to each "
            "box up to `upper` (n, 3), within `radius`, (n,) or one for all. Hits of shape (n, "
-           "count), sorted by distance, which is t; NULL_KEY and infinity where there are fewer.");
+           "count), sorted by distance, which is t; NULL_KEY and infinity if there are fewer.");
 }
 
 }  // namespace
@@ -526,34 +527,36 @@ void add_regions(PartitionClass& partition) {
 void add_queries(py::module_& module, PartitionClass& partition) {
   using py::arg;
   py::class_<HitTable>(module, "Hits",
-                       "One hit for each question; NULL_KEY, 0 and infinity where there is none.")
+                       "One hit for each query; NULL_KEY, 0 and infinity if there is none.")
       .def_readonly("key", &HitTable::key, "Keys, uint64.")
       .def_readonly("data", &HitTable::data, "Client data, uint64.")
       .def_readonly("t", &HitTable::t,
-                    "Where the sweep first touches the object's box, in units of its direction, "
-                    "or the distance: float32.");
+                    "The t at which the sweep first touches the object's box, in units of its "
+                    "direction, or the distance: float32.");
   py::class_<HitTables>(module, "HitLists",
-                        "Hits of each question: those of question i are first[i] to first[i + 1].")
+                        "Hits of each query: the hits of query i are first[i] to first[i + 1].")
       .def_readonly("first", &HitTables::first, "(n + 1,) uint64.")
       .def_readonly("key", &HitTables::key, "Keys, (m,) uint64.")
       .def_readonly("data", &HitTables::data, "Client data, (m,) uint64.")
       .def_readonly("t", &HitTables::t, "As of Hits, (m,) float32.");
-  py::class_<OverlapTables>(module, "Overlaps",
-                            "Objects that each region meets: ids[first[i]:crossing[i]] lie wholly "
-                            "inside region i, ids[crossing[i]:first[i + 1]] cross its border.")
+  py::class_<OverlapTables>(
+      module, "Overlaps",
+      "Objects that overlap each region: ids[first[i]:crossing[i]] are entirely inside region i, "
+      "ids[crossing[i]:first[i + 1]] cross its boundary.")
       .def_readonly("first", &OverlapTables::first, "(n + 1,) uint64.")
       .def_readonly("crossing", &OverlapTables::crossing, "(n,) uint64.")
       .def_readonly("ids", &OverlapTables::ids, "Ids of objects, (m,) uint32.");
   add_casts(partition);
   add_regions(partition);
-  module.def("perspective", &perspective, arg("eye"), arg("forward"), arg("up"),
-             arg("vertical_fov"), arg("aspect"), arg("near"), arg("far"),
-             "Frusta of cameras at eye (n, 3) that look along forward, with up roughly upward, "
-             "(n, 3) or (3,) each; vertical field of view in radians, in (0, pi); distances of "
-             "the near and far plane. (n, 30) float32: six planes that face inward, then a box.");
+  module.def(
+      "perspective", &perspective, arg("eye"), arg("forward"), arg("up"), arg("vertical_fov"),
+      arg("aspect"), arg("near"), arg("far"),
+      "Frusta of cameras at eye (n, 3) with view direction `forward` and approximate up direction "
+      "`up`, (n, 3) or (3,) each; vertical field of view in radians, in (0, pi); distances of the "
+      "near and far plane. (n, 30) float32: six inward planes, then a box.");
   module.def("frusta_of", &frusta_of, arg("clip_from_world"), arg("near_depth") = "zero",
-             "Frusta of matrices (n, 4, 4) that take column vectors of the world to clip space, "
-             "whose near plane has depth 'zero' or 'minus_one'. (n, 30) float32.");
+             "Frusta of matrices (n, 4, 4) that transform column vectors from world to clip space, "
+             "with the near plane at depth 'zero' or 'minus_one'. (n, 30) float32.");
 }
 
 }  // namespace winnow::python

@@ -11,14 +11,14 @@
 
 namespace winnow::python {
 
-/// So many questions are answered one after another with the same buffers.
+/// Number of queries that one task answers with the same buffers.
 inline constexpr std::size_t kQuestionsPerTask = 256;
 
 [[nodiscard]] inline std::size_t tasks_for(std::size_t questions) noexcept {
   return (questions + kQuestionsPerTask - 1) / kQuestionsPerTask;
 }
 
-/// What became of many questions: the first that was refused, if any was.
+/// Result of a batch of queries: the first failure, if any.
 struct Outcome {
   Status status = Status::ok;
   std::size_t question = 0;
@@ -28,8 +28,8 @@ struct Outcome {
   }
 };
 
-/// Calls `answer(task, question)` for each question, those of a task one after another on one
-/// thread, until one of them is refused. The outcome is the same on any number of threads.
+/// Calls `answer(task, question)` for each query until one fails; the queries of a task run in
+/// sequence on one thread. The outcome does not depend on the number of threads.
 template <typename Answer>
 [[nodiscard]] Outcome answer_all(const Execution& execution, std::size_t questions,
                                  Answer&& answer) {
@@ -41,7 +41,7 @@ template <typename Answer>
       try {
         status = answer(task, i);
       } catch (const std::bad_alloc&) {
-        // As it says.
+        // The status is out_of_memory already.
       }
       if (status != Status::ok) {
         outcomes[task] = {status, i};
@@ -55,13 +55,13 @@ template <typename Answer>
   return {};
 }
 
-/// Lists that tasks made, one after another, and where the list of each question begins.
+/// Lists that tasks produce, and where the list of each query begins.
 template <typename Entry>
 struct Lists {
   explicit Lists(std::size_t questions) : of_task(tasks_for(questions)), first(questions + 1) {}
 
   std::vector<std::vector<Entry>> of_task;
-  /// While tasks run: how many entries question i has, at [i + 1].
+  /// While tasks run, element [i + 1] is the number of entries of query i.
   std::vector<std::uint64_t> first;
   std::vector<Entry> entries;
 

@@ -1,4 +1,4 @@
-// How ranks talk.
+// Transport between ranks.
 
 #include "pipeline/python/ranks.h"
 
@@ -15,8 +15,8 @@
 
 namespace winnow::python {
 
-/// Ranks that are processes, by what an mpi4py communicator has: rank, size, alltoall, allgather.
-/// What Python raises is kept, to be raised once the cluster has told of the failure.
+/// Ranks that are processes, through an mpi4py communicator (rank, size, alltoall, allgather).
+/// Python exceptions are stored, and raised after the cluster has reported the failure.
 class PythonTransport final : public Transport {
  public:
   explicit PythonTransport(py::object communicator)
@@ -38,7 +38,7 @@ class PythonTransport final : public Transport {
 
   Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
                   const Meanwhile& meanwhile) override {
-    // It has no calls that come back before all has arrived.
+    // alltoall blocks, so meanwhile() cannot run during it.
     meanwhile();
     const Status status = asking([&] { exchange_lists(sent); });
     received = parcels_;
@@ -79,7 +79,7 @@ class PythonTransport final : public Transport {
     return asked == Status::ok ? status : asked;
   }
 
-  /// Raises what Python has raised.
+  /// Raises the stored Python exception.
   void raise_if_failed() {
     if (raised_) raise(std::exchange(raised_, py::object()));
   }
@@ -147,7 +147,7 @@ class PythonTransport final : public Transport {
     const auto columns = one.cast<std::tuple<py::bytes, py::bytes, py::bytes, py::bytes>>();
     Parcel parcel{from, rank_, {}};
     const auto show = [&](std::size_t c, const py::bytes& bytes) {
-      // Copied to where numbers of 8 bytes may lie.
+      // Copied, to align 8-byte numbers.
       const auto text = static_cast<std::string_view>(bytes);
       auto& words = columns_.emplace_back((text.size() + 7) / 8);
       std::memcpy(words.data(), text.data(), text.size());
@@ -163,7 +163,7 @@ class PythonTransport final : public Transport {
   py::object communicator_;
   std::uint32_t ranks_;
   std::uint32_t rank_;
-  LoopbackTransport cutter_;  // cuts what all have told
+  LoopbackTransport cutter_;  // splits what all ranks have sent
   std::vector<std::vector<std::uint64_t>> columns_;
   std::vector<Parcel> parcels_;
   py::object raised_;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Ranks of an MPI program, which Python has by mpi4py, or virtual ones, and calls to them.
+// The ranks of a cluster: processes of an MPI program (by mpi4py), or virtual ranks in this
+// process.
 
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/gil.h"
@@ -20,13 +21,13 @@ namespace winnow::python {
 
 class PythonTransport;
 
-/// One of this process's, by default the first.
+/// A rank of this process; by default the first one.
 using Rank = std::optional<std::uint32_t>;
 
-/// How ranks talk, and one call to them after another.
+/// The transport between ranks, and a lock that allows one call at a time.
 class Ranks {
  public:
-  /// The processes of a communicator, or so many virtual ones if it is None.
+  /// Uses the processes of a communicator, or `ranks` virtual ones if it is None.
   Ranks(const py::object& communicator, std::uint32_t ranks);
   ~Ranks();
   Ranks(const Ranks&) = delete;
@@ -34,7 +35,8 @@ class Ranks {
 
   [[nodiscard]] Transport& transport() noexcept { return *transport_; }
   [[nodiscard]] std::uint32_t hosted(const Rank& rank) const;
-  /// Throws what body(), without the GIL, has answered, or what Python has raised.
+  /// Runs body() without the GIL. Throws if its status is not ok, or if the transport stored a
+  /// Python exception.
   template <typename Body>
   void call(Body&& body, const char* name) {
     Status status = Status::ok;
@@ -52,16 +54,17 @@ class Ranks {
   void raise_if_failed();
 
   std::unique_ptr<Transport> transport_;
-  /// The same, or null.
+  /// `transport_` if it is a PythonTransport, else null.
   PythonTransport* python_ = nullptr;
   std::mutex mutex_;
 };
 
-/// Gives a class how many ranks there are, and which of them are this process's.
+/// Adds the properties `ranks` and `hosted` to a class.
 template <typename Shared>
 void add_ranks(py::class_<Shared, std::shared_ptr<Shared>>& type) {
   type.def_property_readonly(
-          "ranks", [](const Shared& c) { return c.cluster().ranks(); }, "Of all processes.")
+          "ranks", [](const Shared& c) { return c.cluster().ranks(); },
+          "Number of ranks of all processes.")
       .def_property_readonly(
           "hosted",
           [](const Shared& c) {
@@ -71,7 +74,7 @@ void add_ranks(py::class_<Shared, std::shared_ptr<Shared>>& type) {
           "Ranks of this process: the first, and one past the last.");
 }
 
-/// As 32 digits.
+/// A digest as 32 digits.
 [[nodiscard]] std::string digits_of(const ClusterDigest& digest);
 /// Counters by name.
 [[nodiscard]] py::dict counters_of(const ClusterStatistics& found);

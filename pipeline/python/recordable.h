@@ -1,6 +1,7 @@
 #pragma once
 
-// What is recorded or not, as it was made.
+// Partitions, scenes and their companions that are either recorded or not, with one interface for
+// both. recordings.cpp provides the recorder.
 
 #include "pipeline/python/made.h"
 #include "pipeline/python/refusal.h"
@@ -18,14 +19,14 @@
 
 namespace winnow::python {
 
-/// A recorder that what it records keeps alive. Its calls may come from any thread.
+/// A recorder, kept alive by the objects that it records. Its calls may come from any thread.
 struct SharedRecorder : NeedsInit {
   explicit SharedRecorder(const char* path) : recorder(path) {}
   Recorder recorder;
 };
 using RecorderPointer = std::shared_ptr<SharedRecorder>;
 
-/// Either of two that have the same calls, of which the second one records them.
+/// Holds one of two objects that have the same calls; the second one records them.
 template <typename Plain, typename Recorded>
 class Recordable {
  public:
@@ -34,7 +35,7 @@ class Recordable {
  protected:
   Recordable() = default;
 
-  /// What ask(that) answers.
+  /// Returns ask(object) for the object that is held.
   template <typename Ask>
   decltype(auto) on(Ask&& ask) {
     return recorded_ ? ask(*recorded_) : ask(*plain_);
@@ -48,16 +49,16 @@ class Recordable {
   std::optional<Recorded> recorded_;
 };
 
-/// One that has calls, too, that are not recorded.
+/// As Recordable, for classes that also have calls that are not recorded.
 template <typename Plain, typename Recorded>
 class RecordableWorld : public Recordable<Plain, Recorded> {
  public:
-  /// That itself, for what is not recorded.
+  /// The object itself, for const calls.
   [[nodiscard]] const Plain& operator*() const noexcept {
     return this->recorded_ ? *this->recorded_->operator->() : *this->plain_;
   }
   [[nodiscard]] const Plain* operator->() const noexcept { return &**this; }
-  /// For calls that cannot be recorded: unsupported if these are.
+  /// The object itself, for calls that cannot be recorded; throws `unsupported` if it is recorded.
   [[nodiscard]] Plain& unrecorded(const char* call) {
     if (this->recorded_) {
       throw Refusal(Status::unsupported, std::string(call) + " of what is recorded");
@@ -69,7 +70,7 @@ class RecordableWorld : public Recordable<Plain, Recorded> {
   RecordableWorld() = default;
 };
 
-/// A partition; calls as it has them.
+/// A partition; see Partition for the calls.
 class RecordablePartition : public RecordableWorld<Partition, RecordedPartition> {
  public:
   RecordablePartition(SharedRecorder* recorder, StructureKind structure,
@@ -110,14 +111,14 @@ class RecordablePartition : public RecordableWorld<Partition, RecordedPartition>
   Status refresh() const {
     return on([](const auto& p) { return p.refresh(); });
   }
-  /// A recorded one remembers its questions for pairs: one at a time.
+  /// A recorded partition stores state of its pair queries, so that only one may run at a time.
   template <typename... Given>
   Status self_pairs(Given&&... given) const {
     std::unique_lock<std::mutex> asking;
     if (is_recorded()) asking = std::unique_lock(asking_);
     return on([&](const auto& p) { return p.self_pairs(given...); });
   }
-  /// `unsupported` if one of them alone is recorded.
+  /// `unsupported` if only one of the two is recorded.
   Status pairs_with(const RecordablePartition& other, PairBuffer& out,
                     const PairOptions& options) const {
     if (is_recorded() != other.is_recorded()) return Status::unsupported;
@@ -149,7 +150,7 @@ class RecordablePartition : public RecordableWorld<Partition, RecordedPartition>
   mutable std::mutex asking_;
 };
 
-/// A scene; calls as it has them.
+/// A scene; see Scene for the calls.
 class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
  public:
   RecordableScene(SharedRecorder* recorder, const ShapePool& shapes,
@@ -220,7 +221,7 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   friend class RecordableSweep;
 };
 
-/// Questions to a scene; calls as SceneQueries has them.
+/// Queries of a scene; see SceneQueries for the calls.
 class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
  public:
   explicit RecordableQueries(RecordableScene& scene) {
@@ -269,7 +270,7 @@ class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
   }
 };
 
-/// A sweep; calls as SceneSweep has them.
+/// A sweep; see SceneSweep for the calls.
 class RecordableSweep : public Recordable<SceneSweep, RecordedSweep> {
  public:
   explicit RecordableSweep(RecordableScene& scene) {
@@ -289,7 +290,7 @@ class RecordableSweep : public Recordable<SceneSweep, RecordedSweep> {
   }
 };
 
-/// Sensors; calls as they have them.
+/// Sensors; see Sensors for the calls.
 class RecordableSensors : public Recordable<Sensors, RecordedSensors> {
  public:
   explicit RecordableSensors(RecordableScene& scene) {

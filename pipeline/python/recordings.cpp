@@ -1,4 +1,4 @@
-// What a program does, written down, and played again.
+// Recorder and replay: recordings of calls.
 
 #include "pipeline/python/recordings.h"
 
@@ -17,7 +17,7 @@
 namespace winnow::python {
 namespace {
 
-/// The name of a file as the system takes it.
+/// Encodes a path for the file system.
 [[nodiscard]] std::string file_name(const py::object& path) {
   const py::object name = py::module_::import("os").attr("fsencode")(path);
   const auto bytes = py::cast<std::string>(name);
@@ -42,7 +42,7 @@ void close(SharedRecorder& r) {
   accept(closed(), "close");
 }
 
-/// How a recording was played.
+/// Result of a replay.
 struct ReplayCounts {
   Status status = Status::ok;
   std::uint64_t calls = 0;
@@ -88,14 +88,15 @@ void add_recordings(py::module_& module) {
   using py::arg;
   py::class_<SharedRecorder, RecorderPointer>(
       module, "Recorder",
-      "Writes down what is done with partitions and scenes that are made with it, so that it can "
-      "be played elsewhere, and measured: `winnow advise FILE`. Calls that were refused are not "
-      "recorded. Partitions that are recorded load no snapshots (unsupported). A recorded scene is "
-      "asked with one Contacts, which may be loaded: `status` is 'unsupported' after one that it "
-      "filled in an earlier call than the last. Where anything goes wrong the recording ends, and "
-      "the program goes on: see `status`.")
-      .def(py::init(&make_recorder), arg("path"),
-           "Into the file of a path, as `open` takes it, which is made or overwritten.")
+      "Records the calls of partitions and scenes that are made with it, so that they can be "
+      "replayed and measured elsewhere: `winnow advise FILE`. Failed calls are not recorded. "
+      "Recorded partitions cannot load snapshots (unsupported). A recorded scene must be used with "
+      "one Contacts, which may be loaded: `status` is 'unsupported' after one that was filled in "
+      "an earlier call than the last. If anything fails, the recording ends and the program "
+      "continues: see `status`.")
+      .def(
+          py::init(&make_recorder), arg("path"),
+          "Records into the file at a path, as `open` accepts it, which is created or overwritten.")
       .def(
           "end_frame",
           [](SharedRecorder& r) {
@@ -103,22 +104,22 @@ void add_recordings(py::module_& module) {
             const WithoutGil release;
             r.recorder.end_frame();
           },
-          "Says that a frame is over, and writes out what there is.")
-      .def("close", &close,
-           "Writes the end; nothing is recorded from then on. Raises what went wrong.")
+          "Marks the end of a frame, and writes buffered data.")
+      .def("close", &close, "Ends the recording. Raises the error that occurred, if any.")
       .def_property_readonly(
           "status", [](const SharedRecorder& r) { return to_string(r.recorder.status()); },
-          "'ok'; 'out_of_memory', also of the disk; 'unsupported' after a call that cannot be "
-          "recorded.")
+          "'ok'; 'out_of_memory', also if the disk is full; 'unsupported' after a call that cannot "
+          "be recorded.")
       .def_property_readonly(
-          "calls", [](const SharedRecorder& r) { return r.recorder.calls(); }, "Recorded so far.")
+          "calls", [](const SharedRecorder& r) { return r.recorder.calls(); },
+          "Number of calls recorded.")
       .def_property_readonly(
-          "bytes", [](const SharedRecorder& r) { return r.recorder.bytes(); }, "Written so far.");
+          "bytes", [](const SharedRecorder& r) { return r.recorder.bytes(); }, "Bytes written.");
   module.def("replay", &replay, arg("data"), arg("parallel") = true,
-             "Plays a recording, the bytes of a file, and compares each answer with the recorded "
+             "Replays a recording, the bytes of a file, and compares each result with the recorded "
              "one, bit for bit: counts of calls, frames, questions, differences and worlds "
-             "(partitions and scenes), and whether the recording is_whole. invalid_argument for "
-             "what is no recording, or damaged.");
+             "(partitions and scenes), and is_whole if the recording is complete. invalid_argument "
+             "for bytes that are not a valid recording.");
 }
 
 }  // namespace winnow::python

@@ -4,7 +4,7 @@
 
 namespace winnow::python {
 
-/// Recorders, and what plays what they wrote.
+/// Adds Recorder and replay.
 void add_recordings(py::module_& module);
 
 }  // namespace winnow::python

@@ -7,7 +7,8 @@
 
 namespace winnow::python {
 
-/// What becomes a `winnow.StatusError` in Python, or a MemoryError for `out_of_memory`.
+/// An exception that becomes a `winnow.StatusError` in Python, or a MemoryError for
+/// `out_of_memory`.
 class Refusal : public std::runtime_error {
  public:
   Refusal(Status status, const std::string& what)
@@ -21,7 +22,7 @@ class Refusal : public std::runtime_error {
 /// Throws unless the status is ok.
 void accept(Status status, const std::string& what);
 
-/// What a status means, in one sentence.
+/// Describes a status in one sentence.
 [[nodiscard]] const char* meaning(Status status) noexcept;
 
 }  // namespace winnow::python

@@ -1,4 +1,4 @@
-// Questions to the exact shapes of a scene, many at a time.
+// Queries of the exact shapes of a scene, in batches.
 
 #include "pipeline/python/entry_columns.h"
 #include "pipeline/python/filters.h"
@@ -25,7 +25,7 @@ constexpr Choices<Wanted, 3> kWanted{
     {{"closest", Wanted::closest}, {"any", Wanted::any}, {"all", Wanted::all}}};
 constexpr Choices<PairRules, 2> kRules{{{"scene", PairRules::scene}, {"none", PairRules::none}}};
 
-/// Asks while nothing changes the scene, which is brought up to date before.
+/// Runs body() with shared access to the scene, after a refresh if needed.
 template <typename Body>
 [[nodiscard]] Outcome asking_unchanged(SharedScene& s, Body&& body) {
   InCallback::refuse();
@@ -45,13 +45,13 @@ template <typename Body>
   }
 }
 
-/// The same, raising what functions of Python's raise meanwhile.
+/// As asking_unchanged, and raises exceptions of Python functions.
 template <typename Body>
 [[nodiscard]] Outcome asking(SharedScene& s, Body&& body) {
   return s.shapes->raised.during([&] { return asking_unchanged(s, body); });
 }
 
-/// What one thread asks with, for the time of a question.
+/// A query object for the duration of a query.
 class Asker {
  public:
   explicit Asker(SharedScene& s) : scene_(s), queries_(s.take_queries()) {}
@@ -65,7 +65,7 @@ class Asker {
   std::unique_ptr<RecordableQueries> queries_;
 };
 
-/// Answers each question in lists of entries.
+/// Collects the results of each query as lists.
 template <typename Entry, typename Ask>
 [[nodiscard]] std::shared_ptr<Lists<Entry>> list_all(SharedScene& s, std::size_t count,
                                                      const char* call, Ask&& ask) {
@@ -160,7 +160,7 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
   return table;
 }
 
-/// No hit, as a question without an answer has it.
+/// The result of a query without a hit.
 [[nodiscard]] SceneHit nothing() {
   SceneHit hit;
   hit.t = std::numeric_limits<double>::infinity();
@@ -169,8 +169,8 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
 
 // --- rays --------------------------------------------------------------------------------------
 
-/// Rays of a batch where they lie, if they are of double, of one stride and without end; packed
-/// otherwise.
+/// Rays of a batch, read in place if they are of double, have one stride and are infinite; else
+/// copied.
 class ShapeRayInput {
  public:
   ShapeRayInput(py::handle origins, py::handle directions, py::handle max_ts)
@@ -209,7 +209,7 @@ class ShapeRayInput {
   Numbers max_t_;
 };
 
-/// Three columns in one array, and the array of rows that shows them.
+/// Three columns in one array, and that array transposed to rows.
 [[nodiscard]] std::pair<std::array<double*, 3>, py::array> vectors(std::size_t count) {
   auto columns = fresh<double>(3, count);
   double* const first = columns.mutable_data();
@@ -258,7 +258,7 @@ class ShapeRayInput {
 
 // --- other questions ---------------------------------------------------------------------------
 
-/// Asks about `count` moving shapes, of which cast_at(i) gives the i-th.
+/// Casts `count` moving shapes; cast_at(i) returns the i-th.
 template <typename CastAt>
 [[nodiscard]] py::object cast_moving(SharedScene& s, std::size_t count, const std::string& find,
                                      const char* call, const Filter& filter, double tolerance,
@@ -350,7 +350,7 @@ template <typename CastAt>
       }));
 }
 
-/// Asks about two sets of bodies.
+/// Queries two sets of bodies.
 template <typename Ask>
 void ask_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&& ask) {
   const KeyInput first(a, "a");
@@ -385,7 +385,7 @@ void ask_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&
   return rows_of(pairs);
 }
 
-/// Without sets, of the whole scene; without the second, of the first with itself.
+/// Without sets, tests the whole scene; without the second set, the first one with itself.
 [[nodiscard]] py::array_t<std::uint64_t> any_contact(SharedScene& s, const py::object& a,
                                                      const py::object& b, double margin,
                                                      const std::string& rules) {
@@ -439,41 +439,46 @@ template <typename Table, typename Class>
 void add_hit_columns(Class& type) {
   type.def_readonly("key", &Table::key, "Keys of bodies, uint64.")
       .def_readonly("data", &Table::data, "Client data, uint64.")
-      .def_readonly("part", &Table::part, "Triangle or child, WHOLE_SHAPE of convex bodies.")
-      .def_readonly("t", &Table::t, "In units of the direction, float64.")
-      .def_readonly("normal", &Table::normal, "Unit, of the surface, (n, 3) float64.")
-      .def_readonly("point", &Table::point, "Where they meet, in the world, (n, 3) float64.");
+      .def_readonly("part", &Table::part, "Triangle or child, WHOLE_SHAPE for convex bodies.")
+      .def_readonly("t", &Table::t, "t in units of the direction, float64.")
+      .def_readonly("normal", &Table::normal, "Unit normal of the surface, (n, 3) float64.")
+      .def_readonly("point", &Table::point, "Point of the hit, in the world, (n, 3) float64.");
 }
 
 void add_answers(py::module_& module) {
   py::class_<SceneHitTable> hits(
       module, "SceneHits",
-      "One hit for each question; NULL_KEY, 0, WHOLE_SHAPE, infinity and zeros without one.");
+      "One hit for each query; NULL_KEY, 0, WHOLE_SHAPE, infinity and zeros if there is none.");
   add_hit_columns<SceneHitTable>(hits);
   py::class_<SceneHitTables> lists(module, "SceneHitLists",
-                                   "Hits of question i are first[i] to first[i + 1].");
+                                   "The hits of query i are first[i] to first[i + 1].");
   add_hit_columns<SceneHitTables>(lists);
   lists.def_readonly("first", &SceneHitTables::first, "(n + 1,) uint64.");
   using Overlap = SceneOverlapTables;
   py::class_<Overlap>(module, "SceneOverlaps",
-                      "Bodies that shape i overlaps are first[i] to first[i + 1].")
+                      "The bodies that shape i overlaps are first[i] to first[i + 1].")
       .def_readonly("first", &Overlap::first, "(n + 1,) uint64.")
       .def_readonly("key", &Overlap::key, "Keys of bodies, (m,) uint64.")
       .def_readonly("data", &Overlap::data, "Client data, (m,) uint64.")
-      .def_readonly("part", &Overlap::part, "A part that it overlaps, (m,) uint32.");
+      .def_readonly("part", &Overlap::part, "A part of the body that it overlaps, (m,) uint32.");
   using Distance = SceneDistanceTables;
   py::class_<Distance>(module, "SceneDistances",
-                       "Answers to question i are first[i] to first[i + 1].")
+                       "The results of query i are first[i] to first[i + 1].")
       .def_readonly("first", &Distance::first, "(n + 1,) uint64.")
       .def_readonly("key", &Distance::key, "Keys of the second bodies, (m,) uint64.")
       .def_readonly("data", &Distance::data, "Their client data, (m,) uint64.")
       .def_readonly("part_a", &Distance::part_a, "Closest part of the first, (m,) uint32.")
       .def_readonly("part", &Distance::part, "Closest part of the second, (m,) uint32.")
-      .def_readonly("distance", &Distance::distance, "Negative by the depth, (m,) float64.")
-      .def_readonly("error_bound", &Distance::error_bound, "Of the distance, (m,) float64.")
-      .def_readonly("normal", &Distance::normal, "Unit, from first to second, (m, 3) float64.")
-      .def_readonly("point_a", &Distance::point_a, "On the first, in the world, (m, 3) float64.")
-      .def_readonly("point_b", &Distance::point_b, "On the second, in the world, (m, 3) float64.");
+      .def_readonly("distance", &Distance::distance,
+                    "Distance, negative if they overlap, (m,) float64.")
+      .def_readonly("error_bound", &Distance::error_bound,
+                    "Error bound of the distance, (m,) float64.")
+      .def_readonly("normal", &Distance::normal,
+                    "Unit vector from first to second, (m, 3) float64.")
+      .def_readonly("point_a", &Distance::point_a,
+                    "Point on the first, in the world, (m, 3) float64.")
+      .def_readonly("point_b", &Distance::point_b,
+                    "Point on the second, in the world, (m, 3) float64.");
 }
 
 }  // namespace
@@ -486,53 +491,52 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
       .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
            arg("find") = "closest", py::kw_only(), arg("max_t") = forever,
            arg("filter") = PythonFilter{},
-           "What the rays origins + t * directions, (n, 3) each, 0 <= t <= max_t, (n,) or one for "
-           "all, meet of the bodies' shapes. `find`: 'closest' or 'any', giving SceneHits, or "
-           "'all', giving SceneHitLists. Doubles of one stride are read where they lie.")
-      .def(
-          "cast_shapes", filtered(&cast_shapes), arg("shapes"), arg("poses"), arg("directions"),
-          arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
-          arg("touching") = true, arg("filter") = PythonFilter{},
-          "Where shapes (n,), or one, no half-spaces, at poses (n, 7) that move by t * directions, "
-          "(n, 3) or (3,), without turning, first touch a body: never later than they do, and at "
-          "most `tolerance` (a length) earlier. `find`: 'closest' or 'all'. `touching` false: a "
-          "shape does not meet what it touches at the start and slides along or leaves.")
+           "Finds the bodies whose shapes the rays origins + t * directions, (n, 3) each, 0 <= t "
+           "<= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning SceneHits, "
+           "or 'all', returning SceneHitLists. Doubles of one stride are read in place.")
+      .def("cast_shapes", filtered(&cast_shapes), arg("shapes"), arg("poses"), arg("directions"),
+           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
+           arg("touching") = true, arg("filter") = PythonFilter{},
+           "Finds the first contacts with bodies of shapes (n,), or one, at poses (n, 7), that "
+           "move by t * directions, (n, 3) or (3,), without turning. t is never later than the "
+           "true time, and at most `tolerance` (a length) earlier. No half-spaces. `find`: "
+           "'closest' or 'all'. `touching` false: contacts at the start along which the shape "
+           "slides or separates are no hits.")
       .def("cast_motions", filtered(&cast_motions), arg("shapes"), arg("motions"),
            arg("find") = "closest", py::kw_only(), arg("tolerance") = 1e-6, arg("touching") = true,
            arg("filter") = PythonFilter{},
-           "Where shapes (n,), or one, no half-spaces, that move and turn by motions (n, 13), as "
-           "`motions_between` gives them, first meet a body; t is the time in [0, 1], never late. "
-           "The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
-           "'all'. `touching` as in `cast_shapes`. size_mismatch, invalid_key; invalid_pose for a "
-           "motion that is not valid; "
-           "unsupported for half-spaces; invalid_argument for a bad tolerance. A way that runs "
-           "across the axes is asked about in up to eight pieces.")
+           "Finds the first contacts with bodies of shapes (n,), or one, that move and turn by "
+           "motions (n, 13), as returned by `motions_between`; t is the time in [0, 1], never "
+           "late. The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
+           "'all'. `touching` as in `cast_shapes`. size_mismatch, invalid_key; invalid_pose for an "
+           "invalid motion; unsupported for half-spaces; invalid_argument for a bad tolerance. A "
+           "path that is diagonal to the axes is queried in up to eight pieces.")
       .def("overlap", filtered(&overlap), arg("shapes"), arg("poses"), py::kw_only(),
            arg("filter") = PythonFilter{},
-           "Bodies that shapes (n,), or one, at poses (n, 7) share a point with, by id.")
+           "Bodies that overlap shapes (n,), or one, at poses (n, 7), sorted by id.")
       .def("distance", &distance, arg("a"), arg("b"), py::kw_only(), arg("limit") = forever,
            arg("rules") = "scene",
-           "Closest or deepest points of bodies a (n,) and b (n,): one answer to each question, "
-           "and none to those whose bodies are farther apart than `limit`. `rules`, here and "
-           "below: 'scene' takes pairs that `collide` would make, by their sets (one is dynamic), "
-           "filters, layers, ignored pairs and the predicate; 'none' takes any two bodies.")
+           "Closest or deepest points of bodies a (n,) and b (n,): one result for each pair, and "
+           "none if the bodies are farther apart than `limit`. `rules`, here and below: 'scene' "
+           "tests only pairs that `collide` would make, by their sets (one is dynamic), filters, "
+           "layers, ignored pairs and the predicate; 'none' tests any two bodies.")
       .def("least_distance", &least_distance, arg("a"), arg("b"), py::kw_only(),
            arg("limit") = forever, arg("rules") = "scene",
            "The closest, or deepest, bodies of two sets a (n,) and b (m,): the key of the first, "
-           "(1,), and one answer; none of both where all are farther apart than `limit`.")
+           "(1,), and one result; both are empty if all are farther apart than `limit`.")
       .def("overlaps", &overlaps, arg("a"), arg("b"), py::kw_only(),
            arg("most") = std::numeric_limits<std::size_t>::max(), arg("rules") = "scene",
-           "Keys (k, 2) of bodies of two sets a (n,) and b (m,) that share a point, at most `most` "
-           "of them: 1 stops at the first one.")
+           "Overlapping bodies of two sets a (n,) and b (m,): keys (k, 2), at most `most` pairs; 1 "
+           "stops at the first pair.")
       .def("any_contact", &any_contact, arg("a") = py::none(), arg("b") = py::none(), py::kw_only(),
            arg("margin") = 0.0, arg("rules") = "scene",
-           "The first pair of bodies of two sets a (n,) and b (m,) that touch or are no farther "
-           "apart than `margin`: keys (1, 2), or (0, 2) if none do. Without b, of bodies of a with "
-           "each other; without both, of all bodies of the scene.")
+           "The first pair of bodies of two sets a (n,) and b (m,) that touch or are at most "
+           "`margin` apart: keys (1, 2), or (0, 2) if there is none. Without b, of bodies of a "
+           "with each other; without both, of all bodies of the scene.")
       .def("nearest", filtered(&nearest), arg("points"), arg("count") = 1, py::kw_only(),
            arg("radius") = forever, arg("filter") = PythonFilter{},
-           "The at most `count` bodies nearest to each point (n, 3), no farther than `radius`, "
-           "(n,) or one for all, sorted by distance.");
+           "The bodies nearest to each point (n, 3), at most `count`, within `radius`, (n,) or one "
+           "for all, sorted by distance.");
 }
 
 }  // namespace winnow::python

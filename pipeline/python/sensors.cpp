@@ -1,4 +1,4 @@
-// Volumes that tell which bodies of a scene are in them, who came and who left.
+// The class Sensors: volumes that detect the bodies of a scene, with events.
 
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/entry_columns.h"
@@ -16,7 +16,7 @@
 namespace winnow::python {
 namespace {
 
-/// Sensors of a scene, whose lock is theirs, too; shapes that they have are used by it.
+/// Sensors of a scene. They share its lock, and shapes that they use count as used by it.
 struct SharedSensors : NeedsInit {
   explicit SharedSensors(std::shared_ptr<SharedScene> of)
       : scene(std::move(of)), sensors(scene->scene), held(scene->shapes) {}
@@ -26,7 +26,7 @@ struct SharedSensors : NeedsInit {
   HeldShapes held;
 };
 
-/// Changes the sensors, or lets them look, for which the shapes stay as they are.
+/// Runs body() with exclusive access to the sensors, while shapes do not change.
 template <typename Body>
 auto changing_sensors(SharedSensors& s, Body&& body) {
   return s.scene->working(std::forward<Body>(body));
@@ -34,7 +34,7 @@ auto changing_sensors(SharedSensors& s, Body&& body) {
 
 using Definitions = std::vector<SensorDefinition>;
 
-/// Sensors as Python has them.
+/// Converts the arguments to definitions.
 [[nodiscard]] Definitions defined(py::handle shape_array, py::handle poses, py::handle layers,
                                   py::handle mask, py::handle environment, py::handle carriers,
                                   py::handle data) {
@@ -208,11 +208,12 @@ void add_table(py::module_& module) {
       .def_readonly("sensor_data", &Table::sensor_data, "Client data of sensors, (n,) uint64.")
       .def_readonly("body_data", &Table::body_data, "Client data of bodies, (n,) uint64.")
       .def_readonly("event", &Table::event,
-                    "0 for those that came, 1 for those that were there before: (n,) uint8.")
+                    "0 for bodies that entered, 1 for bodies that stay: (n,) uint8.")
       .def_readonly("left", &Table::left,
-                    "Pairs (sensor, body) that were there before and are not now, keys of what was "
-                    "removed being stale: (k, 2) uint64.")
-      .def_readonly("left_data", &Table::left_data, "Client data of these, (k, 2) uint64.");
+                    "Pairs (sensor, body) that were there in the last call and are not now: (k, 2) "
+                    "uint64. Keys of removed sensors and bodies are stale.")
+      .def_readonly("left_data", &Table::left_data,
+                    "Client data of the pairs in `left`, (k, 2) uint64.");
 }
 
 void add_changes(SensorsClass& type) {
@@ -220,21 +221,20 @@ void add_changes(SensorsClass& type) {
   constexpr std::uint32_t every = ~0U;
   type.def("add", &add, arg("shapes"), arg("poses"), arg("layers") = 1, arg("mask") = every,
            arg("environment") = 0, arg("carrier") = py::none(), arg("data") = py::none(),
-           "Adds n sensors and gives their keys, (n,) uint64: shapes (n,), or one for all, at "
-           "poses and with filters as bodies have them in Scene.add. `carrier`: keys (n,) of "
-           "bodies that they do not sense, NULL_KEY for none. `data`: (n,) uint64. All or none: "
-           "size_mismatch, invalid_key for a shape that is not there, invalid_pose, "
-           "too_many_objects beyond 2^28.")
+           "Adds n sensors and returns their keys, (n,) uint64: shapes (n,), or one for all, with "
+           "poses and filters as in Scene.add. `carrier`: keys (n,) of bodies that they ignore, "
+           "NULL_KEY for none. `data`: (n,) uint64. All or none: size_mismatch, invalid_key for an "
+           "unknown shape, invalid_pose, too_many_objects beyond 2^28.")
       .def("set", &set, arg("keys"), arg("shapes"), arg("poses"), arg("layers") = 1,
            arg("mask") = every, arg("environment") = 0, arg("carrier") = py::none(),
            arg("data") = py::none(),
-           "Replaces all that the sensors of `keys` (n,) are, as in `add`; their keys stay. Errors "
-           "are those of `add`, and invalid_key for a key that is stale or occurs twice.")
+           "Replaces the definitions of the sensors of `keys` (n,), as in `add`; their keys stay. "
+           "Errors as in `add`, and invalid_key for a key that is stale or given twice.")
       .def("remove", &remove, arg("keys"),
-           "Removes sensors (n,), all or none: what they sensed leaves them by the next `sense`. "
-           "invalid_key for a key that is stale or occurs twice.")
+           "Removes sensors (n,), all or none: their bodies leave them in the next `sense`. "
+           "invalid_key for a key that is stale or given twice.")
       .def("move", &move, arg("keys"), arg("poses"),
-           "Gives the sensors (n,) new poses. size_mismatch, invalid_key, invalid_pose.");
+           "Sets new poses of the sensors (n,). size_mismatch, invalid_key, invalid_pose.");
 }
 
 }  // namespace
@@ -242,25 +242,24 @@ void add_changes(SensorsClass& type) {
 void add_sensors(py::module_& module) {
   using py::arg;
   add_table(module);
-  SensorsClass type(
-      module, "Sensors",
-      "Volumes that tell which bodies of a scene are in them, who came and who left, "
-      "and make no contacts: goals, triggers, light curtains. Neither rays nor bodies "
-      "meet them. A call that raises has changed nothing.");
+  SensorsClass type(module, "Sensors",
+                    "Volumes that detect the bodies in them, and which entered or left, without "
+                    "contacts: goals, triggers, light curtains. Rays and bodies do not collide "
+                    "with them. A call that raises changes nothing.");
   type.def(py::init([](const std::shared_ptr<SharedScene>& scene) {
              return std::make_shared<SharedSensors>(scene);
            }),
            arg("scene").none(false),
-           "No sensors, of the bodies of `scene`, which they keep alive.");
+           "No sensors yet. They detect the bodies of `scene`, which they keep alive.");
   add_changes(type);
   type.def("__len__",
            [](const SharedSensors& s) {
              return reading(s.scene->mutex, [&] { return s.sensors->size(); });
            })
-      .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are sensors: (n,) bool.")
+      .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live sensors: (n,) bool.")
       .def("sense", &sense,
-           "Looks at the scene as it stands: fixed, dynamic and sleeping bodies alike, exactly. "
-           "O(sensors (log n + bodies near each)).");
+           "Finds the bodies in each sensor, exactly: fixed, dynamic and sleeping ones. O(sensors "
+           "(log n + bodies near each)).");
 }
 
 }  // namespace winnow::python

@@ -1,4 +1,5 @@
-// Bodies of a scene, and what touches what.
+// The class Scene: bodies and collide. Other members are in meetings.cpp, sweeps.cpp,
+// scene_questions.cpp and snapshots.cpp.
 
 #include "pipeline/python/shared_scene.h"
 
@@ -32,7 +33,7 @@ void SharedScene::put_queries(std::unique_ptr<RecordableQueries> queries) noexce
   try {
     queries_.push_back(std::move(queries));
   } catch (const std::bad_alloc&) {
-    // The next question makes its own.
+    // The next query makes a new one.
   }
 }
 
@@ -43,7 +44,7 @@ void SharedScene::exchange_predicate(std::shared_ptr<Predicate>& other) {
 
 namespace {
 
-/// A scene would say so with the first body.
+/// Checked here, because a scene would fail only when the first body is added.
 void expect_length(double length, const char* name) {
   if (length >= 0.0 && length < std::numeric_limits<double>::infinity()) return;
   throw Refusal(Status::invalid_argument, std::string(name) + ": finite and >= 0 is wanted");
@@ -315,32 +316,31 @@ void add_bodies_to(SceneClass& scene) {
            arg("seamless_floors") = false, arg("warm_start") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
            arg("parallel") = true, arg("build_budget") = 0, arg("recorder") = py::none(),
-           "An empty scene. Pairs no farther apart than `margin` are contacts too; a pair that has "
-           "moved less than `carry_over` keeps its contacts; both are lengths. `tier` as in "
-           "NarrowPhase. `contact_reduction`: of composite shapes one manifold for each region of "
-           "contact, not for each pair of parts; `seamless_floors`: fixed bodies that lie flush "
-           "side by side have no edges between them; `warm_start`: contacts tell where each was "
-           "in the last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: "
-           "rows' worth of planned work a refresh does, 0 for as many as are needed in time. What "
-           "is done with it is "
-           "written to `recorder`.")
+           "An empty scene. Pairs at most `margin` apart are contacts too; a pair that has moved "
+           "less than `carry_over` keeps its contacts; both are lengths. `tier` as in NarrowPhase. "
+           "`contact_reduction`: one manifold for each contact region of composite shapes, instead "
+           "of one for each pair of parts; `seamless_floors`: suppresses ghost contacts at the "
+           "seams between flush fixed bodies; `warm_start`: contacts include their indices in the "
+           "last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: rows "
+           "of planned work per refresh, 0 for as many as are needed in time. `recorder`: records "
+           "all calls.")
       .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("motion") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, arg("data") = py::none(),
            py::kw_only(), arg("contact") = 0.0, arg("rest") = 0.0, arg("layer") = 0,
-           "Adds n bodies and gives their keys, (n,) uint64: shapes (n,), or one for all, at poses "
-           "(n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. `motion`: "
-           "'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. Filters (n,) or "
-           "one for all, as in Partition.set_filter. `data`: (n,) uint64. `contact` and `rest` as "
-           "in `set_offsets`, `layer` as in `set_layer`.")
+           "Adds n bodies and returns their keys, (n,) uint64: shapes (n,), or one for all, at "
+           "poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. "
+           "`motion`: 'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. "
+           "Filters (n,) or one for all, as in Partition.set_filter. `data`: (n,) uint64. "
+           "`contact` and `rest` as in `set_offsets`, `layer` as in `set_layer`.")
       .def("remove", &remove_bodies, arg("keys"), "Removes the bodies of `keys` (n,), all or none.")
       .def("clear", &clear, "Removes every body.")
       .def("move", &move_bodies, arg("keys"), arg("poses"),
-           "Gives the bodies of `keys` (n,) new poses, as in `add`. Positions of double are read "
-           "where they lie, of any strides, orientations of float too.")
+           "Sets new poses of the bodies of `keys` (n,), as in `add`. Positions in double, and "
+           "orientations in float or double, of any strides are read in place.")
       .def("set_motion", &set_motion, arg("keys"), arg("motion"),
            "Moves bodies to the set of 'fixed', 'dynamic' or 'sleeping' ones.")
       .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
-           "Gives the bodies of `keys` (n,) other shapes, (n,) or one for all.")
+           "Sets new shapes, (n,) or one for all, of the bodies of `keys` (n,).")
       .def("__len__",
            [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene->size(); }); })
       .def(
@@ -349,13 +349,13 @@ void add_bodies_to(SceneClass& scene) {
             const Motion motion = chosen(kMotionNames, name, "motion");
             return reading(s.mutex, [&] { return s.scene->size(motion); });
           },
-          arg("motion"), "How many bodies are 'fixed', 'dynamic' or 'sleeping'.")
-      .def("contains", &contains, arg("keys"), "Which of `keys` (n,) are alive: (n,) bool.")
+          arg("motion"), "Number of 'fixed', 'dynamic' or 'sleeping' bodies.")
+      .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live bodies: (n,) bool.")
       .def("keys_of", &keys_of, arg("ids"),
-           "Keys (n,) uint64 of bodies by id (n,); NULL_KEY for those that are not alive.")
+           "Keys (n,) uint64 of bodies by id (n,); NULL_KEY for bodies that do not exist.")
       .def("bodies", &body_columns, arg("keys"),
-           "The bodies of `keys` (n,) as they stand: columns shape, pose (n, 7), motion, layers, "
-           "mask, environment, data, contact, rest, layer.");
+           "The current definitions of the bodies of `keys` (n,): columns shape, pose (n, 7), "
+           "motion, layers, mask, environment, data, contact, rest, layer.");
 }
 
 }  // namespace
@@ -367,26 +367,27 @@ void add_scene(py::module_& module) {
   module.attr("SLEEPING") = static_cast<int>(Motion::sleeping);
   add_contacts(module);
   SceneClass scene(module, "Scene",
-                   "Bodies with shapes and poses, and what touches what. Any number of threads may "
-                   "call it; a call that raises has changed nothing.");
+                   "Bodies with shapes and poses, and their contacts. Any number of threads may "
+                   "call it; a call that raises changes nothing.");
   add_bodies_to(scene);
   scene
       .def("collide", &collide, arg("contacts"), arg("level") = "manifold",
-           "Fills `contacts` with everything that touches. `level`: 'pairs', 'boolean', 'distance' "
-           "or 'manifold'.")
+           "Fills `contacts` with all contacts. `level`: 'pairs', 'boolean', 'distance' or "
+           "'manifold'.")
       .def(
           "refresh",
           [](SharedScene& s) { accept(s.working([&] { return s.scene.refresh(); }), "refresh"); },
-          "Brings boxes and partitions up to date now rather than in the next question.")
+          "Brings boxes and partitions up to date now rather than in the next query.")
       .def("set_predicate", &set_predicate, arg("predicate"),
-           "`predicate(first, second)` has the last word on each pair of bodies, by id, that their "
-           "filters let meet; None: all do. It is called from any thread that works, one at a "
-           "time, for each needs the GIL: some microseconds a pair. Layers (`set_layers_meet`) and "
-           "`set_ignored` take none of that. It answers the same each time, for it is not asked in "
-           "each frame: set it again to have it asked anew. It asks winnow nothing (unsupported). "
-           "What it raises, `collide` and sweeps raise; contacts that were to be filled forget "
-           "everything. None lets go of it, which a scene that it knows waits for.")
-      .def_property_readonly("predicate", &predicate_of, "What was set.")
+           "Sets `predicate(first, second)`, which decides for each pair of bodies, by id, that "
+           "their filters allow; None accepts all. Calls come from any working thread, one at a "
+           "time, because each needs the GIL: some microseconds a pair. Layers (`set_layers_meet`) "
+           "and `set_ignored` have no such cost. It must return the same result each time, because "
+           "it is not called in each frame: set it again to have all pairs tested again. It must "
+           "not call winnow (unsupported). `collide` and sweeps raise its exceptions; contacts "
+           "that they were to fill are cleared. Set None to release it: needed if it refers to the "
+           "scene.")
+      .def_property_readonly("predicate", &predicate_of, "The current predicate.")
       .def_property_readonly(
           "origin",
           [](const SharedScene& s) {
@@ -415,9 +416,9 @@ void add_scene(py::module_& module) {
       py::kw_only(), arg("fixed") = 0, arg("dynamic") = 0, arg("sleeping") = 0, arg("pairs") = 0,
       arg("touching") = 0, arg("manifolds") = 0, arg("points") = 0, arg("level") = "manifold",
       arg("contacts") = py::none(), arg("touch") = false,
-      "Makes ready the memory that a first `collide` of so many bodies of convex shapes takes, "
-      "which find so many pairs by their boxes, of which so many touch; `contacts` get room for "
-      "these, their manifolds and points. `touch` writes to each page.");
+      "Reserves the memory for a first `collide` with these numbers of bodies of convex shapes, of "
+      "pairs whose boxes overlap, and of touching pairs; `contacts` reserves for these, their "
+      "manifolds and points. `touch` writes to each page.");
   add_meetings(module, scene);
   add_sweeps(module, scene);
   add_scene_queries(module, scene);

@@ -26,7 +26,7 @@ inline constexpr Choices<Motion, kMotions> kMotionNames{
 
 using HeldContacts = Exported<Contacts>;
 
-/// A scene as several threads of Python may use it. Its lock is taken before that of the shapes.
+/// A scene that several Python threads may use. Its lock is acquired before the lock of the shapes.
 class SharedScene : public NeedsInit {
  public:
   SharedScene(std::shared_ptr<SharedShapes> shapes_in, const SceneOptions& options,
@@ -37,17 +37,16 @@ class SharedScene : public NeedsInit {
         scene(recorder.get(), shapes->pool, shapes->composites, options),
         held(shapes) {}
 
-  /// What one thread asks with: one that waits, or another.
+  /// Returns a query object for one thread: an unused one, or a new one.
   [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
-  /// It waits for the next question, if there is memory for that.
+  /// Returns a query object for later use; frees it if memory is refused.
   void put_queries(std::unique_ptr<RecordableQueries> queries) noexcept;
-  /// Exchanges the predicate for another one, or none. Under the mutex; the one before is let go of
-  /// outside of it.
+  /// Swaps the predicate. Requires the mutex; the caller releases the old predicate without it.
   void exchange_predicate(std::shared_ptr<Predicate>& other);
-  /// Null if there is none. Under the mutex, shared or not.
+  /// Null if there is none. Requires the mutex, shared or not.
   [[nodiscard]] std::shared_ptr<Predicate> predicate() const noexcept { return predicate_; }
-  /// As `changing`, for work that may ask the predicate and support functions, for which shapes
-  /// stay as they are; raises what those raise.
+  /// As `changing`, for work that may call the predicate and support functions; shapes do not
+  /// change meanwhile. Raises the exceptions of these functions.
   template <typename Work>
   auto working(Work&& work) {
     return shapes->raised.during([&] {
@@ -58,7 +57,7 @@ class SharedScene : public NeedsInit {
         if (asked) asked->begin();
         auto made = work();
         if (asked && asked->has_failed()) {
-          // It is to be asked about all pairs anew.
+          // Set again, so that the next call applies it to all pairs.
           scene.set_predicate(pair_predicate(*asked));
           failed = asked;
         }
@@ -75,9 +74,9 @@ class SharedScene : public NeedsInit {
   Execution execution;
   mutable std::shared_mutex mutex;
   RecordableScene scene;
-  /// Made by the first sweep; asked while nobody else has the mutex.
+  /// Created by the first sweep; used with the mutex.
   std::optional<RecordableSweep> sweep;
-  /// Something has changed since boxes and partitions were brought up to date.
+  /// The scene has changed since its last refresh.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
   /// Shapes of its bodies.
@@ -89,21 +88,21 @@ class SharedScene : public NeedsInit {
   std::vector<std::unique_ptr<RecordableQueries>> queries_;
 };
 
-/// What scenes and clusters of scenes are made with.
+/// Options shared by scenes and clusters of scenes.
 [[nodiscard]] SceneOptions scene_options(double margin, const std::string& tier,
                                          const std::vector<std::string>& structures, bool parallel);
 
 using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
 
-/// Columns of contacts.
+/// Adds Contacts.
 void add_contacts(py::module_& module);
-/// Which bodies meet, and which contacts hang together.
+/// Adds pair filters, offsets, and groups of contacts.
 void add_meetings(py::module_& module, SceneClass& scene);
-/// What bodies meet on their way from frame to frame.
+/// Adds sweeps.
 void add_sweeps(py::module_& module, SceneClass& scene);
-/// Volumes that tell which bodies are in them.
+/// Adds Sensors.
 void add_sensors(py::module_& module);
-/// Questions to the exact shapes.
+/// Adds queries of the exact shapes.
 void add_scene_queries(py::module_& module, SceneClass& scene);
 
 }  // namespace winnow::python

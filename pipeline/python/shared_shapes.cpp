@@ -1,4 +1,4 @@
-// Convex shapes, and what holds of all.
+// The class Shapes: convex shapes, and calls that apply to all shapes.
 
 #include "pipeline/python/shared_shapes.h"
 
@@ -39,7 +39,7 @@ void HeldShapes::clear() {
 
 namespace {
 
-/// Uses by compounds.
+/// Returns the uses of shapes by compounds.
 [[nodiscard]] ShapeUses uses_of(const CompositePool& composites) {
   ShapeUses uses;
   std::size_t left = composites.size(CompositeKind::compound);
@@ -61,7 +61,7 @@ Status SharedShapes::load(std::span<const std::byte> convex, std::span<const std
   for (const auto& [bits, count] : uses_) {
     if (count != by_compounds[bits]) return Status::invalid_key;
   }
-  // Both are read beside, so that neither is taken alone.
+  // Both are read into separate pools first, so that both are loaded or none.
   ShapePool read;
   CompositePool made(read);
   Status status = read.load(convex);
@@ -117,7 +117,7 @@ using Shapes = SharedShapes;
 
 // --- convex shapes -----------------------------------------------------------------------------
 
-/// Adds `count` shapes, the i-th of which `make` gives: all or none.
+/// Adds `count` shapes, all or none; make(i) returns the i-th.
 template <typename Make>
 [[nodiscard]] py::array add_all(Shapes& shapes, std::size_t count, const char* call, Make&& make) {
   auto ids = fresh<std::uint32_t>(count);
@@ -135,7 +135,7 @@ template <typename Make>
   return ids;
 }
 
-/// Numbers that belong together, of which one may stand for all: those that do not say how many.
+/// Returns the common number of entries; columns that have a single entry are repeated.
 [[nodiscard]] std::size_t agree(std::initializer_list<Numbers*> columns) {
   std::size_t count = 1;
   for (const Numbers* column : columns) {
@@ -167,7 +167,7 @@ template <typename Make>
   });
 }
 
-/// Cylinders and cones have the same measures.
+/// Adds cylinders or cones, which have the same parameters.
 template <typename Shape>
 [[nodiscard]] py::array add_turned(Shapes& shapes, py::handle radii, py::handle halves,
                                    py::handle roundings) {
@@ -313,7 +313,7 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
   return py::make_tuple(lower, upper);
 }
 
-/// Where each ray enters its shape.
+/// The point at which each ray enters its shape.
 struct RayHits : EmptyIfZero {
   py::array hit;
   py::array t;
@@ -359,8 +359,8 @@ struct RayHits : EmptyIfZero {
 void add_convex(ShapesClass& type) {
   using py::arg;
   type.def("add_spheres", &add_spheres, arg("radius"),
-           "Adds n spheres: radii (n,), or one. Gives their ids, (n,) uint32, as all of these do. "
-           "Lengths are finite and >= 0.")
+           "Adds n spheres: radii (n,), or one. Returns their ids, (n,) uint32, as all of these "
+           "do. Lengths are finite and >= 0.")
       .def("add_capsules", &add_capsules, arg("radius"), arg("half_length"),
            "Adds n capsules about segments |z| <= half_length: (n,) each, or one for all.")
       .def("add_boxes", &add_boxes, arg("half"), arg("rounding") = 0.0,
@@ -385,39 +385,40 @@ void add_convex(ShapesClass& type) {
            "(n, 2), or (2,) for all, and half lengths (n,) or one for all.")
       .def("add_hull", &add_hull, arg("points"), arg("rounding") = 0.0, arg("indices") = py::none(),
            arg("sizes") = py::none(),
-           "Adds the convex hull of points (n, 3) and gives its id. With `indices` (m,) and "
-           "`sizes` (f,), face i is the next sizes[i] of the indices, counter-clockwise seen from "
-           "outside; without, the hull is found.");
+           "Adds the convex hull of points (n, 3) and returns its id. With `indices` (m,) and "
+           "`sizes` (f,), face i is the next sizes[i] of the indices, counter-clockwise as seen "
+           "from outside; without them, the hull is computed.");
 }
 
 }  // namespace
 
 void add_shapes(py::module_& module) {
   using py::arg;
-  py::class_<RayHits>(module, "RayHits", "Where each ray enters its shape.")
-      .def_readonly("hit", &RayHits::hit, "Whether it does, (n,) bool.")
+  py::class_<RayHits>(module, "RayHits", "Points at which rays enter their shapes.")
+      .def_readonly("hit", &RayHits::hit, "True if the ray hits, (n,) bool.")
       .def_readonly("t", &RayHits::t,
-                    "In units of the direction, 0 inside, infinity without a hit: (n,) float64.")
-      .def_readonly("normal", &RayHits::normal, "Unit, outward, against the ray: (n, 3) float64.");
+                    "t in units of the direction, 0 inside, infinity without a hit: (n,) float64.")
+      .def_readonly("normal", &RayHits::normal,
+                    "Unit normal, outward, against the ray: (n, 3) float64.");
   ShapesClass type(module, "Shapes",
                    "Shapes by id, for scenes and the narrow phase: convex ones, added many at a "
                    "time, and meshes, height fields and compounds. Any number of threads and "
                    "scenes may use it.");
-  type.def(py::init([] { return std::make_shared<Shapes>(); }), "No shapes.");
+  type.def(py::init([] { return std::make_shared<Shapes>(); }), "An empty pool.");
   add_convex(type);
   add_support(type);
   add_composites(type);
   type.def("remove", &remove_shapes, arg("shapes"),
-           "Takes shapes (n,) out, all or none: invalid_key for those that bodies of a scene or "
-           "compounds are made of.")
-      .def("contains", &contains, arg("shapes"), "Which ids (n,) are there: (n,) bool.")
+           "Removes shapes (n,), all or none: invalid_key for shapes that bodies of a scene or "
+           "compounds use.")
+      .def("contains", &contains, arg("shapes"), "True for ids (n,) of existing shapes: (n,) bool.")
       .def("bounds", &bounds, arg("shapes"), arg("poses"),
            "Boxes (lower, upper), (n, 3) float32 each, of shapes (n,), or one for all, at poses: "
            "(n, 7) of x, y, z and a quaternion w, x, y, z; (n, 3); or a tuple of both.")
       .def("cast_rays", &cast_rays, arg("shapes"), arg("poses"), arg("origins"), arg("directions"),
            arg("max_t") = std::numeric_limits<double>::infinity(),
-           "Where n rays enter n convex shapes (n,) at poses (n, 7): origins and directions (n, 3) "
-           "or (3,), max_t (n,) or one for all.")
+           "Casts n rays against n convex shapes (n,) at poses (n, 7): origins and directions (n, "
+           "3) or (3,), max_t (n,) or one for all.")
       .def(
           "footprint",
           [](const Shapes& shapes) {

@@ -21,10 +21,10 @@
 
 namespace winnow::python {
 
-/// How often each shape is used, by the bits of its id.
+/// Number of uses of each shape, by the bits of its id.
 using ShapeUses = std::unordered_map<std::uint32_t, std::uint32_t>;
 
-/// A support function of Python's, and where what it raises is kept.
+/// A Python support function, and the store for its exceptions.
 class SupportCallback {
  public:
   SupportCallback(py::object function, double radius, Raised& raised)
@@ -42,8 +42,8 @@ class SupportCallback {
 };
 using SupportFunctions = std::unordered_map<std::uint32_t, std::unique_ptr<SupportCallback>>;
 
-/// Convex and composite shapes as several threads and scenes may use them. None is removed while a
-/// compound or a body is made of it.
+/// Convex and composite shapes that several threads and scenes may use. A shape cannot be removed
+/// while a compound or a body uses it.
 class SharedShapes : public NeedsInit {
  public:
   [[nodiscard]] bool contains(ShapeId id) const noexcept {
@@ -53,26 +53,26 @@ class SharedShapes : public NeedsInit {
     return id.is_composite() ? composites.bounds(id, pose) : pool.bounds(id, pose);
   }
 
-  /// One use more or less of each. Under the mutex, shared or not.
+  /// Changes the number of uses of each shape by `change`. Requires the mutex, shared or not.
   void use(std::span<const ShapeId> shapes, int change);
   void use(const ShapeUses& shapes, int change);
   [[nodiscard]] bool is_used(ShapeId id) const;
-  /// Becomes what was saved: `invalid_key` while anything but compounds uses shapes. Under the
+  /// Loads a snapshot; `invalid_key` while anything except compounds uses shapes. Requires the
   /// mutex.
   [[nodiscard]] Status load(std::span<const std::byte> convex,
                             std::span<const std::byte> composite);
-  /// No shape is removed, nor others loaded, while there are such users.
+  /// While there are pins, no shape is removed and no snapshot is loaded.
   void pin(int change) noexcept { pins_ += change; }
 
   mutable std::shared_mutex mutex;
   ShapePool pool;
   CompositePool composites{pool};
-  /// Grows with each change in place: scenes look at their bodies anew.
+  /// Incremented by each change in place; scenes then refresh their bodies.
   std::atomic<std::uint64_t> revision{0};
-  /// Functions of shapes that have one, by the bits of their ids. Changed under the mutex, and let
-  /// go of outside of it.
+  /// Support functions of shapes, by the bits of their ids. Changed with the mutex; functions are
+  /// released without it.
   SupportFunctions supports;
-  /// By those.
+  /// Exceptions of these functions.
   mutable Raised raised;
 
  private:
@@ -81,13 +81,13 @@ class SharedShapes : public NeedsInit {
   ShapeUses uses_;
 };
 
-/// As `reading`, and raises what support functions raise meanwhile.
+/// As `reading`, and raises exceptions of support functions.
 template <typename Body>
 auto reading_shapes(const SharedShapes& shapes, Body&& body) {
   return shapes.raised.during([&] { return reading(shapes.mutex, body); });
 }
 
-/// Uses of shapes by the bodies of a scene, or by sensors, which end with this.
+/// Uses of shapes by the bodies of a scene, or by sensors; the destructor ends them.
 class HeldShapes {
  public:
   explicit HeldShapes(std::shared_ptr<SharedShapes> shapes) noexcept : shapes_(std::move(shapes)) {}
@@ -95,9 +95,10 @@ class HeldShapes {
   HeldShapes(const HeldShapes&) = delete;
   HeldShapes& operator=(const HeldShapes&) = delete;
 
-  /// One use more or less of each. Under the mutex of the shapes, shared or not.
+  /// Changes the number of uses of each shape by `change`. Requires the mutex of the shapes, shared
+  /// or not.
   void use(std::span<const ShapeId> ids, int change);
-  /// None is used any more.
+  /// Ends all uses.
   void clear();
 
  private:
@@ -107,14 +108,14 @@ class HeldShapes {
 
 using ShapesClass = py::class_<SharedShapes, std::shared_ptr<SharedShapes>>;
 
-/// Ids of shapes: an array, read where it lies if it is of uint32 in one piece, or one for all.
+/// Ids of shapes: an array, read in place if it is of uint32 and contiguous, or one id for all.
 class ShapeInput {
  public:
   explicit ShapeInput(py::handle object, const char* name = "shapes");
-  /// Throws a size_mismatch unless it is one for all or there are so many.
+  /// Throws a size_mismatch unless there is one id for all or `count` ids.
   void expect(std::size_t count) const;
   [[nodiscard]] ShapeId operator[](std::size_t i) const noexcept { return {ids_[is_one_ ? 0 : i]}; }
-  /// So many, in `room` if it is one for all.
+  /// Returns `count` ids; repeats a single id in `room`.
   [[nodiscard]] std::span<const ShapeId> list(std::size_t count, std::vector<ShapeId>& room) const;
 
  private:

@@ -1,4 +1,4 @@
-// Snapshots as bytes: of partitions, shapes, scenes and contacts.
+// Snapshots of partitions, shapes, scenes and contacts as bytes.
 
 #include "pipeline/python/snapshots.h"
 #include <winnow/core/large_pages.h>
@@ -13,7 +13,7 @@
 namespace winnow::python {
 namespace {
 
-/// The bytes that save(column) appends, while nobody changes what it saves.
+/// Returns the bytes that save(column) appends, with shared access to the saved object.
 template <typename Save>
 [[nodiscard]] py::bytes saved_by(std::shared_mutex& mutex, const char* call, Save&& save) {
   Column<std::byte> out(default_memory());
@@ -28,7 +28,7 @@ template <typename Save>
   });
 }
 
-/// Of two snapshots one after the other, where the second begins: the header of the first tells.
+/// Returns the end of the first of two concatenated snapshots, from the size in its header.
 [[nodiscard]] std::size_t end_of_first(std::span<const std::byte> both) noexcept {
   constexpr std::size_t kHeader = 32;
   std::uint64_t size = 0;
@@ -97,12 +97,12 @@ void add_partition_snapshots(PartitionClass& partition) {
       .def(
           "save",
           [](const SharedPartition& p) {
-            // It may have updates to write first.
+            // Needs exclusive access: deferred updates may have to be written first.
             Column<std::byte> out(default_memory());
             accept(changing(p.mutex, [&] { return p.partition->save(out); }), "save");
             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
           },
-          "All that the objects are, and the structure with its options, as bytes.")
+          "Saves all objects, and the structure with its options, as bytes.")
       .def(
           "load",
           [](SharedPartition& p, const py::buffer& data) {
@@ -112,16 +112,15 @@ void add_partition_snapshots(PartitionClass& partition) {
             p.count_changes(p.partition->size());
           },
           arg("data"),
-          "Becomes what was saved. Keys are those that were saved, unless another partition of the "
-          "process has them: `keys_of` tells.");
+          "Loads a snapshot. Saved keys stay valid, unless another partition of the process has "
+          "them: see `keys_of`.");
 }
 
 void add_shape_snapshots(ShapesClass& shapes) {
-  shapes.def("save", &save_shapes, "All shapes and which places are free, as bytes.")
-      .def(
-          "load", &load_shapes, py::arg("data"),
-          "Becomes what was saved, with the same ids. invalid_key while bodies of a scene are made "
-          "of shapes of this: clear the scene, load both.");
+  shapes.def("save", &save_shapes, "Saves all shapes and the free ids, as bytes.")
+      .def("load", &load_shapes, py::arg("data"),
+           "Loads a snapshot, with the same ids. invalid_key while bodies of a scene use shapes of "
+           "this pool: clear the scene, load both.");
 }
 
 void add_scene_snapshots(SceneClass& scene) {
@@ -133,15 +132,15 @@ void add_scene_snapshots(SceneClass& scene) {
             return saved_by(s.mutex, "save",
                             [&](Column<std::byte>& out) { return s.scene->save(out); });
           },
-          "All that bodies are, and what the scene was made with, as bytes. Shapes are saved "
-          "beside.")
+          "Saves all bodies, and the options of the scene, as bytes. Shapes are saved separately.")
       .def("load", &load_scene, arg("data"),
-           "Becomes what was saved, of shapes that were loaded before, and goes on bit for bit. "
-           "Contacts that were filled before are strangers from then on.")
+           "Loads a snapshot, after its shapes were loaded; results then continue bit for bit. "
+           "Contacts that were filled before belong to another scene from then on.")
       .def("save_contacts", &save_contacts, arg("contacts"),
-           "What contacts that this scene filled last show and remember, as bytes.")
+           "Saves the results and records of contacts that this scene filled last, as bytes.")
       .def("load_contacts", &load_contacts, arg("data"), arg("contacts"),
-           "`contacts` become those that were saved of this scene as it stands.");
+           "Loads saved contacts into `contacts`; the scene must be in the state in which they "
+           "were saved.");
 }
 
 }  // namespace winnow::python

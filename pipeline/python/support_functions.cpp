@@ -1,4 +1,4 @@
-// Convex shapes that a function of Python's describes.
+// Convex user shapes, described by a Python support function.
 
 #include "pipeline/python/shared_shapes.h"
 
@@ -23,7 +23,7 @@ void SupportCallback::ask(const void* context, const double direction[3], double
       },
       [&] {
         self.raised_.keep();
-        // Of the ball around everything: boxes that were made meanwhile are none too small.
+        // The point on the bounding ball: boxes that are computed meanwhile are not too small.
         for (int axis = 0; axis < 3; ++axis) point[axis] = self.radius_ * direction[axis];
       });
 }
@@ -59,15 +59,15 @@ namespace {
 void add_support(ShapesClass& type) {
   using py::arg;
   type.def("add_support", &add_one, arg("function"), arg("radius"), arg("rounding") = 0.0,
-           "Adds a convex shape of your own and gives its id. `function(direction)` takes a unit "
-           "vector, (3,) float64, and gives a point of the shape, three numbers, that is farthest "
-           "along it, no farther from the origin than `radius`; `rounding` is added outside. The "
-           "same direction gets the same point. It is asked from any thread that works, one at a "
-           "time, for each needs the GIL: some microseconds a call, and about ten calls a pair. It "
-           "asks winnow nothing (unsupported). What it raises is raised by all calls with these "
-           "shapes that are under way; contacts that were to be filled forget everything. "
-           "invalid_shape where what it answers is not finite, beyond the radius or not convex. "
-           "Pools with such shapes are not saved (unsupported).");
+           "Adds a convex user shape and returns its id. `function(direction)` is the support "
+           "function: it takes a unit vector, (3,) float64, and returns a point of the shape, "
+           "three numbers, that is farthest in this direction, at most `radius` from the origin; "
+           "`rounding` is added outside. The same direction must give the same point. Calls come "
+           "from any working thread, one at a time, because each needs the GIL: some microseconds "
+           "a call, and about ten calls a pair. It must not call winnow (unsupported). Its "
+           "exceptions are raised by all calls in progress that use such shapes; contacts that "
+           "they were to fill are cleared. invalid_shape if a result is not finite, beyond the "
+           "radius or not convex. Pools with such shapes cannot be saved (unsupported).");
 }
 
 }  // namespace winnow::python

@@ -1,4 +1,4 @@
-// What bodies of a scene meet on their way from frame to frame.
+// Sweeps of a scene: impacts of moving bodies between two frames.
 
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/entry_columns.h"
@@ -35,10 +35,10 @@ struct ImpactTable : EmptyIfZero {
   py::array first;
 };
 
-/// Options as Python has them, with what they point to.
+/// Sweep options with the arrays that they point to.
 class SweepInput {
  public:
-  /// Of `count` bodies that move.
+  /// `count`: of moving bodies.
   SweepInput(std::size_t count, const std::string& pairs, py::handle bullets, double tolerance,
              bool touching, bool first_only)
       : options_{chosen(kSweepPairs, pairs, "pairs"), {}, tolerance, touching, first_only} {
@@ -79,7 +79,7 @@ class SweepInput {
           given(std::move(first))};
 }
 
-/// The impacts of a sweep that ask(sweep) makes.
+/// Returns the impacts of the sweep that ask(sweep) runs.
 template <typename Ask>
 [[nodiscard]] ImpactTable swept(SharedScene& s, const char* call, Ask&& ask) {
   std::vector<SceneImpact> impacts;
@@ -123,22 +123,23 @@ template <typename Ask>
 void add_table(py::module_& module) {
   using Table = ImpactTable;
   py::class_<Table>(module, "SceneImpacts",
-                    "Bodies that meet on their way, by time, then by the ids of a and b.")
+                    "Impacts of moving bodies, sorted by time, then by the ids of a and b.")
       .def_readonly("a", &Table::a, "Keys of the bodies with the smaller ids, (m,) uint64.")
       .def_readonly("b", &Table::b, "Keys of the others, (m,) uint64.")
       .def_readonly("data_a", &Table::data_a, "Client data of a, (m,) uint64.")
       .def_readonly("data_b", &Table::data_b, "Client data of b, (m,) uint64.")
       .def_readonly("part_a", &Table::part_a,
-                    "Triangle or child of a, WHOLE_SHAPE of convex bodies: (m,) uint32.")
-      .def_readonly("part_b", &Table::part_b, "The same of b.")
+                    "Triangle or child of a, WHOLE_SHAPE for convex bodies: (m,) uint32.")
+      .def_readonly("part_b", &Table::part_b, "Triangle or child of b, as part_a.")
       .def_readonly("time", &Table::time,
-                    "In [0, 1], never late: before it the two are apart. (m,) float64.")
+                    "Time in [0, 1], never late: before it the two are apart. (m,) float64.")
       .def_readonly("gap", &Table::gap,
-                    "At that time; negative by the depth of bodies that overlap at the start: "
-                    "(m,) float64.")
-      .def_readonly("error_bound", &Table::error_bound, "Of the gap, (m,) float64.")
-      .def_readonly("normal", &Table::normal, "Unit, from a to b, at that time: (m, 3) float64.")
-      .def_readonly("point", &Table::point, "Of a at that time, in the world: (m, 3) float64.")
+                    "Gap at that time; negative if the bodies overlap at the start: (m,) float64.")
+      .def_readonly("error_bound", &Table::error_bound, "Error bound of the gap, (m,) float64.")
+      .def_readonly("normal", &Table::normal,
+                    "Unit vector from a to b, at that time: (m, 3) float64.")
+      .def_readonly("point", &Table::point,
+                    "Point on a at that time, in the world: (m, 3) float64.")
       .def_readonly("first", &Table::first,
                     "By moving body, the number of its first impact, or NO_IMPACT: (n,) uint32.");
 }
@@ -153,21 +154,21 @@ void add_sweeps(py::module_& module, SceneClass& scene) {
       .def("sweep", &sweep, arg("keys"), arg("ends"), py::kw_only(), arg("pairs") = "all",
            arg("bullets") = py::none(), arg("tolerance") = 1e-6, arg("touching") = true,
            arg("first_only") = false,
-           "What bodies (n,) meet on their way from where they are to their ends, poses as in "
-           "`add`, turning by the shorter way; positions (n, 3) alone do not turn. All others "
-           "stand, and nothing is moved: SceneImpacts, the first of each pair of bodies. `pairs`: "
-           "'all', 'fixed' (with fixed bodies), 'bullets' (of those, (n,) bool, with all), or "
-           "'bullets_and_fixed'. `tolerance` as in `time_of_impact`. `touching` false leaves out "
-           "bodies that share a point at the start; `first_only` looks for the first impact of "
-           "each moving body alone. size_mismatch; invalid_key, also for a key that occurs twice; "
-           "invalid_pose for an end that is none or too far away; invalid_argument for bad "
-           "options. O(n log n) and about log of all bodies for each, and `time_of_impact` for "
-           "each pair whose boxes meet.")
+           "Finds the impacts of bodies (n,) that move from their poses to `ends`, poses as in "
+           "`add`, by the shorter rotation; with positions (n, 3) only they do not turn. All other "
+           "bodies stay in place, and the scene does not change. Returns SceneImpacts: the first "
+           "impact of each pair of bodies. `pairs`: 'all', 'fixed' (with fixed bodies), 'bullets' "
+           "(of these, (n,) bool, with all), or 'bullets_and_fixed'. `tolerance` as in "
+           "`time_of_impact`. `touching` false leaves out bodies that touch at the start; "
+           "`first_only` finds only the first impact of each moving body. size_mismatch; "
+           "invalid_key, also for a key that is given twice; invalid_pose for an end that is "
+           "invalid or too far away; invalid_argument for bad options. O(n log n) and about log of "
+           "all bodies for each, and `time_of_impact` for each pair whose boxes overlap.")
       .def("sweep_motions", &sweep_motions, arg("keys"), arg("motions"), py::kw_only(),
            arg("pairs") = "all", arg("bullets") = py::none(), arg("tolerance") = 1e-6,
            arg("touching") = true, arg("first_only") = false,
-           "The same of any motions (n, 13), such as `motions_by_velocities` gives; each starts "
-           "where it says.");
+           "As `sweep`, for any motions (n, 13), such as those of `motions_by_velocities`; each "
+           "starts at its own pose.");
 }
 
 }  // namespace winnow::python

@@ -12,7 +12,7 @@
 
 namespace winnow::python {
 
-// Volumes of float that hold what is given in double.
+// Volumes in float that contain volumes given in double.
 
 [[nodiscard]] inline Vec3f point_at(const Numbers& numbers, std::size_t i) {
   Vec3f point;
@@ -22,7 +22,7 @@ namespace winnow::python {
   return point;
 }
 
-/// How far the point in float is from the one given, or a little more.
+/// Upper bound on the distance of the point in float from the given one.
 [[nodiscard]] inline double off_point_at(const Numbers& numbers, std::size_t i) {
   const Vec3f point = point_at(numbers, i);
   double square = 0.0;
@@ -33,7 +33,7 @@ namespace winnow::python {
   return std::sqrt(square) * (1.0 + 1e-15);
 }
 
-/// A length that is not smaller than the sum; what is no length stays none.
+/// Returns an upper bound of the sum; a length that is negative or NaN stays as it is.
 [[nodiscard]] inline float grown(double length, double by) {
   return round_up(length >= 0.0 && by > 0.0 ? add_up(length, by) : length);
 }

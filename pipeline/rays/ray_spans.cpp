@@ -1,3 +1,6 @@
+// Spans of a ray within balls, capsules, infinite cylinders and prisms, and their unions
+// (FirstEntry) and intersections. The ray tests in shape_entries.cpp are built from them.
+
 #include "pipeline/rays/shape_entries.h"
 
 #include <Eigen/Geometry>
@@ -8,7 +11,8 @@
 namespace winnow {
 namespace {
 
-/// Slower than this share of its speed, a ray is parallel to a plane or an axis.
+/// A ray counts as parallel to a plane or axis if its rate of approach is below this fraction of
+/// its speed.
 constexpr double kParallelRate = 1e-15;
 
 [[nodiscard]] Eigen::Vector3d unit_or_zero(const Eigen::Vector3d& v) noexcept {
@@ -16,14 +20,14 @@ constexpr double kParallelRate = 1e-15;
   return length > 0.0 ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
 }
 
-/// The direction out of a round set of points, if its radius is not nothing.
+/// Normalises the offset from a round set's centre; zero if the radius is negligible.
 [[nodiscard]] Eigen::Vector3d outward(const Eigen::Vector3d& v) noexcept {
   const double length = v.stableNorm();
   return length > kGrazing ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
 }
 
-/// Where offset + t * velocity is no longer than the radius. Taken at the nearest approach, where
-/// the difference of squares is a product and does not cancel.
+/// The t for which |offset + t * velocity| <= radius. Computed from the closest approach, where the
+/// difference of squares is a product and does not cancel.
 [[nodiscard]] RaySpan round_span(const Eigen::Vector3d& offset, const Eigen::Vector3d& velocity,
                                  double radius) noexcept {
   const double square = velocity.squaredNorm();
@@ -50,7 +54,8 @@ void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
   const double rate = normal.dot(ray_.direction);
   const double height = normal.dot(ray_.origin) - offset;
   if (std::fabs(rate) <= kParallelRate * ray_.speed) {
-    // A rate of exactly zero comes of axes that need no rounding: then heights are exact, too.
+    // The rate is exactly zero only for axis-aligned normals, which need no rounding; then the
+    // height is exact, too.
     if (height > (rate == 0.0 ? 0.0 : kGrazing)) span_ = RaySpan{};
     return;
   }
@@ -76,7 +81,9 @@ RaySpan capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen:
   const Eigen::Vector3d velocity = ray.direction - along * axis;
   const Eigen::Vector3d offset = ray.origin - a - begin * axis;
   RaySpan span;
-  double first = along > 0.0 ? -1.0 : length + 1.0;  // where it enters and leaves, along the axis
+  double first = along > 0.0
+                     ? -1.0
+                     : length + 1.0;  // positions along the axis where the ray enters and leaves
   double last = length - first;
   if (velocity.norm() > kParallelRate * ray.speed) {
     span = round_span(offset, velocity, radius);
@@ -86,7 +93,8 @@ RaySpan capsule_span(const LocalRay& ray, const Eigen::Vector3d& a, const Eigen:
   } else if (offset.norm() > radius + kGrazing) {
     return span;
   }
-  // An infinite cylinder that is entered beyond an end is entered by way of the ball there.
+  // If the ray enters the infinite cylinder beyond an end of the segment, it enters the capsule
+  // through the ball at that end.
   if (!(first >= 0.0 && first <= length)) {
     const RaySpan ball = ball_span(ray, first < 0.0 ? a : b, radius);
     if (ball.is_empty()) return {};
@@ -116,7 +124,7 @@ RaySpan common(const RaySpan& a, const RaySpan& b) noexcept {
 
 namespace {
 
-/// The slab of a polygon's extent along its longest side, a grazing distance wider.
+/// The slab of a polygon's extent along its longest side, widened by the grazing tolerance.
 RaySpan length_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices) noexcept {
   Eigen::Vector3d longest = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -151,7 +159,8 @@ RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertice
     clip.below(side, side.dot(a));
     if (clip.span().is_empty()) return {};
   }
-  // The sides of a sliver are parallel, as far as double can tell, and do not end it.
+  // The side planes of a sliver are parallel to working precision, so that they do not bound it
+  // along its length.
   return common(clip.span(), length_span(ray, vertices));
 }
 

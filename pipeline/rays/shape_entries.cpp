@@ -1,3 +1,7 @@
+// Entry of a ray into each kind of convex shape except ellipsoids and user shapes
+// (support_entries.cpp). Sharp shapes are clipped in closed form; rounded cylinders, cones and
+// tapered capsules use Newton's method on the distance to the core. Called by shape_rays.cpp.
+
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/shapes/accurate_cross.h"
 #include "pipeline/shapes/hypotenuse.h"
@@ -12,13 +16,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far a point is from a core, and the direction away from it (zero inside).
+/// Distance of a point from a core, and the direction away from it (zero inside).
 struct Clearance {
   double distance = 0.0;
   Vector3d away = Vector3d::Zero();
 };
 
-/// From the distances out of a core of revolution, along the radius and along z.
+/// Clearance from a solid of revolution, given its components along the radius and along z.
 [[nodiscard]] Clearance clearance(const Vector3d& p, double radial, double axial) noexcept {
   const double rho = hypotenuse(p.x(), p.y());
   const double distance = hypotenuse(radial, axial);
@@ -49,7 +53,8 @@ struct ConeCore {
   double radius;
   double half_length;
   double slant;
-  // Of half the angle at the apex: the outward normal of the side is (cosine, sine) in (rho, z).
+  // Sine and cosine of half the apex angle. The outward normal of the side is (cosine, sine) in
+  // (rho, z).
   double sine;
   double cosine;
 
@@ -65,7 +70,7 @@ struct ConeCore {
     return clearance(p, cosine * height, sine * height);
   }
 
-  /// The normal of the base or the side, at a point of its surface that is entered along
+  /// The outward normal of the base or the side at a point of the surface where a ray enters along
   /// `direction`.
   [[nodiscard]] Vector3d outward(const Vector3d& p, const Vector3d& direction) const noexcept {
     const double rho = hypotenuse(p.x(), p.y());
@@ -78,8 +83,8 @@ struct ConeCore {
   }
 };
 
-/// Two balls on the z axis, neither within the other, and the cone that touches both: negative
-/// inside.
+/// Signed distance (negative inside) from the convex hull of two balls on the z axis, neither of
+/// which contains the other: the balls and the cone tangent to both.
 class TaperSurface {
  public:
   TaperSurface(double low_radius, double high_radius, double h) noexcept
@@ -107,12 +112,14 @@ class TaperSurface {
  private:
   double radius_[2];
   double half_;
-  // Of half the angle at the cone's tip: its outward normal is (cosine, sine) in (rho, z).
+  // Sine and cosine of half the angle at the cone's tip. Its outward normal is (cosine, sine) in
+  // (rho, z).
   double sine_;
   double cosine_;
 };
 
-/// Where a ray crosses the double cone: roots of a quadratic form in (x, y, depth below the apex).
+/// Intersects a ray with the double cone: the roots of a quadratic form in (x, y, depth below the
+/// apex).
 class ConeCrossing {
  public:
   ConeCrossing(const LocalRay& ray, const ConeCore& cone) noexcept
@@ -125,7 +132,7 @@ class ConeCrossing {
     double b = form(o_, d_);
     const double c = form(o_, o_);
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    // Parallel to a line of the side, and in it.
+    // The ray is parallel to a generator of the cone, or lies in its surface.
     if (std::fabs(a) <= kGrazing * speed * speed) a = 0.0;
     if (std::fabs(b) <= kGrazing * speed) b = 0.0;
     if (a == 0.0 && b == 0.0) {
@@ -134,7 +141,7 @@ class ConeCrossing {
     const double discriminant = b * b - a * c;
     if (discriminant < -kGrazing * speed * speed) return {};
     const double root = std::sqrt(std::max(0.0, discriminant));
-    // The root of larger magnitude first: the other one would cancel.
+    // Compute the root of larger magnitude first; computing the other one directly would cancel.
     const double sum = b > 0.0 ? -(b + root) : root - b;
     const double one = a != 0.0 ? sum / a : std::copysign(kInfinity, sum);
     const double other = sum != 0.0 ? c / sum : one;
@@ -144,7 +151,7 @@ class ConeCrossing {
       // One crossing of each nappe.
       return d_.z() > 0.0 ? from(polished(last), kInfinity) : from(-kInfinity, polished(first));
     }
-    // Both on the same nappe.
+    // Both crossings are on the same nappe.
     const double finite = std::isfinite(first) ? first : last;
     if (o_.z() + finite * d_.z() < -kGrazing) return {};
     const double in = polished(first);
@@ -156,7 +163,8 @@ class ConeCrossing {
     return cone_.cosine * cone_.cosine * (u.x() * v.x() + u.y() * v.y()) -
            cone_.sine * cone_.sine * u.z() * v.z();
   }
-  /// Newton's method on the height over the side, which the form has squared.
+  /// Newton's method on the height over the side; the quadratic form has the squared height, with
+  /// half of the digits.
   [[nodiscard]] double polished(double t) const noexcept {
     for (int step = 0; step < 2 && std::isfinite(t); ++step) {
       const Vector3d p = o_ + t * d_;
@@ -186,9 +194,10 @@ class ConeCrossing {
   Vector3d d_;
 };
 
-/// The distance from a convex core is convex along the ray, so Newton's method from before the
-/// entry never passes it: the first point within `rounding` of the core, from t on. Where the ray
-/// grazes, each step halves the rest; the number of steps is what a double can be halved.
+/// Finds the first point within `rounding` of the core, from t on. The distance from a convex core
+/// is a convex function along the ray, so that Newton's method from before the entry never passes
+/// it. If the ray grazes, each step only halves the remaining distance; kMaxSteps allows for
+/// halving a double down to the tolerance.
 template <typename Core>
 void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double t,
                   FirstEntry& entry) noexcept {
@@ -202,8 +211,8 @@ void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double
     const double next = rate < 0.0 ? t - rest / rate : t;
     if (rest <= kGrazing || !(next > t)) {
       if (rest > 2.0 * kGrazing && !(rate < 0.0)) return;
-      // A grazing entry is found to half of the digits only: an entry into a flat part, which is
-      // exact, takes precedence.
+      // A grazing entry has only half of the digits. An entry into a flat part, which is accurate,
+      // takes precedence.
       if (entry.found && !(rate < -1e-6 * ray.speed)) return;
       const bool inside = begins && step == 0 && rest < 0.0;
       entry.meet(ray, {inside ? -kInfinity : t, kInfinity, clear.away});
@@ -268,7 +277,8 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   if (radius == 0.0) return enter_axis(ray, half, rounding);
   FirstEntry entry;
   const ConeCore core(radius, half);
-  // Along a needle or a plate the squares of heights are lost beside those of lengths.
+  // For a needle-like or flat cone, the squared heights of the quadratic form lose their digits
+  // beside squared lengths; use Newton's method on the distance instead.
   constexpr double kPlump = 0.0625;
   if (rounding == 0.0 && std::min(core.sine, core.cosine) < kPlump) {
     const RaySpan around = common(tube_span(ray, radius), slab_span(ray, -half, half));
@@ -288,7 +298,8 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   const RaySpan hull =
       common(tube_span(ray, radius + rounding), slab_span(ray, -half - rounding, half + rounding));
   if (hull.is_empty()) return entry;
-  // Its base, thickened, is what a ray can graze along.
+  // The base, extruded by the rounding: a ray can graze along it, where Newton's method is
+  // inaccurate.
   entry.meet(ray, common(tube_span(ray, radius), slab_span(ray, -half - rounding, -half)));
   meet_rounded(ray, core, rounding, std::max(hull.in, ray.low), entry);
   return entry;
@@ -324,7 +335,7 @@ using Eigen::Vector3d;
   return clip.span();
 }
 
-/// The twelve edges of a box, each with a radius.
+/// The twelve edges of a box, as capsules.
 void meet_box_edges(const LocalRay& ray, const Vector3d& half, double radius,
                     FirstEntry& entry) noexcept {
   for (int k = 0; k < 3; ++k) {
@@ -363,7 +374,7 @@ class ScaledHull {
     }
     return clip.span();
   }
-  /// Points over a face, no higher than `top`.
+  /// The prism over a face, up to height `top`.
   [[nodiscard]] RaySpan over(const LocalRay& ray, const HullFace& face, double top) const noexcept {
     PlaneClip clip(ray);
     const Vector3d up = normal(face);
@@ -407,7 +418,7 @@ FirstEntry enter(const LocalRay& ray, const TriangleShape& triangle, double scal
   FirstEntry entry;
   if (area.stableNorm() > 0.0) {
     entry.meet(ray, prism_span(ray, vertex, area.stableNormalized(), -rounding, rounding));
-    // Edges have no normal of their own, and add nothing to a face that was met.
+    // Edges have no normal of their own; they add nothing if the face is hit.
     if (entry.found && rounding == 0.0) return entry;
   }
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// Where a ray enters a shape: of the convex sets that the shape is made of, the spans of the ray
-// within each, and the first of these.
+// Finds where a ray enters a shape: the shape is a union of convex sets, and the entry is the first
+// of the ray's spans within them. shape_rays.cpp calls `enter` for one shape, after scaling the
+// ray.
 
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
@@ -13,12 +14,11 @@
 
 namespace winnow {
 
-/// As ShapeRay says.
+/// Returns whether the ray satisfies the constraints of ShapeRay.
 [[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept;
 
-/// A ray in the frame of a shape, scaled so that neither the shape nor the distance of `origin` is
-/// much above 1, and one of them is near it. `origin` may have been moved along the ray: the ray
-/// begins at t = low.
+/// A ray in the frame of a shape, scaled so that the larger of the shape's size and the distance of
+/// `origin` is near 1. `origin` may have been moved along the ray: the ray begins at t = low.
 struct LocalRay {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -28,14 +28,15 @@ struct LocalRay {
   [[nodiscard]] Eigen::Vector3d at(double t) const noexcept { return origin + t * direction; }
 };
 
-/// Rays that pass by no farther than this count as grazing: some roundings of a length of 1.
+/// A ray that passes a set at no more than this distance counts as grazing it: a few roundings of a
+/// length of 1.
 inline constexpr double kGrazing = 1e-15;
 
 /// The part of a ray within a convex set. Empty if in > out.
 struct RaySpan {
   double in = std::numeric_limits<double>::infinity();
   double out = -std::numeric_limits<double>::infinity();
-  /// Outward where it enters; zero if there is no such direction.
+  /// Outward normal at the entry; zero if it is undefined.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 
   [[nodiscard]] bool is_empty() const noexcept { return !(in <= out); }
@@ -44,7 +45,8 @@ struct RaySpan {
 /// The first entry into a union of convex sets.
 struct FirstEntry {
   bool found = false;
-  /// The ray begins in one of the sets, t = low; not if it enters right there.
+  /// True if the ray begins inside one of the sets (then t = low); false if it enters exactly at
+  /// its beginning.
   bool inside = false;
   double t = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -52,15 +54,15 @@ struct FirstEntry {
   void meet(const LocalRay& ray, const RaySpan& span) noexcept;
 };
 
-/// Clips a ray by planes. Exits are a grazing distance late, so that rays through edges, or in a
-/// face, are not lost to rounding.
+/// Clips a ray by half-spaces. Exits are moved out by the grazing distance, so that rays through
+/// edges or in a face are not lost to rounding.
 class PlaneClip {
  public:
   explicit PlaneClip(const LocalRay& ray) noexcept : ray_(ray) {
     span_.in = -std::numeric_limits<double>::infinity();
     span_.out = std::numeric_limits<double>::infinity();
   }
-  /// Keeps normal . x <= offset; `normal` is a unit vector.
+  /// Intersects with normal . x <= offset; `normal` is a unit vector.
   void below(const Eigen::Vector3d& normal, double offset) noexcept;
   [[nodiscard]] const RaySpan& span() const noexcept { return span_; }
 
@@ -71,21 +73,21 @@ class PlaneClip {
 
 [[nodiscard]] RaySpan ball_span(const LocalRay& ray, const Eigen::Vector3d& center,
                                 double radius) noexcept;
-/// Points within `radius` of the segment.
+/// The set of points within `radius` of the segment from a to b.
 [[nodiscard]] RaySpan capsule_span(const LocalRay& ray, const Eigen::Vector3d& a,
                                    const Eigen::Vector3d& b, double radius) noexcept;
 /// The infinite cylinder about the z axis.
 [[nodiscard]] RaySpan tube_span(const LocalRay& ray, double radius) noexcept;
-/// Points of both; the normal is that of the later entry.
+/// The intersection; its normal is the normal of the later entry.
 [[nodiscard]] RaySpan common(const RaySpan& a, const RaySpan& b) noexcept;
 
-/// Points that project into a convex polygon, `vertices` counter-clockwise about the unit vector
-/// `normal`, at heights between `bottom` and `top` over the polygon. O(vertices).
+/// The set of points that project into a convex polygon, at heights between `bottom` and `top` over
+/// it. `vertices` are counter-clockwise about the unit vector `normal`. O(vertices).
 [[nodiscard]] RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertices,
                                  const Eigen::Vector3d& normal, double bottom, double top) noexcept;
 
-// Where a ray in a shape's frame enters it. Lengths of the shape count `scale` times (a power of
-// two), as those of the ray already do.
+// Entry of a ray into a shape, in the shape's frame. The shape's lengths are multiplied by `scale`
+// (a power of two); the ray's already are.
 
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const SphereShape& sphere,
                                double scale) noexcept;
@@ -103,7 +105,8 @@ class PlaneClip {
                                double scale) noexcept;
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const TaperedCapsuleShape& taper,
                                double scale) noexcept;
-/// Without rounding as a ray at the unit ball that the ellipsoid is stretched from.
+/// Without rounding: intersects the ray with a unit ball in the space scaled by the radii. With
+/// rounding: conservative advancement.
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid,
                                double scale) noexcept;
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const SupportShape& shape,

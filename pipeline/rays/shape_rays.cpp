@@ -1,3 +1,6 @@
+// cast_ray: moves a ray into a shape's frame, scales both into the range of double, calls `enter`
+// (shape_entries.h) and transforms the hit back.
+
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "core/threads/float_environment.h"
@@ -13,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A power of two that takes a length to [1/2, 1); 1 for none.
+/// The exponent e such that length * 2^-e is in [1/2, 1); 0 if the length is 0.
 [[nodiscard]] int exponent_of(double length) noexcept {
   int exponent = 0;
   if (length > 0.0) std::frexp(length, &exponent);
-  // So that the inverse is a double, too.
+  // Keeps 2^-exponent within the range of double.
   return std::clamp(exponent, -1000, 1000);
 }
 
@@ -60,25 +63,25 @@ using Eigen::Vector3d;
   return std::max(s.radius, s.rounding);
 }
 
-/// A ray relative to a body's position, in the axes of the world, and how to get back: the caller's
-/// t is (shift + local t * 2^stretch) * 2^exponent.
+/// A ray relative to a body's position, in world axes, scaled. The caller's t is (shift + local t *
+/// 2^stretch) * 2^exponent.
 struct RelativeRay {
   Vector3d origin;
   Vector3d direction;
   double shift = 0.0;
   int stretch = 0;
   int exponent = 0;
-  int lengths = 0;  // the shape's lengths count 2^-lengths
+  int lengths = 0;  // the shape's lengths are multiplied by 2^-lengths
 };
 
-/// Scales by powers of two. A ray that begins far from the shape is first moved to where it comes
-/// nearest to the shape's origin, with the errors of differences and products carried along, so
-/// that what remains is as exact as if it had begun there.
+/// Scales the ray by powers of two. If it begins far from the shape, its origin is first moved to
+/// the point of the ray nearest to the shape's origin. The errors of differences and products are
+/// carried along, so that the result is as accurate as for a ray that begins there.
 [[nodiscard]] RelativeRay approach(const ShapeRay& ray, const Pose& pose, double size,
                                    bool may_move) noexcept {
   constexpr double kFar = 8.0;
   const Vector3d direction = Vector3d::Map(ray.direction);
-  // Of all lengths, as the difference of two doubles may not be one.
+  // Lengths are multiplied by this, because the difference of two doubles may overflow.
   constexpr double kQuarter = 0.25;
   const Vector3d from = kQuarter * Vector3d::Map(pose.position);
   const Vector3d to = kQuarter * Vector3d::Map(ray.origin);
@@ -142,7 +145,7 @@ bool is_valid(const ShapeRay& ray) noexcept {
   double rest = 0.0;
   bool moves = false;
   for (int axis = 0; axis < 3; ++axis) {
-    // Less itself, no number but a finite one is zero.
+    // x - x is zero only if x is finite.
     rest += (ray.origin[axis] - ray.origin[axis]) + (ray.direction[axis] - ray.direction[axis]);
     moves |= ray.direction[axis] != 0.0;
   }

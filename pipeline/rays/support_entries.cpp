@@ -1,3 +1,5 @@
+// Ray tests for ellipsoids and user shapes, by conservative advancement with GJK (solver/gjk.h).
+
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/shapes/support_core.h"
 #include "pipeline/solver/gjk.h"
@@ -12,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
-/// How near a point is to a core: a plane that the core is behind, and how far in front of it.
+/// A plane between a point and a core: its normal and the point's distance from it.
 struct Foreground {
   double distance = 0.0;
   Vector3d normal = Vector3d::Zero();
@@ -40,9 +42,10 @@ class SupportTarget {
   solver::Core body_;
 };
 
-/// From plane to plane, each of which a convex core is behind, so that none is passed (van den
-/// Bergen, "Ray casting against general convex objects with application to continuous collision
-/// detection", 2004). Where a ray grazes, each step halves the rest.
+/// Advances the ray from one separating plane to the next; the core is behind each plane, so that
+/// no step passes the entry (van den Bergen, "Ray casting against general convex objects with
+/// application to continuous collision detection", 2004). If a ray grazes, each step only halves
+/// the remaining distance.
 [[nodiscard]] FirstEntry approach_core(const LocalRay& ray, const SupportCore& core,
                                        double scale) noexcept {
   constexpr int kMostSteps = 200;

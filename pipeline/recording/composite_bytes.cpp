@@ -19,7 +19,7 @@ std::span<const float> values_of(const CompositePool& pool, ShapeId id) noexcept
 
 namespace {
 
-/// As a column of them.
+/// Adds corner k of all triangles as if they were an array.
 void add_corners(Digest& digest, const MeshView& view, std::size_t k) noexcept {
   const std::uint32_t count = view.triangle_count;
   for (std::uint32_t slot = 0; slot + 2 <= count; slot += 2) {
@@ -31,7 +31,7 @@ void add_corners(Digest& digest, const MeshView& view, std::size_t k) noexcept {
 
 }  // namespace
 
-// Which edges of a mesh are active follows from the rest.
+// The active edges of a mesh are not included: they follow from the rest.
 CompositeDigests digests_of(const CompositePool& pool, ShapeId id) noexcept {
   Digest digest;
   digest.add(std::uint64_t{id.kind_index()});

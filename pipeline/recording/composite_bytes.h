@@ -1,7 +1,7 @@
 #pragma once
 
-// Composite shapes as recordings have them: what each consists of, its digest, and what changes in
-// place.
+// Composite shapes in recordings: their content, their digest, and what a change in place may
+// change.
 
 #include <winnow/pipeline/composite_pool.h>
 #include "core/memory/byte_stream.h"
@@ -10,19 +10,20 @@
 
 namespace winnow {
 
-/// Of a shape as it stands, and of that part of it which stays where it is changed in place.
+/// Digest of a whole shape, and digest of the part that a change in place does not change.
 struct CompositeDigests {
   std::uint64_t all = 0;
   std::uint64_t form = 0;
 };
 
-/// `id` is there. O(its bytes).
+/// `id` must exist. O(bytes of the shape).
 [[nodiscard]] CompositeDigests digests_of(const CompositePool& pool, ShapeId id) noexcept;
 
-/// Appends a mesh without its scale, or a field, as a snapshot; nothing of a compound.
+/// Appends a mesh without its scale, or a height field, as a snapshot; nothing for a compound.
 [[nodiscard]] Status save_composite(const CompositePool& pool, ShapeId id, Column<std::byte>& out);
 
-/// What a change in place may change: coordinates of a mesh's vertices, heights of a field.
+/// Returns the values that a change in place may change: vertex coordinates of a mesh, heights of a
+/// field.
 [[nodiscard]] std::span<const float> values_of(const CompositePool& pool, ShapeId id) noexcept;
 
 }  // namespace winnow

@@ -12,7 +12,7 @@
 
 namespace winnow {
 
-/// A column that is looked up, as its bytes would be added if they lay in memory.
+/// Adds a computed column as if its values were an array in memory.
 template <typename Lookup>
 void add_to(Digest& digest, const LookedUp<Lookup>& values) noexcept {
   constexpr std::size_t kBytes = sizeof(values[0]);
@@ -26,7 +26,7 @@ void add_to(Digest& digest, const LookedUp<Lookup>& values) noexcept {
   digest.add(std::uint64_t{values.size() * kBytes});
 }
 
-/// All that contacts tell; of keys the ids.
+/// Adds all results of contacts; only the ids of keys.
 inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   const auto add_ids = [&](std::span<const Key> keys) {
     for (const Key& key : keys) digest.add(std::uint64_t{key.id});
@@ -64,7 +64,7 @@ inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   digest.add(std::uint64_t{contacts.carried()});
 }
 
-/// What a pool holds of a hull, to the bit.
+/// Adds all data of a hull in a pool, bit by bit.
 inline void add_to(Digest& digest, const HullShape& hull) noexcept {
   for (const std::uint32_t count :
        {hull.vertex_count, hull.face_count, hull.edge_count, hull.dimension}) {

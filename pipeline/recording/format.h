@@ -1,6 +1,7 @@
 #pragma once
 
-// What stands in a recording; pipeline/CONTRACT.md says it in words.
+// Format of recordings; pipeline/FORMATS.md describes it. Used by the recorder and by
+// pipeline/replay. The functions at the end compute digests of results.
 
 #include <winnow/core/cast.h>
 #include <winnow/core/hits.h>
@@ -17,14 +18,14 @@
 namespace winnow {
 
 inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
-/// Written; all from the first on are read.
+/// Version that is written. All versions from 1 on can be read.
 inline constexpr std::uint32_t kRecordingVersion = 4;
-/// Magic, version, and 4 bytes of 0.
+/// Size of magic, version, and 4 bytes of 0.
 inline constexpr std::size_t kRecordingHeader = 16;
-/// Size of what follows, and its digest.
+/// Size of the header of a block: number of bytes, and their digest.
 inline constexpr std::size_t kBlockHeader = 16;
 
-/// The world of calls that are of none.
+/// World number of calls that belong to no partition or scene.
 inline constexpr std::uint32_t kNoWorld = ~0U;
 
 enum class RecordedCall : std::uint8_t {
@@ -69,7 +70,7 @@ enum class RecordedCall : std::uint8_t {
   set_layer,
   set_layers_meet,
 
-  // From version 2 on.
+  // Since version 2.
   set_predicate,
   pairs_passed,
   composites_changed,
@@ -83,7 +84,7 @@ enum class RecordedCall : std::uint8_t {
   ask_overlaps,
   ask_nearest,
 
-  // From version 3 on.
+  // Since version 3.
   load_scene,
   load_contacts,
   make_sensors,
@@ -96,7 +97,7 @@ enum class RecordedCall : std::uint8_t {
   sweep,
   sweep_motions,
 
-  // From version 4 on. Those above that ask about the same take any two bodies.
+  // Since version 4. The older calls for the same queries use PairRules::none.
   ask_distance_by_rules,
   ask_least_distance_by_rules,
   ask_overlaps_by_rules,
@@ -104,7 +105,7 @@ enum class RecordedCall : std::uint8_t {
   ask_any_contact_of_sets,
 };
 
-/// The last call of a version; none of one that is not known.
+/// Returns the last call of a version; nullopt for an unknown version.
 [[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
   if (version == 1) return RecordedCall::set_layers_meet;
   if (version == 2) return RecordedCall::ask_nearest;
@@ -114,25 +115,25 @@ enum class RecordedCall : std::uint8_t {
   return std::nullopt;
 }
 
-/// What a call names objects by: keys belong to one process, ids are the same in each.
+/// Objects of a call by id: keys are valid only in one process, ids are the same in each.
 struct RecordedPair {
   std::uint32_t first;
   std::uint32_t second;
 };
 
-/// A pair in whatever order, as recordings have those of one scene.
+/// Orders a pair by id, as recordings store pairs of one scene.
 [[nodiscard]] constexpr Pair lower_first(ObjectId one, ObjectId other) noexcept {
   return one < other ? Pair{one, other} : Pair{other, one};
 }
 
-/// Which hits of a ray or a moving shape were asked for; of the latter also without those that it
-/// only touches at the start.
+/// Which hits of a ray or shape cast are requested. `from_touch`: without bodies that are only
+/// touched at the start (ShapeCast::touching is false).
 enum class HitForm : std::uint8_t { closest, any, all, closest_from_touch, all_from_touch };
 
-/// How pairs were asked for.
+/// The kind of pair query.
 enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };
 
-/// A body as it is added, with its shape's number in the recording.
+/// A body to add, with the number of its shape in the recording.
 struct RecordedBody {
   std::uint32_t shape;
   std::uint32_t motion;
@@ -143,7 +144,7 @@ struct RecordedBody {
 };
 static_assert(sizeof(RecordedBody) == 88);
 
-/// A shape as a snapshot names it, and its number in the recording.
+/// Id of a shape in a snapshot, and its number in the recording.
 struct RecordedName {
   std::uint32_t bits;
   std::uint32_t number;
@@ -153,9 +154,10 @@ struct RecordedName {
   return {pair.first, pair.second};
 }
 
-// Digests of answers: what add_to takes, here and where other answers are told.
+// Digests of results: overloads of add_to, here and in contact_digest.h, query_digest.h and
+// sweep_digest.h.
 
-/// Of one answer after the other.
+/// Digest of several results in order.
 template <typename... Answers>
 [[nodiscard]] Digest digest_of_answers(const Answers&... answers) noexcept {
   Digest digest;
@@ -163,7 +165,7 @@ template <typename... Answers>
   return digest;
 }
 
-/// Of the first so many entries of columns.
+/// Digest of the first `count` entries of columns.
 template <typename Columns>
 [[nodiscard]] Digest digest_of_columns(const Columns& columns, std::size_t count) noexcept {
   Digest digest;
@@ -208,7 +210,7 @@ inline void add_to(Digest& digest, const OverlapBuffer& objects) noexcept {
   digest.add(std::uint64_t{objects.inside().size()});
 }
 
-/// Of those columns that are there.
+/// Skips null columns.
 inline void add_to(Digest& digest, const HitColumns& hits, std::size_t count) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     if (hits.key != nullptr) digest.add(std::uint64_t{hits.key[i].id});

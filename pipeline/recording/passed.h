@@ -1,6 +1,6 @@
 #pragma once
 
-// What predicates of the program let pass while a call is recorded.
+// Records what the program's predicates accept, so that a player can answer in their place.
 
 #include <winnow/core/column.h>
 #include <winnow/core/filter.h>
@@ -11,7 +11,7 @@
 
 namespace winnow {
 
-/// What was let pass, however often it was asked about, in order.
+/// Sorts what was accepted, and removes duplicates.
 template <typename T>
 [[nodiscard]] std::span<const T> each_once(Column<T>& passed) noexcept {
   std::sort(passed.begin(), passed.end());
@@ -20,13 +20,13 @@ template <typename T>
   return {passed.data(), passed.size()};
 }
 
-/// Asks the predicate of a scene, from whatever threads, and keeps the pairs that it lets pass: in
-/// the recorder's memory, under its lock.
+/// Calls the predicate of a scene, from any threads, and stores the pairs that it accepts: in the
+/// memory of the recorder, protected by its lock.
 struct PassedPairs {
   explicit PassedPairs(RecorderState& state) noexcept
       : recorder(state), pairs(state.block.memory()) {}
 
-  /// The one to ask from now on; none if `predicate` is none.
+  /// Returns the predicate to use from now on; none if `predicate` is none.
   [[nodiscard]] PairPredicate listen_to(const PairPredicate& predicate) noexcept {
     asked = predicate;
     if (predicate.accept == nullptr) return {};
@@ -48,15 +48,15 @@ struct PassedPairs {
   Column<Pair> pairs;
 };
 
-/// Asks the predicate of a question to a scene, and keeps the bodies that it lets pass, for the
-/// time of that: the thread that asks answers it.
+/// Calls the predicate of a scene query, and stores the bodies that it accepts during that query.
+/// All calls are made by the querying thread.
 class PassedObjects {
  public:
   PassedObjects(const Filter& filter, Column<ObjectId>& ids) noexcept : asked_(filter), ids_(ids) {
     ids_.clear();
   }
 
-  /// What to ask with.
+  /// Returns the filter to query with.
   [[nodiscard]] Filter filter() noexcept {
     Filter listening = asked_;
     if (asked_.predicate.accept == nullptr) return listening;
@@ -66,7 +66,7 @@ class PassedObjects {
                            this};
     return listening;
   }
-  /// Writes whether there was a predicate, and what it let pass.
+  /// Writes whether there is a predicate, and what it accepted.
   void put(CallWriter& call) {
     call.put(asked_.predicate.accept != nullptr);
     if (asked_.predicate.accept != nullptr) call.put_array(each_once(ids_));

@@ -7,13 +7,13 @@
 
 namespace winnow {
 
-// All that answers to questions about a scene tell; of keys the ids.
+// Digests of all results of scene queries; only the ids of keys.
 
 inline void add_to(Digest& digest, const double (&vector)[3]) noexcept {
   for (const double x : vector) digest.add(x);
 }
 
-// Of what was not found it is only that.
+// If nothing was found, only that is added.
 
 inline void add_to(Digest& digest, const SceneHit& hit) noexcept {
   digest.add(std::uint64_t{hit.key.id});
@@ -64,7 +64,7 @@ inline void add_to(Digest& digest, const SceneHitLists& lists) noexcept {
   for (const std::size_t first : lists.first) digest.add(std::uint64_t{first});
 }
 
-/// Of those columns that are there.
+/// Skips null columns.
 inline void add_to(Digest& digest, const SceneHitColumns& hits, std::size_t count) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     if (hits.key != nullptr) digest.add(std::uint64_t{hits.key[i].id});
@@ -78,7 +78,8 @@ inline void add_to(Digest& digest, const SceneHitColumns& hits, std::size_t coun
   }
 }
 
-/// Which columns there are, a bit each: key, data, part, t, normal x, y, z, point x, y, z.
+/// Returns which columns are not null, one bit each: key, data, part, t, normal x, y, z, point x,
+/// y, z.
 [[nodiscard]] inline std::uint16_t columns_in(const SceneHitColumns& hits) noexcept {
   const bool there[] = {hits.key != nullptr,       hits.data != nullptr,
                         hits.part != nullptr,      hits.t != nullptr,

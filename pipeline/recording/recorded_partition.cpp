@@ -1,3 +1,6 @@
+// RecordedPartition: forwards each call to its partition, and writes successful calls to the
+// recording.
+
 #include "partitions/pairs/event_writer.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "pipeline/recording/recorder_state.h"
@@ -18,7 +21,7 @@ void put_volumes(CallWriter& call, Volume volume, std::span<const V> volumes) {
   call.put(volume).put_array(volumes);
 }
 
-/// Boxes of a view, as an array of them would be put.
+/// Writes the boxes of a view in the form of an array of boxes.
 void put_boxes(CallWriter& call, const BoxView& boxes) {
   call.put(Volume::aabb).put(std::uint64_t{boxes.count});
   for (std::size_t i = 0; i < boxes.count; ++i) {
@@ -53,7 +56,8 @@ void put_region(CallWriter& call, const Region& region) {
       region);
 }
 
-// What a predicate let pass, where there is one: of what it is asked about, that is in the answer.
+// Write what a predicate accepted, if there is one: the results, because the query returned only
+// accepted objects.
 
 void put_passed(CallWriter& call, const PairPredicate& predicate, std::span<const Pair> pairs) {
   call.put(predicate.accept != nullptr);
@@ -78,7 +82,7 @@ void put_digest(CallWriter& call, const Answer&... answer) {
   call.put(digest_of_answers(answer...).value());
 }
 
-/// What a question about hits ends with: its filter, and what it found.
+/// Writes the end of a query for hits: its filter, and its results.
 template <typename Answer>
 void put_hits(CallWriter& call, const Filter& filter, std::span<const Hit> hits,
               const Answer& answer) {
@@ -94,8 +98,8 @@ void put_hit(CallWriter& call, const Filter& filter, const Hit& hit) {
   put_hits(call, filter, one, one);
 }
 
-/// A question for the pairs of one partition. It goes on from question `before`, or from none; its
-/// events do if they follow that one's frame.
+/// A query for the pairs of one partition. It updates the result of query `before`, or of none.
+/// `follows` is set if its events continue from the same frame.
 struct PairQuestion {
   PairForm form;
   std::uint64_t before;
@@ -289,8 +293,8 @@ Status RecordedPartition::refresh() const {
   return status;
 }
 
-// Questions for pairs go on from what a buffer holds: which question left it there, and whether the
-// events tell of the same frame, decides the order of the answer.
+// A pair query updates what its buffer holds. The order of its results depends on which query
+// filled the buffer, and on whether the events belong to the same frame.
 
 std::uint64_t RecordedPartition::asked_as(const PairBuffer& out) const noexcept {
   const PairBuffer::Provenance held = PairTracker::provenance(out);
@@ -435,8 +439,8 @@ Status RecordedPartition::nearest(const Aabb& from, std::size_t count, float rad
   return status;
 }
 
-/// The answers to a batch of rays. Without a column of keys nothing tells what a predicate let
-/// pass: such a question is not recorded.
+/// Records the results of a batch of rays. Without a column of keys it is unknown what a predicate
+/// accepted: such a query is not recorded.
 void RecordedPartition::record(RecordedCall question, const RayBatch& rays, const HitColumns& hits,
                                const Filter& filter) const {
   if (filter.predicate.accept != nullptr && hits.key == nullptr) return;

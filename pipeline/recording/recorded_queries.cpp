@@ -1,3 +1,6 @@
+// RecordedQueries: forwards each query to SceneQueries, and writes successful queries with a digest
+// of their results to the recording.
+
 #include "pipeline/recording/passed.h"
 #include "pipeline/recording/query_digest.h"
 
@@ -25,14 +28,14 @@ void put_motion(CallWriter& call, const MotionCast& cast) {
   call.put_bytes(&cast.motion, sizeof cast.motion);
 }
 
-/// Of what touches at the start as well, or else only of what is met from there.
+/// Form of a cast: with or without bodies that the shape touches at the start.
 template <typename Cast>
 [[nodiscard]] HitForm form_of(const Cast& cast, HitForm form) noexcept {
   if (cast.touching) return form;
   return form == HitForm::all ? HitForm::all_from_touch : HitForm::closest_from_touch;
 }
 
-/// Bytes of a struct of doubles are its numbers.
+/// These structs are written as arrays of double.
 static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
 
 }  // namespace
@@ -40,8 +43,8 @@ static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * 
 RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
     : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
 
-/// Asks, and records the question: write(call) puts what was asked and gives the digest of the
-/// answer; the filter comes behind.
+/// Runs a query and records it: write(call) writes the arguments and returns the digest of the
+/// results; the filter follows.
 template <typename Ask, typename Write>
 Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&& ask,
                                Write&& write) {
@@ -57,7 +60,7 @@ Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&
   return status;
 }
 
-/// The same of a shape that may be new to the recording: write(call, number).
+/// As above, for a query with a shape, which may be new to the recording: write(call, number).
 template <typename Ask, typename Write>
 Status RecordedQueries::record_with(ShapeId shape, RecordedCall question, const Filter& filter,
                                     Ask&& ask, Write&& write) {
@@ -202,7 +205,8 @@ Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& h
 
 // --- distances ---------------------------------------------------------------------------------
 
-/// Which call it is, after what the scene's predicate was told meanwhile.
+/// Returns the call to record; before it, records the pairs that the scene's predicate accepted
+/// during the query.
 RecordedCall RecordedQueries::by(PairRules rules, RecordedCall any_two,
                                  RecordedCall by_rules) noexcept {
   if (rules == PairRules::none) return any_two;

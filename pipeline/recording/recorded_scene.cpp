@@ -1,3 +1,6 @@
+// RecordedScene: forwards each call to its scene, and writes successful calls and the shapes of
+// bodies to the recording.
+
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
 #include "pipeline/narrow/tier_number.h"
@@ -26,7 +29,7 @@ RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept 
   return out;
 }
 
-/// Calls use(shape) with the shape itself, of whatever kind.
+/// Calls use(shape) with the shape struct of its kind.
 template <typename Use>
 void with_shape(const ShapeTables& tables, ShapeId id, Use&& use) {
   switch (id.kind()) {
@@ -67,7 +70,7 @@ std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) noexcept {
   return digest.value();
 }
 
-/// Ids of those that are live before and after, under the same stamp.
+/// Writes the ids that are live with the same stamp before and after.
 void put_kept(CallWriter& call, std::span<const std::uint32_t> before,
               std::span<const std::uint32_t> after) noexcept {
   const auto for_kept = [&](auto&& visit) {
@@ -81,7 +84,7 @@ void put_kept(CallWriter& call, std::span<const std::uint32_t> before,
   for_kept([&](ObjectId id) { call.put(id); });
 }
 
-/// Of a shape that is not what it was.
+/// Number of a shape that was removed or replaced.
 constexpr std::uint32_t kForgotten = ~0U;
 
 SceneOptions with_composites(SceneOptions options, const CompositePool& composites) noexcept {
@@ -126,15 +129,15 @@ RecordedScene::~RecordedScene() {
   known_.release();
 }
 
-/// Ends the recording.
+/// Ends the recording with an error.
 void RecordedScene::refuse(Status why) noexcept {
   if (recorder_ == nullptr) return;
   const Lock lock(recorder_->mutex);
   recorder_->fail(why);
 }
 
-// Not what another process does not have: meshes of another pool, functions; nor fronts of
-// surfaces and insides.
+// False for shapes that a recording cannot contain: meshes of another pool, support functions,
+// one-sided surfaces and solids.
 bool RecordedScene::can_hold(ShapeId id) const noexcept {
   if (!id.is_composite()) return id.kind() != ShapeKind::support;
   return composites_ != nullptr && !composites_->is_one_sided(id) && !composites_->is_solid(id);
@@ -158,8 +161,8 @@ void RecordedScene::describe(RecordedShape& shape) const noexcept {
   }
 }
 
-// A shape is recorded when a body first has it, and again where another one took its place. Of
-// composite ones the pool tells when there may be another.
+// A shape is recorded when a body first uses it, and again if another shape has its id now. For
+// composite shapes, follow_composites detects this by the revision of the pool.
 std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (recorder_ == nullptr) return 0;
   if (!can_hold(id)) {
@@ -210,7 +213,7 @@ void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
 
 void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   CallWriter call(recorder_, RecordedCall::add_composite, world_);
-  Column<std::byte> bytes(known_.memory());  // while the recorder is this call's
+  Column<std::byte> bytes(known_.memory());  // allocates from the recorder's memory, under its lock
   const Status status = save_composite(*composites_, shape.id, bytes);
   if (status != Status::ok) return call.give_up(status);
   call.put(shape.id.composite_kind());
@@ -226,8 +229,9 @@ void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   call.put(shape.digest);
 }
 
-// What changed in place is told to the recording; what is gone, or another one, is forgotten. That
-// the pool changed at all is, too: a scene makes contacts of composite shapes anew then.
+// Records composite shapes that were changed in place, and forgets shapes that were removed or
+// replaced. Records also that the pool changed at all, because a scene then recomputes the contacts
+// of composite shapes.
 void RecordedScene::follow_composites() noexcept {
   if (recorder_ == nullptr || composites_ == nullptr) return;
   if (composites_->revision() == composites_seen_) return;
@@ -395,22 +399,22 @@ void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
   CallWriter(recorder_, RecordedCall::set_predicate, world_).put(predicate.accept != nullptr);
 }
 
-// Told before the question that it was asked for, which a player answers by it.
+// Recorded before the query, so that a player has the accepted pairs when it runs the query.
 void RecordedScene::record_passed() noexcept {
   if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
   CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
   passed_->pairs.clear();
 }
 
-// Several threads may ask SceneQueries: pairs that others were told of may be among these, and they
-// stay until the scene itself asks, so that each question finds its own.
+// Several threads may use SceneQueries, so pairs that other queries accepted may be included. The
+// pairs are kept until the next collide, so that each query has its own.
 void RecordedScene::show_passed() noexcept {
   if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
   CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
 }
 
-// A question that was refused, and is not recorded, may have been told what passes for good: all is
-// asked again, here and where it is played.
+// A query that failed is not recorded, but the scene may have cached pairs that its predicate
+// accepted. Setting the predicate again makes the scene test all pairs again, here and in a player.
 void RecordedScene::forget_passed() noexcept {
   if (passed_ == nullptr || passed_->pairs.empty()) return;
   const PairPredicate asked = passed_->asked;
@@ -428,13 +432,13 @@ RecordedScene::Asked RecordedScene::asked_as(const Contacts& contacts) noexcept 
   return {contacts.state().clock, contacts.state().pairs_serial};
 }
 
-// All others are empty to it.
+// Contacts of other scenes count as empty for this scene.
 bool RecordedScene::is_filled_by_this(const Contacts& contacts) const noexcept {
   return scene_.state_ != nullptr && contacts.state().scene == scene_.state_->serial;
 }
 
-// Contacts remember the frame before: whether they are those of the last question decides what
-// begins and what is carried over. Loaded ones are of no pairs that the scene has found.
+// Contacts store the previous frame: events and carried-over manifolds depend on whether they are
+// the result of the last query. Loaded contacts match no pairs that the scene has found.
 Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   follow_composites();
   const bool filled = is_filled_by_this(contacts);
@@ -453,10 +457,10 @@ Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   return status;
 }
 
-// The snapshot has shapes by their ids here, which the recording knows by its numbers, and keys
-// that are others where it is played: of bodies that had them before, as sensors remember, it is
-// told that they keep them. Contacts are of another scene from then on, and all pairs are asked
-// about anew.
+// The snapshot contains shape ids and keys of this process. The call records the number of each
+// shape in the recording, and which bodies keep their keys, because sensors remember keys. After a
+// load, contacts count as contacts of another scene, and the predicate is called again for all
+// pairs.
 Status RecordedScene::load(std::span<const std::byte> saved) {
   if (recorder_ == nullptr || scene_.state_ == nullptr) return scene_.load(saved);
   Column<std::uint32_t> before(scene_.state_->options.memory);

@@ -8,7 +8,7 @@ namespace winnow {
 RecordedSweep::RecordedSweep(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
     : scene_(scene), sweep_(scene.scene_, memory) {}
 
-/// Of a sweep with that status: put(call) writes where bodies go.
+/// Records a sweep with this status: put(call) writes the motions.
 template <typename Put>
 Status RecordedSweep::record(RecordedCall question, Status status, std::span<const Key> keys,
                              const SweepOptions& options, Put&& put) {

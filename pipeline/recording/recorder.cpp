@@ -4,7 +4,7 @@
 namespace winnow {
 namespace {
 
-/// So many bytes are handed over at a time, or more for a call that is larger.
+/// Minimal size of the blocks that are written, unless a frame ends.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18U;
 
 }  // namespace

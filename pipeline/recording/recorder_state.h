@@ -1,5 +1,7 @@
 #pragma once
 
+// State of a Recorder, and CallWriter, by which the recorded classes write their calls.
+
 #include <winnow/pipeline/recording.h>
 #include "core/threads/mutex.h"
 #include "pipeline/recording/format.h"
@@ -10,23 +12,23 @@
 
 namespace winnow {
 
-/// A recording as it is written.
+/// A recording that is being written.
 struct RecorderState {
   explicit RecorderState(std::pmr::memory_resource* memory) noexcept : block(memory) {}
 
-  /// Hands over the calls that are complete.
+  /// Writes the complete calls to the file or sink.
   void flush() noexcept;
   void write(std::span<const std::byte> bytes) noexcept;
   void begin() noexcept;
   void close() noexcept;
-  /// Ends the recording for a reason.
+  /// Ends the recording with an error.
   void fail(Status why) noexcept {
     if (status == Status::ok) status = why;
   }
 
   Mutex mutex;
-  /// Of questions to scenes, which may come from several threads at once, while they number shapes:
-  /// taken before the other.
+  /// Held while a scene query, which may run on several threads, numbers its shapes. Lock it before
+  /// `mutex`.
   Mutex numbering;
   Column<std::byte> block;
   RecordingSink sink;
@@ -38,8 +40,8 @@ struct RecorderState {
   bool closed = false;
 };
 
-/// One call on its way into a recording, which is this thread's alone for as long. A recording that
-/// failed, or is closed, takes no more.
+/// Writes one call to a recording. Holds the lock of the recording during its lifetime. Writes
+/// nothing if the recording has failed or is closed.
 class CallWriter {
  public:
   CallWriter(RecorderState* state, RecordedCall call, std::uint32_t world) noexcept;
@@ -65,9 +67,9 @@ class CallWriter {
     if (is_open()) writer_->put_bytes(bytes, count);
     return *this;
   }
-  /// Keys by their ids.
+  /// Writes the ids of keys.
   CallWriter& put_ids(std::span<const Key> keys) noexcept;
-  /// Whether there are orientations, and numbers, 7 or 3 a pose.
+  /// Writes whether there are orientations, then 7 or 3 numbers per pose.
   CallWriter& put_poses(const PoseView& poses) noexcept {
     const bool turns = poses.has_orientations();
     put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});
@@ -78,9 +80,9 @@ class CallWriter {
     }
     return *this;
   }
-  /// Leaves the call out, and ends the recording for a reason.
+  /// Removes the call, and ends the recording with an error.
   void give_up(Status why) noexcept;
-  /// A filter but for its predicate.
+  /// Writes a filter without its predicate.
   CallWriter& put_filter(const Filter& filter) noexcept {
     return put(filter.layers).put(filter.mask).put(filter.environment);
   }
@@ -94,7 +96,7 @@ class CallWriter {
   std::size_t begin_ = 0;
 };
 
-/// A number for one more world; kNoWorld without a recording.
+/// Returns the number of a new world (partition or scene); kNoWorld without a recording.
 [[nodiscard]] std::uint32_t new_world(RecorderState* state) noexcept;
 
 }  // namespace winnow

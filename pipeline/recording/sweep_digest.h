@@ -6,7 +6,7 @@
 
 namespace winnow {
 
-/// All that a sweep has found; of keys the ids.
+/// Adds all results of a sweep; only the ids of keys.
 inline void add_to(Digest& digest, const SceneSweep& sweep) noexcept {
   for (const SceneImpact& impact : sweep.impacts()) {
     digest.add(std::uint64_t{impact.a.id} << 32U | impact.b.id);
@@ -23,7 +23,7 @@ inline void add_to(Digest& digest, const SceneSweep& sweep) noexcept {
   digest.add_array(sweep.first());
 }
 
-/// All that is sensed, and what has left; of keys the ids.
+/// Adds all sensed bodies, and all that left; only the ids of keys.
 inline void add_to(Digest& digest, const Sensors& sensors) noexcept {
   for (const SensedBody& in : sensors.sensed()) {
     digest.add(std::uint64_t{in.sensor.id} << 32U | in.body.id);

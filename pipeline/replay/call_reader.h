@@ -9,7 +9,7 @@
 
 namespace winnow {
 
-/// Lets those pairs pass that are among sorted ones, named as `named` names what is asked.
+/// A predicate that accepts the pairs in a sorted column, after `named` has put their ids in order.
 template <Pair (*named)(ObjectId, ObjectId) noexcept>
 [[nodiscard]] PairPredicate among(Column<Pair>& pairs) noexcept {
   return {[](void* context, ObjectId first, ObjectId second) {
@@ -19,13 +19,13 @@ template <Pair (*named)(ObjectId, ObjectId) noexcept>
           &pairs};
 }
 
-/// A pair as a partition asks, whose second object may be another partition's.
+/// A pair of a partition query. Its second object may belong to another partition.
 [[nodiscard]] constexpr Pair in_order(ObjectId first, ObjectId second) noexcept {
   return {first, second};
 }
 
-/// A filter as it was recorded, with what the predicate let pass, if there was one. The reader of
-/// it must outlive what it is asked with.
+/// A recorded filter, with a predicate that accepts what the recorded predicate accepted, if there
+/// was one. Must outlive the query that uses it.
 class RecordedFilter {
  public:
   explicit RecordedFilter(std::pmr::memory_resource* memory) noexcept
@@ -46,7 +46,7 @@ class RecordedFilter {
                          },
                          this};
   }
-  /// The predicate of a question for pairs.
+  /// Reads the predicate of a pair query.
   [[nodiscard]] PairPredicate read_passed_pairs(ByteReader& in) noexcept {
     if (!in.get_bool() || !in.get_array(pairs_)) return {};
     std::sort(pairs_.begin(), pairs_.end());
@@ -60,7 +60,7 @@ class RecordedFilter {
   Column<Pair> pairs_;
 };
 
-/// A structure by name and parameter; none for a name that no structure has.
+/// Reads a structure by name and parameter; a kind without a structure for an unknown name.
 [[nodiscard]] inline StructureKind read_structure(ByteReader& in) noexcept {
   const StructureKind named = structure_named(in.get_text());
   const auto parameter = in.get<float>();

@@ -1,9 +1,11 @@
+// Plays calls of partitions.
+
 #include "pipeline/replay/replay_state.h"
 
 namespace winnow {
 namespace {
 
-/// A struct of floats as it was recorded.
+/// Reads a struct of floats.
 template <typename T>
 T read_floats(ByteReader& in) noexcept {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) == alignof(float));
@@ -12,7 +14,7 @@ T read_floats(ByteReader& in) noexcept {
   return value;
 }
 
-/// Any type of a variant, by its index.
+/// Reads the alternative of a variant that has this index.
 template <typename Variant, std::size_t I = 0>
 Variant read_variant(ByteReader& in, std::size_t index, Column<Plane>& planes) noexcept {
   if constexpr (I < std::variant_size_v<Variant>) {
@@ -30,14 +32,14 @@ Variant read_variant(ByteReader& in, std::size_t index, Column<Plane>& planes) n
   }
 }
 
-/// Calls use(volumes) with an array of what a column of floats holds.
+/// Calls use(volumes) with the floats of a column as an array of volumes.
 template <typename V, typename Use>
 Status as_volumes(const Column<float>& floats, Use&& use) {
   return use(std::span<const V>(reinterpret_cast<const V*>(floats.data()),
                                 floats.size() / (sizeof(V) / sizeof(float))));
 }
 
-/// Reads volumes of a kind, and calls use(volumes) with them if they are there.
+/// Reads volumes of a kind, and calls use(volumes) if they are complete.
 template <typename Use>
 Status with_volumes(ReplayState& state, Use&& use) {
   const auto volume = state.in.get_enum(Volume::kdop26);
@@ -119,7 +121,8 @@ Status ReplayState::change_partition(RecordedCall call, ReplayedWorld& of) {
   }
 }
 
-/// Ids of live objects become keys; of others null keys, which every call refuses.
+/// Reads ids and looks up their keys. Ids without a live object become null keys, which every call
+/// refuses.
 bool ReplayState::read_keys(const Partition& of) {
   if (!in.get_array(ids)) return false;
   if (!keys.resize(ids.size())) return in.refuse_memory();
@@ -144,7 +147,7 @@ Status ReplayState::update(ReplayedWorld& of) {
   });
 }
 
-/// What a question goes on from; of one that goes on from none, the place of the oldest, emptied.
+/// Returns the result that a query updates; if it updates none, the oldest result, cleared.
 AskedPairs& ReplayState::asked_as(ReplayedWorld& of, std::uint64_t number) noexcept {
   AskedPairs* oldest = of.asked.data();
   for (AskedPairs& one : of.asked) {

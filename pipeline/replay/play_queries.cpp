@@ -1,4 +1,4 @@
-// Questions to the exact shapes of a scene.
+// Plays scene queries.
 
 #include "pipeline/recording/query_digest.h"
 #include "pipeline/replay/replay_state.h"
@@ -6,7 +6,7 @@
 namespace winnow {
 namespace {
 
-/// Columns for the answers to a batch of rays, those that the program had.
+/// The columns that the program requested for the results of a batch of rays.
 class AskedColumns {
  public:
   explicit AskedColumns(std::pmr::memory_resource* memory) noexcept
@@ -56,7 +56,7 @@ void read(ByteReader& in, MotionCast& cast) noexcept {
 
 }  // namespace
 
-/// The filter that a question ends with; false if that is not there.
+/// Reads the filter at the end of a query; false if it is incomplete.
 bool ReplayState::read_question() noexcept {
   filter.read_filter(in);
   filter.read_passed_objects(in);
@@ -162,7 +162,7 @@ Status ReplayState::ask_cast(ReplayedWorld& of) {
   return answered == Status::ok ? compare(hit) : answered;
 }
 
-/// Whether any bodies of the scene touch, or any of two sets.
+/// Plays a query whether any bodies of the scene, or of two sets, touch.
 Status ReplayState::ask_any_contact(RecordedCall call, ReplayedWorld& of) {
   const auto rules = in.get_enum(PairRules::none);
   const auto margin = in.get<double>();
@@ -183,7 +183,7 @@ bool ReplayState::read_sets(ReplayedWorld& of) {
   return read_keys(*of.scene);
 }
 
-/// Questions about bodies that are named.
+/// Plays queries of two bodies or of two sets.
 Status ReplayState::ask_sets(RecordedCall call, ReplayedWorld& of) {
   const bool any_two = call == RecordedCall::ask_distance ||
                        call == RecordedCall::ask_least_distance ||

@@ -1,3 +1,5 @@
+// Plays calls of scenes: shapes, bodies, contacts and snapshots.
+
 #include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
@@ -10,7 +12,7 @@
 namespace winnow {
 namespace {
 
-/// A shape of plain numbers, put into the pool; the digest is that of what the pool holds.
+/// Reads a shape struct and adds it to the pool. The digest is computed from the pool.
 template <typename Shape>
 Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
                  const Shape* const ShapeTables::*table, Digest& digest) {
@@ -22,7 +24,7 @@ Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
   return status;
 }
 
-/// Makes the pool another one, of the same shapes.
+/// Increments the revision of the pool without changing its shapes.
 Status change_composites(CompositePool& pool) {
   constexpr float kHeights[4] = {};
   ShapeId passing;
@@ -152,7 +154,7 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
   }
 }
 
-/// A shape that the pool does not hold as the recorded one did is a difference.
+/// If the shape in the pool differs from the recorded one, this counts as a difference.
 Status ReplayState::add_shape(ReplayedWorld& of) {
   ShapePool& pool = *of.shapes;
   ShapeId id;
@@ -300,7 +302,7 @@ Status ReplayState::move(ReplayedWorld& of) {
   return of.scene->move(std::span<const Key>(keys.data(), keys.size()), given);
 }
 
-/// Of the recorded scene's snapshot, and what its shapes are here.
+/// Loads a snapshot of the recorded scene, with shape ids translated to this process.
 Status ReplayState::load_scene(ReplayedWorld& of) {
   const std::span<const std::byte> saved = in.get_nested();
   Column<RecordedName> recorded(options.memory);

@@ -1,4 +1,4 @@
-// Sensors and sweeps of scenes.
+// Plays calls of sensors and sweeps.
 
 #include "pipeline/recording/sweep_digest.h"
 #include "pipeline/replay/replay_state.h"

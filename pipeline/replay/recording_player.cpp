@@ -1,3 +1,5 @@
+// RecordingPlayer: checks a recording, and dispatches its calls to the play_*.cpp files.
+
 #include "core/memory/new_in.h"
 #include "pipeline/replay/replay_state.h"
 
@@ -9,7 +11,7 @@ struct BlockHead {
   std::uint64_t digest = 0;
 };
 
-/// False if not even the head is there.
+/// Returns false if the header is incomplete.
 bool read_head(std::span<const std::byte> bytes, BlockHead& head) noexcept {
   if (bytes.size() < kBlockHeader) return false;
   std::memcpy(&head.size, bytes.data(), sizeof head.size);
@@ -48,8 +50,8 @@ ReplayState::~ReplayState() {
   for (ReplayedWorld* const one : worlds) delete_in(options.memory, one);
 }
 
-/// The header, and the digest of every block. A program that ended before its recording was closed
-/// leaves whole blocks and, at most, a part of one.
+/// Checks the header, and the digest of every block. If a program ended before its recording was
+/// closed, the recording has complete blocks and at most one incomplete one at the end.
 Status ReplayState::check() noexcept {
   ByteReader header(rest);
   char magic[8] = {};
@@ -136,8 +138,8 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   return change_partition(call, *of);
 }
 
-/// Worlds come in the order of their numbers, but for those that were refused, or whose making was
-/// recorded after that of a later one.
+/// Worlds are created in the order of their numbers, except for worlds that were refused, or whose
+/// creation was recorded after the creation of a later one.
 ReplayedWorld* ReplayState::add_world(std::uint32_t number) noexcept {
   constexpr std::size_t kMostApart = 4096;
   if (number >= worlds.size() + kMostApart || world(number) != nullptr) return nullptr;

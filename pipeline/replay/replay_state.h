@@ -1,5 +1,8 @@
 #pragma once
 
+// State of a RecordingPlayer: the partitions and scenes that it plays, and the memory into which
+// calls are read. Each play_*.cpp file implements one group of calls.
+
 #include <winnow/pipeline/replay.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/scene_sweep.h>
@@ -12,16 +15,16 @@
 
 namespace winnow {
 
-/// The answer to a question for pairs, which a later one may go on from.
+/// Result of a pair query, which a later query may update.
 struct AskedPairs {
   explicit AskedPairs(std::pmr::memory_resource* memory) noexcept : pairs(memory), events(memory) {}
 
   PairBuffer pairs;
   PairEvents events;
-  std::uint64_t number = 0;  // of the question; 0: none
+  std::uint64_t number = 0;  // number of the query; 0: none
 };
 
-/// Sensors that are played.
+/// Sensors of a scene in a recording.
 struct ReplayedSensors {
   ReplayedSensors(Scene& scene, std::pmr::memory_resource* memory) noexcept
       : sensors(scene, memory), keys(memory) {}
@@ -30,7 +33,7 @@ struct ReplayedSensors {
   Column<Key> keys;  // by id
 };
 
-/// A partition or a scene that is played, and what its questions are answered into.
+/// A partition or scene of a recording, with buffers for the results of its queries.
 struct ReplayedWorld {
   static constexpr std::size_t kAskedPairs = 16;
   template <std::size_t... I>
@@ -55,8 +58,8 @@ struct ReplayedWorld {
   ReplayedWorld& operator=(const ReplayedWorld&) = delete;
 
   std::optional<Partition> partition;
-  std::array<AskedPairs, kAskedPairs> asked;  // those of the last questions at least
-  std::uint64_t questions = 0;                // for pairs
+  std::array<AskedPairs, kAskedPairs> asked;  // results of the last queries, at least
+  std::uint64_t questions = 0;                // number of pair queries
   PairBuffer other_pairs;
   HitBuffer hits;
   OverlapBuffer objects;
@@ -65,17 +68,17 @@ struct ReplayedWorld {
   std::optional<CompositePool> composites;
   std::optional<Scene> scene;
   std::optional<SceneQueries> queries;
-  Column<ShapeId> shape_ids;  // by the number in the recording
-  Column<Pair> passed;        // by the predicate in the next question; sorted
+  Column<ShapeId> shape_ids;  // indexed by number in the recording
+  Column<Pair> passed;        // pairs that the predicate accepts in the next query; sorted
   Contacts contacts;
   std::optional<SceneSweep> sweep;
-  Column<ReplayedSensors*> sensors;  // by their numbers; null if they are gone
+  Column<ReplayedSensors*> sensors;  // indexed by number; null if destroyed
 };
 
-/// What became of a call.
+/// Kind of a call.
 enum class CallOutcome : std::uint8_t { changed, answered, answered_all, frame };
 
-/// How a recording stands while it is played.
+/// State of a player.
 struct ReplayState {
   ReplayState(std::span<const std::byte> bytes, const ReplayOptions& given) noexcept;
   ~ReplayState();
@@ -89,13 +92,13 @@ struct ReplayState {
     return number < worlds.size() ? worlds[number] : nullptr;
   }
   [[nodiscard]] ReplayedWorld* add_world(std::uint32_t number) noexcept;
-  /// `ok` as long as what was read was there.
+  /// Returns `ok` if all data read so far were present.
   [[nodiscard]] Status reading() const noexcept {
     if (in.ok()) return Status::ok;
     return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
   }
 
-  // Of partitions (play_partition.cpp).
+  // Partitions (play_partition.cpp).
   [[nodiscard]] Status change_partition(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status insert(ReplayedWorld& into);
   [[nodiscard]] Status update(ReplayedWorld& of);
@@ -108,7 +111,7 @@ struct ReplayState {
   [[nodiscard]] Status nearest(ReplayedWorld& of);
   [[nodiscard]] bool read_keys(const Partition& of);
 
-  // Of scenes (play_scene.cpp).
+  // Scenes (play_scene.cpp).
   [[nodiscard]] Status make_scene(ReplayedWorld& of);
   [[nodiscard]] Status change_scene(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status add_shape(ReplayedWorld& of);
@@ -123,12 +126,12 @@ struct ReplayState {
   [[nodiscard]] bool read_keys(const Scene& of);
   [[nodiscard]] bool read_poses(std::size_t count, PoseView& poses);
 
-  // Of sensors and sweeps (play_sensors.cpp).
+  // Sensors and sweeps (play_sensors.cpp).
   [[nodiscard]] Status play_sensors(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status change_sensor(RecordedCall call, ReplayedWorld& of, ReplayedSensors& all);
   [[nodiscard]] Status sweep(RecordedCall call, ReplayedWorld& of);
 
-  // Of questions to scenes (play_queries.cpp).
+  // Scene queries (play_queries.cpp).
   [[nodiscard]] Status ask_scene(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status ask_ray(ReplayedWorld& of);
   [[nodiscard]] Status ask_rays(ReplayedWorld& of);
@@ -137,7 +140,7 @@ struct ReplayState {
   [[nodiscard]] Status ask_cast(ReplayedWorld& of);
   [[nodiscard]] Status ask_sets(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status ask_any_contact(RecordedCall call, ReplayedWorld& of);
-  /// Two sets of bodies, into `others` and `keys`.
+  /// Reads two sets of bodies into `others` and `keys`.
   [[nodiscard]] bool read_sets(ReplayedWorld& of);
   [[nodiscard]] std::span<const Key> first_set() const noexcept {
     return {others.data(), others.size()};
@@ -149,7 +152,7 @@ struct ReplayState {
   [[nodiscard]] bool read_shape(const ReplayedWorld& of, ShapeId& id) noexcept;
   [[nodiscard]] bool read_question() noexcept;
 
-  /// Compares with the digest that was recorded.
+  /// Compares the digest of the results with the recorded digest.
   template <typename... Answer>
   [[nodiscard]] Status compare(const Answer&... answer) noexcept {
     return compare(digest_of_answers(answer...));
@@ -163,10 +166,10 @@ struct ReplayState {
   }
 
   ReplayOptions options;
-  std::span<const std::byte> rest;  // blocks that were not begun
-  ByteReader in;                    // of the block that is played
+  std::span<const std::byte> rest;  // blocks that have not been started
+  ByteReader in;                    // the current block
   Status status = Status::ok;
-  RecordedCall last_call = RecordedCall::end_frame;  // of the recording's version
+  RecordedCall last_call = RecordedCall::end_frame;  // last call of the recording's version
   bool is_whole = false;
   std::uint64_t calls = 0;
   std::uint64_t frames = 0;
@@ -174,7 +177,7 @@ struct ReplayState {
   std::uint64_t differences = 0;
   Column<ReplayedWorld*> worlds;
 
-  // What a call is read into.
+  // Buffers into which calls are read.
   Column<ObjectId> ids;
   Column<Key> keys;
   Column<Key> others;

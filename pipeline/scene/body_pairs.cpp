@@ -1,3 +1,7 @@
+// Sorts the pairs that partitions find into the order of a scene's contacts: counts the pairs to be
+// kept in each range, packs them as 64-bit keys and sorts these by radix. SceneState::find_pairs
+// calls `assign`.
+
 #include "pipeline/scene/body_pairs.h"
 
 #include "core/sort/radix_sort.h"
@@ -19,7 +23,7 @@ constexpr std::size_t kWordsPerStretch = kPairsPerStretch / kBits;
   return (source.pairs.size() + kPairsPerStretch - 1) / kPairsPerStretch;
 }
 
-/// A pair as one number, which sorts as pairs are sorted.
+/// Packs a pair into a sort key.
 struct Packing {
   unsigned bits;
 
@@ -37,8 +41,8 @@ struct Packing {
   }
 };
 
-/// A bit for each of at most 64 pairs, set where is(body a, body b). Without a branch: whether it
-/// is cannot be foreseen.
+/// Returns a bit for each of at most 64 pairs, set if is(body a, body b). Branchless: the result is
+/// unpredictable.
 template <typename Is>
 [[nodiscard]] std::uint64_t bits_where(const BodyPairs::Source& source, std::size_t first,
                                        std::size_t count, Is&& is) noexcept {
@@ -50,7 +54,8 @@ template <typename Is>
   return bits;
 }
 
-/// Stretches of the pairs of all sources, one source after the other.
+/// Calls body(source, range number, first, end) for ranges of the pairs of all sources, one source
+/// after the other.
 template <typename Body>
 void for_source_stretches(std::span<const BodyPairs::Source> sources, const Execution& execution,
                           Body&& body) {
@@ -92,7 +97,7 @@ Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
   return Status::ok;
 }
 
-// Which pairs are taken, and where those of each stretch are put.
+// Chooses the pairs to be kept, and computes where each range of pairs writes.
 void BodyPairs::choose(std::span<const Source> sources, const Known& known,
                        const Execution& execution) noexcept {
   for_source_stretches(
@@ -149,7 +154,7 @@ void BodyPairs::pack(std::span<const Source> sources, const Known& known,
       });
 }
 
-// Each source may end with a stretch that is not full.
+// The last range of each source may be partly filled.
 bool BodyPairs::reserve_choice(std::size_t count, Pages pages) noexcept {
   const std::size_t stretches = count / kPairsPerStretch + kMostSources;
   return wanted_.reserve(stretches * kWordsPerStretch, pages) && counts_.reserve(stretches, pages);

@@ -1,5 +1,8 @@
 #pragma once
 
+// The sorted list of a scene's pairs of bodies, made from the pairs that its partitions find.
+// SceneState::find_pairs fills it; Collision reads it.
+
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/footprint.h>
@@ -16,11 +19,11 @@
 
 namespace winnow {
 
-/// Bodies of a scene: two numbers and a code fit into 64 bits.
+/// Largest number of bodies in a scene: two body numbers and a code for the shape kinds fit into 64
+/// bits.
 inline constexpr std::size_t kMaxBodies = std::size_t{1} << 28U;
 
-/// A pair of bodies as one number, which sorts as pairs are sorted: by the kinds of their shapes,
-/// then by a, then by b.
+/// A pair of bodies as a 64-bit sort key: by the kinds of their shapes, then by a, then by b.
 struct PairOrder {
   static constexpr unsigned kBodyBits = 28;
   static_assert(kMaxBodies <= std::size_t{1} << kBodyBits && KindPairs::kCount <= 256);
@@ -41,37 +44,37 @@ struct PairOrder {
   friend constexpr auto operator<=>(const PairOrder&, const PairOrder&) noexcept = default;
 };
 
-/// A ball that holds a body as large as the box that its partition has.
+/// A ball around a body, grown like its box in the partition.
 struct BodyBall {
   float center[3];
   float radius;
 };
 
-/// True only if the two share no point, whatever the rounding.
+/// True only if the balls are disjoint; rounding never makes it true.
 [[nodiscard]] inline bool are_apart(const BodyBall& a, const BodyBall& b) noexcept {
-  // More than a sum of three squares of float differences is off by: as a share, and where squares
-  // are too small for floats.
+  // kSlack bounds the relative error of the sum of squares of float differences; kLeast covers
+  // squares that underflow.
   constexpr float kSlack = 1.0F + 0x1p-19F;
   constexpr float kLeast = 1e-36F;
   const float x = a.center[0] - b.center[0];
   const float y = a.center[1] - b.center[1];
   const float z = a.center[2] - b.center[2];
   const float reach = a.radius + b.radius;
-  // False of what is not a number, too.
+  // NaN compares false.
   return x * x + y * y + z * z > reach * reach * kSlack + kLeast;
 }
 
-/// What a rank of a cluster makes of its scene's pairs: bodies stand in an order of their own in
-/// place of that of their numbers, and some pairs are another rank's.
+/// On a rank of a cluster: replaces the order of bodies by their numbers with an order that all
+/// ranks share, and drops pairs that belong to other ranks.
 struct PairSelection {
-  std::span<const std::uint32_t> place;  ///< in that order, by body
-  std::span<const std::uint32_t> body;   ///< by place
+  std::span<const std::uint32_t> place;  ///< by body: its position in the shared order
+  std::span<const std::uint32_t> body;   ///< by position in the shared order
   bool (*wants)(const void* context, std::uint32_t a, std::uint32_t b) = nullptr;
-  const void* context = nullptr;  ///< handed to `wants`
+  const void* context = nullptr;  ///< passed to `wants`
 };
 
-/// Pairs of bodies in the order of a scene's answers: by the kinds of their shapes, then by body; a
-/// is the body with the smaller kind, or the smaller number.
+/// Pairs of bodies sorted by the kinds of their shapes, then by body. In a pair, a is the body with
+/// the smaller kind, or with the smaller number if the kinds are equal.
 class BodyPairs {
  public:
   explicit BodyPairs(std::pmr::memory_resource* memory) noexcept
@@ -79,7 +82,7 @@ class BodyPairs {
         wanted_(memory),
         counts_(memory) {}
 
-  /// Pairs of objects of two partitions, and which bodies these are.
+  /// Pairs of objects of two partitions, with the tables that map objects to bodies.
   struct Source {
     std::span<const Pair> pairs;
     const std::uint32_t* first_body;
@@ -92,30 +95,30 @@ class BodyPairs {
 
   static constexpr std::size_t kMostSources = 3;
 
-  /// What is known of bodies, by number.
+  /// Data of bodies, by number.
   struct Known {
     const ShapeId* shapes;
-    /// Null: pairs whose balls are apart are taken too.
+    /// Null: pairs whose balls are disjoint are kept too.
     const BodyBall* balls;
-    /// Every body's number is below it, at most kMaxBodies.
+    /// Upper limit of body numbers, at most kMaxBodies.
     std::size_t bodies;
-    /// Null for all pairs, by number.
+    /// Null: keeps all pairs and orders bodies by number.
     const PairSelection* selection;
   };
 
-  /// Takes the pairs of at most kMostSources. O(n).
+  /// Replaces the pairs with the pairs of at most kMostSources sources. O(n).
   Status assign(std::span<const Source> sources, const Known& known, const Execution& execution);
 
-  /// Room for so many pairs. False if memory is refused.
+  /// Reserves for `count` pairs. Returns false if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
     return items_[0].reserve(count, pages) && items_[1].reserve(count, pages) &&
            reserve_choice(count, pages);
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Pairs were taken whether their balls are apart or not.
+  /// True if `assign` kept pairs whose balls are disjoint.
   [[nodiscard]] bool are_all() const noexcept { return are_all_; }
-  /// Of the pairs that were given, how many were not taken since their balls are apart.
+  /// Number of pairs that `assign` dropped because their balls are disjoint.
   [[nodiscard]] std::size_t apart() const noexcept { return apart_; }
   /// Pair i, below `size()`.
   [[nodiscard]] BodyPair operator[](std::size_t i) const noexcept {
@@ -127,11 +130,11 @@ class BodyPairs {
   [[nodiscard]] PairOrder order(std::size_t i) const noexcept {
     return PairOrder::of(static_cast<std::uint32_t>(items_[sorted_][i] >> 2 * bits_), (*this)[i]);
   }
-  /// The room in which they were sorted, for anything until pairs are taken anew.
+  /// The second sort buffer, free for other use until the next `assign`.
   [[nodiscard]] Column<std::uint64_t>& spare() noexcept { return items_[1 - sorted_]; }
-  /// Grows with every `assign`.
+  /// Incremented by every `assign`.
   [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
-  /// What the partitions had gone through when the pairs were taken.
+  /// SceneSet::changes of the sets when the pairs were found.
   std::uint64_t changes[3] = {~0ULL, ~0ULL, ~0ULL};
 
   void clear() noexcept;
@@ -143,20 +146,20 @@ class BodyPairs {
               const Execution& execution) noexcept;
   void pack(std::span<const Source> sources, const Known& known,
             const Execution& execution) noexcept;
-  /// Places of a selection become bodies.
+  /// Replaces positions of a selection with body numbers.
   void name_bodies(const PairSelection& selection, const Execution& execution) noexcept;
 
-  /// Code, body a and body b as one number; and room to sort them.
+  /// Code, body a and body b as one number; and a second buffer for sorting.
   Column<std::uint64_t> items_[2];
-  /// Which of the two is sorted.
+  /// The buffer that holds the sorted pairs.
   unsigned sorted_ = 0;
-  /// That a body's number takes in an item.
+  /// Bits of a body number in an item.
   unsigned bits_ = 0;
   std::size_t size_ = 0;
   std::size_t apart_ = 0;
   bool are_all_ = false;
-  /// A bit for each pair that was given; and by stretch of them, how many are taken, then where
-  /// they are put, and how many are apart.
+  /// One bit for each source pair, set if it is kept; and for each range of pairs, the number kept
+  /// (later the write position) and the number dropped because the balls are disjoint.
   Column<std::uint64_t> wanted_;
   struct Count {
     std::uint32_t taken;

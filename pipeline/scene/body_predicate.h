@@ -4,13 +4,14 @@
 
 namespace winnow {
 
-/// Asks about objects of partitions what a scene has been told about bodies.
+/// Applies SceneState::may_pair to pairs of objects of two partitions.
 struct BodyPredicate {
   const SceneState& scene;
   const std::uint32_t* first_body;
   const std::uint32_t* second_body;
 
-  /// Without a predicate where nothing was told. This must outlive the question.
+  /// Returns options with this predicate, or without one if the scene has no rules. This object
+  /// must outlive the query.
   [[nodiscard]] PairOptions options() const noexcept {
     PairOptions options;
     if (scene.meets_all()) return options;

@@ -1,5 +1,6 @@
-// Pairs that have hardly moved keep their contacts, turned with body a: how far that goes is noted
-// where contacts are made.
+// Carry-over: pairs that have hardly moved since their contacts were computed keep them; points and
+// normals rotate with body a. `remember` stores how far each pair may move, `decide` compares.
+// Called by Collision::run (collide.cpp) and the tasks in show_contacts.cpp.
 
 #include <winnow/core/rotation.h>
 #include "pipeline/narrow/steady_column.h"
@@ -14,10 +15,10 @@
 namespace winnow {
 namespace {
 
-// Relative error of turning a point in float, once.
+// Relative error of one rotation of a point in float.
 constexpr double kTurnError = 4.0e-7;
 
-// How far points of a body of this radius move when it turns.
+// Upper bound on the motion of points within `radius` under a rotation.
 [[nodiscard]] double turn_bound(const double (&from)[4], const double (&to)[4],
                                 double radius) noexcept {
   Pose a;
@@ -47,7 +48,8 @@ struct PoseChange {
 
 }  // namespace
 
-// What may be carried over is matched before anything is answered.
+// Finds each pair's record of the last call. With carry-over this comes before the narrow phase and
+// covers all pairs at once.
 bool Collision::match_carried() {
   if (!carries_) return true;
   ContactsState& c = contacts_;
@@ -61,7 +63,8 @@ bool Collision::match_carried() {
   return true;
 }
 
-// Says of every pair where its contacts come from. False if the last frame can stay as it is.
+// Decides for every pair where its contacts come from. Returns false if all pairs keep their
+// contacts and the last frame can stay as it is.
 bool Collision::decide() {
   if (!carries_) return true;
   ContactsState& c = contacts_;
@@ -91,7 +94,8 @@ bool Collision::decide() {
   return false;
 }
 
-// True if a pair has moved so little that its contacts stay, and turns them if it must.
+// Returns true if a pair has moved so little that it keeps its contacts. Rotates them if their
+// total error would exceed the limit otherwise.
 bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
@@ -129,7 +133,7 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   return true;
 }
 
-// Normals and points follow body a.
+// Rotates normals and points with body a.
 void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
   const PoseChange turn(to, carried.turn);
@@ -153,12 +157,13 @@ float Collision::carry_limit(std::uint32_t pair, std::uint32_t shown) const noex
   return round_down(origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over));
 }
 
-// How much farther than the margin a pair that does not touch is at least; of composite shapes that
-// of what the mid phase found near.
+// Returns a lower bound on the distance beyond the margin of a pair that is not in contact. For
+// composite shapes it covers only the primitive pairs that the mid phase found.
 double Collision::clearance(std::uint32_t pair) const noexcept {
   const auto of = [&](const NarrowResult& answers, std::size_t at) {
-    // At level manifold the distance of what is farther than the margin may be a lower bound
-    // already, its error on the other side; half of it is one where the error is a rounding's.
+    // At level manifold the narrow phase may stop with a lower bound on a distance beyond the
+    // margin; the error bound then applies only upwards. Otherwise the error is only rounding, and
+    // half of the excess is a safe bound.
     const double beyond = answers.distance()[at] - limit_;
     return std::max(beyond - answers.error_bound()[at],
                     level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
@@ -175,7 +180,7 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
   return least;
 }
 
-// Notes what a pair was found to be, to be carried over. Room was made.
+// Stores the data that carry-over of the pair needs in the next call. The columns must have room.
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];

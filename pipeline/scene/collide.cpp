@@ -1,5 +1,6 @@
-// One call of Scene::collide: pairs are listed, answered by the narrow phase, and put into a frame,
-// batch by batch.
+// One call of Scene::collide: lists pairs, computes their contacts in the narrow phase (and the mid
+// phase, for composite shapes) and writes them into a frame, batch by batch. Other stages of
+// Collision are in the files that collision.h names.
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
@@ -52,11 +53,11 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
 
 namespace {
 
-/// A column that lies in the room of another one of the same memory as long as this lives.
+/// Lets a column use the storage of another column during the lifetime of this object.
 template <typename T>
 class Lodger {
  public:
-  /// Not if it must not, or holds anything.
+  /// Borrows only if `may`, the column is empty and both have the same memory resource.
   Lodger(Column<T>& column, Column<T>& room, bool may) noexcept
       : column_(column),
         room_(room),
@@ -81,7 +82,8 @@ class Lodger {
 
 Status Collision::run() {
   if (!same_scene_) contacts_.clear();
-  // Records of a call alone; those of pairs that sleep are merged with others that stay.
+  // These records are needed only during the call. With carry-over or sleeping pairs they persist
+  // and cannot be in borrowed storage.
   const Lodger records(contacts_.records.bits, scene_.pairs.spare(),
                        !carries_ && contacts_.dormant_records.size() == 0);
   contacts_.scene = scene_.serial;
@@ -102,13 +104,13 @@ Status Collision::run() {
   return Status::ok;
 }
 
-// Seams are told from floors by all contacts of a body.
+// One batch with seamless floors, because they compare all contacts of a body.
 std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
   const auto all = static_cast<std::uint32_t>(pairs);
   return options.seamless_floors ? all : std::min(all, kPairsPerBatch);
 }
 
-// A few pairs more than before need no more room.
+// Rounded up to a power of two, so that a few more pairs need no new allocation.
 std::size_t Collision::batch_room(const SceneOptions& options, std::size_t pairs) noexcept {
   const std::size_t batch = batch_size(options, pairs);
   return batch == 0 || batch > kPairsPerBatch ? batch : std::bit_ceil(batch);
@@ -144,7 +146,7 @@ Status Collision::answer() {
   return drop_seams() ? Status::ok : Status::out_of_memory;
 }
 
-// Sorts what has to be answered into convex pairs and others.
+// Lists the pairs that need new contacts, convex and composite ones separately.
 bool Collision::list_pairs() {
   scene_.convex.clear();
   scene_.composite.clear();
@@ -175,7 +177,7 @@ namespace {
   return {level, options.tier, margins.largest, options.execution, margins.each};
 }
 
-// Where the answer about each pair of the input lies.
+// Computes the index of the result for each input pair.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
   if (!resize_steadily(slots, answers.size())) return false;
@@ -206,7 +208,7 @@ Status Collision::answer_composite() {
   if (scene_.parts == nullptr) scene_.parts = new_in<PartAnswers>(options.memory, options.memory);
   if (scene_.parts == nullptr) return Status::out_of_memory;
   PrimitivePairs& parts = scene_.parts->pairs;
-  // What is farther apart than this cannot touch before its pair is made anew.
+  // Primitives farther apart than this cannot touch before the pair's contacts are computed again.
   PairMargins margins = 0.0;
   if (!find_margins(scene_.composite, carries_ ? options.carry_over : 0.0, margins)) {
     return Status::out_of_memory;

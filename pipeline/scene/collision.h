@@ -1,5 +1,8 @@
 #pragma once
 
+// The class behind Scene::collide. collide.cpp runs the stages; each group of members below names
+// the file that implements it.
+
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/scene/seams.h"
@@ -11,19 +14,19 @@
 
 namespace winnow {
 
-/// One call of Scene::collide: which pairs keep what they had, the answers about the others, and
-/// both put into a new frame, batch by batch.
+/// One call of Scene::collide. Decides which pairs keep their contacts, computes the contacts of
+/// the others, and writes both into a new frame, in batches of pairs.
 class Collision {
  public:
   static constexpr std::size_t kPairsPerTask = 512;
-  /// Pairs that are answered before what was found of them is put into the frame: few enough that
-  /// answers stay near and take little beside the frame, enough for many threads.
+  /// Pairs whose results are computed before they are written into the frame: few enough that
+  /// results stay in cache and use little memory, enough to occupy many threads.
   static constexpr std::uint32_t kPairsPerBatch = 32768;
 
-  /// So many of a scene's pairs at a time.
+  /// Returns the number of pairs in one batch.
   [[nodiscard]] static std::uint32_t batch_size(const SceneOptions& options,
                                                 std::size_t pairs) noexcept;
-  /// Elements of what holds one for each pair of a batch.
+  /// Returns the capacity of columns that have one element for each pair of a batch.
   [[nodiscard]] static std::size_t batch_room(const SceneOptions& options,
                                               std::size_t pairs) noexcept;
 
@@ -36,7 +39,7 @@ class Collision {
   enum class Origin : std::uint8_t { carried, convex, composite };
   using Place = ContactFrame::Place;
 
-  // What is known of the pairs (pair_memory.cpp).
+  // Records of pairs from the last call (pair_memory.cpp).
   [[nodiscard]] bool wake_dormant();
   void merge_dormant() noexcept;
   [[nodiscard]] bool list_records();
@@ -45,8 +48,7 @@ class Collision {
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
-  /// True if a pair at this place among those of the last frame and those that slept is one of the
-  /// latter, which come last.
+  /// True if index `shown` is a sleeping pair: those follow the pairs of the last frame.
   [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
     return shown >= shown_last_ && shown != kNoEntry;
   }
@@ -61,7 +63,7 @@ class Collision {
   [[nodiscard]] float carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
-  // Where contacts were (contact_history.cpp).
+  // Indices of contacts in the last frame (contact_history.cpp).
   [[nodiscard]] bool begin_history() noexcept;
   [[nodiscard]] bool grow_history() noexcept;
   [[nodiscard]] bool reserve_history() noexcept;
@@ -70,7 +72,7 @@ class Collision {
   [[nodiscard]] bool keep_places() noexcept;
   void note_poses() noexcept;
 
-  // Batches and answers (collide.cpp).
+  // Batches and the narrow phase (collide.cpp).
   [[nodiscard]] Status show();
   [[nodiscard]] Status answer();
   [[nodiscard]] bool list_pairs();
@@ -80,9 +82,10 @@ class Collision {
 
   // Offsets of bodies (contact_offsets.cpp).
   void find_limit() noexcept;
-  /// The gaps of pairs of bodies, each grown by `more`. False if memory is refused.
+  /// Computes the contact distance of each pair of bodies, grown by `more`. Returns false if memory
+  /// is refused.
   [[nodiscard]] bool find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins);
-  /// The same for the pairs of parts, not grown.
+  /// As find_margins, but for pairs of primitives and not grown.
   [[nodiscard]] bool find_part_margins(PairMargins& margins);
   void trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void trim_convex() noexcept;
@@ -91,7 +94,7 @@ class Collision {
   void rest_parts() noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
 
-  // Seams of floors (seams.cpp).
+  // Seamless floors (seams.cpp).
   class FloorWriter;
   [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();
@@ -104,14 +107,14 @@ class Collision {
   void drop(const FloorContact& seam) noexcept;
   void close_regions() noexcept;
 
-  // The frame (show_contacts.cpp).
+  // Output of the frame (show_contacts.cpp).
   [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || remembers_places_; }
   [[nodiscard]] bool open_frame();
   [[nodiscard]] bool close(const Place& end);
   [[nodiscard]] bool show_batch(Place& end);
   [[nodiscard]] bool grow_frame(const Place& end);
   [[nodiscard]] bool reserve_next();
-  /// The place in the last frame of a pair's contacts; kNoEntry.
+  /// Index of a pair's contacts in the last frame, or kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
   [[nodiscard]] Origin origin_of_fresh(const BodyPair& pair) const noexcept {
@@ -122,8 +125,8 @@ class Collision {
   [[nodiscard]] Origin origin_of(std::uint32_t pair) const noexcept {
     return static_cast<Origin>(contacts_.origin[pair - known_from_]);
   }
-  /// Of a pair that is not carried over: its place in the list of those like it, which of convex
-  /// ones is that of their answer, for they come in the order of their kinds.
+  /// Index in SceneState::convex or composite of a pair that is not carried over. For a convex pair
+  /// this is also the index of its result, because convex pairs are listed by kinds.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
     return contacts_.source[pair - batch_first_];
   }
@@ -137,7 +140,7 @@ class Collision {
   void write_convex(std::uint32_t first, std::uint32_t end, Place& at) noexcept;
   void write_answers(std::span<const std::uint32_t> pairs, Place& at) noexcept;
   void write_composite(std::uint32_t pair, const Place& to) noexcept;
-  /// What is told of a pair's place in the last frame: none that slept was shown in it.
+  /// Value of Contacts::previous_pair: sleeping pairs were not in the last frame.
   [[nodiscard]] std::uint32_t place_before(std::uint32_t shown) const noexcept {
     return has_slept(shown) ? kNoContact : shown;
   }
@@ -156,11 +159,11 @@ class Collision {
     return column.grow(batch_room(scene_.options, pair_count())) &&
            column.resize(batch_end_ - batch_first_);
   }
-  /// Of the batch.
+  /// Number of tasks in the batch.
   [[nodiscard]] std::size_t task_count() const noexcept {
     return (batch_end_ - batch_first_ + kPairsPerTask - 1) / kPairsPerTask;
   }
-  /// Calls body(task, first pair, end) for runs of the batch's pairs, in parallel.
+  /// Calls body(task, first pair, end) in parallel for consecutive ranges of the batch's pairs.
   template <typename Body>
   void for_tasks(Body&& body) const {
     scene_.options.execution.for_each(task_count(), [&](std::size_t task) {
@@ -172,27 +175,29 @@ class Collision {
   SceneState& scene_;
   ContactsState& contacts_;
   ContactLevel level_;
-  /// Levels at which pairs are carried over, in a scene that does.
+  /// The scene has carry-over and the level allows it.
   bool carries_;
-  /// Manifolds of composite shapes are those of regions.
+  /// Manifolds of composite shapes are merged into contact regions.
   bool reduces_;
-  /// It is told where contacts were.
+  /// SceneOptions::warm_start: previous indices of contacts are required.
   bool remembers_places_;
-  /// What is no farther apart touches.
+  /// Pairs with at most this distance are in contact.
   double limit_ = 0.0;
-  /// Pairs that the contacts showed before this call; and with those that slept and may have woken.
+  /// Number of pairs in the contacts before this call; and including sleeping pairs that may have
+  /// woken.
   std::uint32_t shown_last_ = 0;
   std::uint32_t known_last_ = 0;
-  /// What the contacts remember is of this scene; and of this level.
+  /// The contacts were last filled by this scene; and at this level.
   bool same_scene_;
   bool same_level_;
-  /// Record i is of pair i.
+  /// Record i belongs to pair i: the pairs are the same as in the last call.
   bool same_pairs_ = false;
-  /// The pairs that are worked on: [batch_first_, batch_end_). All, until answers are asked for.
+  /// The current batch is [batch_first_, batch_end_). It is all pairs until the narrow phase
+  /// begins.
   std::uint32_t batch_first_ = 0;
   std::uint32_t batch_end_ = 0;
-  /// The pair that the columns `origin` and `old_record` begin with: the batch's first, but where
-  /// pairs are carried over, which is decided of all at once.
+  /// First pair of the columns `origin` and `old_record`: the batch's first pair, or 0 with
+  /// carry-over, which is decided for all pairs at once.
   std::uint32_t known_from_ = 0;
 };
 

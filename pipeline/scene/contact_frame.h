@@ -1,5 +1,8 @@
 #pragma once
 
+// Storage of Contacts: the columns of one frame, and the records that `collide` keeps from one call
+// to the next. contacts.cpp implements it; Collision (collision.h) fills it.
+
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contacts.h>
@@ -15,10 +18,10 @@ namespace winnow {
 struct SceneOptions;
 struct SceneRoom;
 
-/// No entry.
+/// No index.
 inline constexpr std::uint32_t kNoEntry = ~0U;
 
-/// What `collide` shows: see Contacts. Pairs are sorted as BodyPairs are. Client data is that of
+/// The columns that Contacts show. Pairs are sorted like BodyPairs. Client data is in
 /// ContactsState::known.
 struct ContactFrame {
   explicit ContactFrame(std::pmr::memory_resource* memory) noexcept;
@@ -26,7 +29,7 @@ struct ContactFrame {
   Column<ContactRun> runs;
   Column<Key> key[2];
   Column<ContactEvent> event;
-  /// One more than pairs, and one more than manifolds.
+  /// One element more than pairs; likewise `point_first` has one more than manifolds.
   Column<std::uint32_t> manifold_first;
   /// Empty without composite shapes.
   Column<std::uint32_t> part[2];
@@ -37,31 +40,32 @@ struct ContactFrame {
   Column<std::uint32_t> point_first;
   ContactColumns points;
   std::size_t manifolds = 0;
-  /// There are, or were a while ago, composite shapes.
+  /// The scene has a composite shape (see SceneState::has_composites).
   bool with_parts = false;
 
   [[nodiscard]] std::size_t pairs() const noexcept { return event.size(); }
-  /// True if so much needs no more memory.
+  /// True if the columns have the capacity for these counts.
   [[nodiscard]] bool has_room(ContactLevel level, std::size_t pair_count,
                               std::size_t manifold_count, std::size_t point_count) const noexcept;
   [[nodiscard]] std::uint32_t part_of(int side, std::size_t manifold) const noexcept {
     return with_parts ? part[side][manifold] : kWholeShape;
   }
-  /// Room for what a level has, and no more. False if memory is refused.
+  /// Resizes the columns that a level uses and empties the others. Returns false if memory is
+  /// refused.
   [[nodiscard]] bool resize(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
                             std::size_t point_count) noexcept;
-  /// Room for so much at a level, for every run there may be, and for parts if there may be any.
-  /// False if memory is refused.
+  /// Reserves capacity for these counts at a level, for the largest number of runs, and for parts
+  /// if `parts`. Returns false if memory is refused.
   [[nodiscard]] bool reserve(ContactLevel level, bool parts, std::size_t pair_count,
                              std::size_t manifold_count, std::size_t point_count,
                              Pages pages) noexcept;
-  /// As much room as another frame has, so that the two can change places.
+  /// Reserves the same capacities as another frame, so that the two can be swapped.
   [[nodiscard]] bool reserve_as(const ContactFrame& other) noexcept;
   void clear() noexcept;
   void swap(ContactFrame& other) noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
-  /// Where something is written: the next pair, manifold and point.
+  /// A write position: the next pair, manifold and point.
   struct Place {
     std::uint32_t pair = 0;
     std::uint32_t manifold = 0;
@@ -74,17 +78,18 @@ struct ContactFrame {
       return *this;
     }
   };
-  /// How much pairs [first, first + count) take.
+  /// Number of pairs, manifolds and points in pairs [first, first + count).
   [[nodiscard]] Place extent(std::uint32_t first, std::uint32_t count = 1) const noexcept;
-  /// Copies pairs [first, first + count) of another frame of the same level to a place, with their
-  /// manifolds and points, but for runs; without any where the other has pairs alone.
+  /// Copies pairs [first, first + count) of another frame of the same level to a position, with
+  /// manifolds and points but not runs. If the other frame has only pairs, the copies have no
+  /// manifolds.
   void copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
             const Place& to) noexcept;
-  /// Writes what ends the columns of firsts.
+  /// Writes the last elements of manifold_first and point_first.
   void close(ContactLevel level, const Place& end) noexcept;
 
  private:
-  /// Calls make(column, count) for every column but those of runs and of points, until it is false.
+  /// Calls make(column, count) for every column except runs and points, until it returns false.
   template <typename Make>
   [[nodiscard]] bool make_columns(ContactLevel level, bool parts, std::size_t pair_count,
                                   std::size_t manifold_count, Make&& make) noexcept;
@@ -92,15 +97,15 @@ struct ContactFrame {
                    const Place& to) noexcept;
 };
 
-/// What is remembered of pairs from one `collide` to the next, in their order: of those that touch,
-/// and with carry-over of all.
+/// Records of pairs from one `collide` to the next, in the order of pairs: of the pairs in contact,
+/// or with carry-over of all pairs.
 struct PairRecords {
   explicit PairRecords(std::pmr::memory_resource* memory) noexcept : bits(memory), shown(memory) {}
 
   /// PairOrder::bits.
   Column<std::uint64_t> bits;
-  /// Its place in the ContactFrame, kNoEntry if it does not touch. Empty where record i is that of
-  /// pair i of the frame.
+  /// Index in the ContactFrame, or kNoEntry if the pair is not in contact. Empty if record i
+  /// belongs to pair i of the frame.
   Column<std::uint32_t> shown;
 
   [[nodiscard]] std::size_t size() const noexcept { return bits.size(); }
@@ -130,12 +135,12 @@ struct PairRecords {
   }
 };
 
-/// Which objects bodies were when contacts were last filled, by number: who they are now may have
-/// come in the place of others.
+/// Keys and client data of all bodies when contacts were last filled, by id. A body that has the
+/// same id now may be another one.
 struct KnownBodies {
   explicit KnownBodies(std::pmr::memory_resource* memory) noexcept : stamp(memory), data(memory) {}
 
-  Column<std::uint32_t> stamp;  ///< of keys
+  Column<std::uint32_t> stamp;  ///< stamp of the key
   Column<ClientData> data;
   std::size_t live = 0;
 
@@ -155,70 +160,73 @@ struct KnownBodies {
   }
 };
 
-/// With carry-over, of every pair.
+/// Data of a pair, in or out of contact, in a scene with carry-over.
 struct CarriedPair {
-  /// The limit of a pair that is made anew in the next frame, whether it moves or not.
+  /// A limit that forces new contacts in the next frame, even if the pair does not move.
   static constexpr float kNever = -1.0F;
 
-  /// When its manifolds were made: b in the frame of a, or a in that of b if `from_b`.
+  /// Relative pose at the time the manifolds were computed: b in the frame of a, or a in the frame
+  /// of b if `from_b`.
   Pose relative;
-  /// Orientation of a to which normals and points belong.
+  /// Orientation of a for which normals and points are stored.
   double turn[4];
-  /// How far it may have moved against `relative` before it must be made anew.
+  /// The pair may move by at most this, relative to `relative`, before its contacts are computed
+  /// again.
   float limit;
-  /// While it sleeps and when it wakes: the call in which it was last looked at.
+  /// While the pair sleeps and when it wakes: the clock of the last call that tested it.
   std::uint32_t looked_at;
-  /// Of the body that is looked at from the other one; and of body a.
+  /// Radius of the body whose relative pose is stored (the smaller one); and radius of body a.
   float radius;
   float radius_a;
-  /// What turning its points in float has cost so far, as a length.
+  /// Accumulated float error from rotating the points, as a length.
   float drift;
   bool from_b;
-  /// `error_bound` has been widened.
+  /// `error_bound` includes the carry-over.
   bool widened;
 };
 
-/// Everything that Contacts are.
+/// The state of Contacts.
 struct ContactsState {
   explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
 
   ContactLevel level = ContactLevel::pairs;
   ContactFrame frame;
-  /// The last one, where manifolds are carried over or points are to be found in it.
+  /// The last frame, if manifolds are carried over or points are matched with it.
   ContactFrame before;
   Column<EndedContact> ended;
-  /// Without carry-over and between two calls they are empty: the frame has the same.
+  /// Without carry-over they are empty between two calls: the frame has the same data.
   PairRecords records;
   PairRecords records_before;
   KnownBodies known;
   Column<CarriedPair> carried;
   Column<CarriedPair> carried_before;
-  /// Pairs of bodies that sleep, with what is known of them; sorted.
+  /// Pairs of sleeping bodies with their records, sorted.
   ContactFrame dormant;
   PairRecords dormant_records;
   Column<CarriedPair> dormant_carried;
-  /// Of what is shown.
+  /// Previous indices of the pairs and points in `frame`.
   ContactHistory history;
-  /// Which scene filled these, and how it stood then.
+  /// The scene that filled these contacts, and its counters at that time.
   std::uint64_t scene = 0;
   std::uint32_t clock = 0;
   std::uint64_t pairs_serial = 0;
   std::uint64_t regroupings = 0;
   std::size_t carried_count = 0;
 
-  /// By pair of the scene: the record it had, and where its answer comes from.
+  /// By pair of the scene or batch: its record of the last call; its index in the input of the
+  /// narrow phase; and its Collision::Origin.
   Column<std::uint32_t> old_record;
   Column<std::uint32_t> source;
   Column<std::uint8_t> origin;
-  /// By pair of the last frame: shown again.
+  /// By pair of the last frame: 1 if the pair is in the new frame too.
   Column<std::uint8_t> shown_again;
-  /// What tasks counted, then where they write.
+  /// Counts by task, which become the write positions of the tasks.
   Column<ContactFrame::Place> sums;
-  /// Every pair shown persisted and none ended.
+  /// In the last call all pairs persisted and none ended.
   bool is_settled = false;
 
   void clear() noexcept;
-  /// See Scene::reserve_contacts (reserve.cpp).
+  /// Implements Scene::reserve_contacts (reserve.cpp).
   [[nodiscard]] bool reserve(const SceneRoom& room, const SceneOptions& options,
                              Pages pages) noexcept;
 };

@@ -1,5 +1,5 @@
-// Pairs that may be solved without each other: islands, by joining the bodies of every pair, and
-// colours, given one pair after the other.
+// Scene::islands and Scene::colours: groups of contacts for parallel solvers. Islands use
+// union-find over the bodies of every pair; colours are assigned greedily in the order of pairs.
 
 #include <winnow/pipeline/contact_groups.h>
 
@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::size_t kPairsPerJoin = 4096;
 
-/// Disjoint sets of bodies that any thread may join: each body leads to one with a smaller number,
-/// or is the first of its set, so that the first is the same whoever joins whom before
-/// (Anderson and Woll, "Wait-free parallel algorithms for the union-find problem", 1991).
+/// Concurrent union-find of bodies: each body points to one with a smaller number or is the root of
+/// its set. The root is the smallest number, so it does not depend on the order of joins (Anderson
+/// and Woll, "Wait-free parallel algorithms for the union-find problem", 1991).
 class BodySets {
  public:
   explicit BodySets(Column<std::uint32_t>& towards) noexcept : towards_(towards) {
@@ -56,7 +56,7 @@ class BodySets {
   Column<std::uint32_t>& towards_;
 };
 
-/// Pairs as grouping sees them: bodies that are not fixed.
+/// The pairs to be grouped. Fixed bodies are not movable and join nothing.
 struct MovablePairs {
   const SceneState& scene;
   const ContactFrame& frame;
@@ -65,7 +65,7 @@ struct MovablePairs {
   [[nodiscard]] bool is_movable(std::size_t pair, int side) const noexcept {
     return scene.motion[frame.key[side][pair].id] != Motion::fixed;
   }
-  /// The first one that is movable; one of a contact is.
+  /// Returns the first movable body; at least one body of a contact is movable.
   [[nodiscard]] std::uint32_t movable(std::size_t pair) const noexcept {
     return frame.key[is_movable(pair, 0) ? 0 : 1][pair].id;
   }
@@ -125,7 +125,7 @@ Status Scene::islands(const Contacts& contacts, ContactGroups& out) const {
                     out.group_[i] = sets.first_of(pairs.movable(i));
                   }
                 });
-  // Numbers in place of first bodies, in the order in which pairs bring them up.
+  // Replaces root bodies with island numbers, in the order of the first pairs.
   std::fill(out.of_body_.begin(), out.of_body_.end(), kNoContact);
   std::uint32_t islands = 0;
   for (std::uint32_t& group : out.group_) {
@@ -157,7 +157,7 @@ Status Scene::colours(const Contacts& contacts, ContactGroups& out) const {
       used[side] = &out.colours_[pairs.frame.key[side][i].id];
       taken |= *used[side];
     }
-    // The bit of the rest is never set, so that it is free when no other is.
+    // kRestColour's bit is never set, so it is free if no other bit is.
     const auto colour = static_cast<std::uint32_t>(std::countr_one(taken));
     out.group_[i] = colour;
     groups = std::max(groups, colour + 1);

@@ -1,5 +1,6 @@
-// Where contacts were in the last frame: pairs by their keys, points by the parts and features that
-// make them, and what is left over by its place on either body.
+// Warm starts: finds the index of each contact in the last frame. Pairs match by key; points match
+// by primitives and features, and the remaining ones by position on either body. Collision
+// (collide.cpp, show_contacts.cpp) calls this.
 
 #include "pipeline/scene/contact_history.h"
 
@@ -44,8 +45,7 @@ class PointMatch {
   }
   [[nodiscard]] std::uint32_t left_over() const noexcept { return old_points_.size() - matched_; }
 
-  // Manifolds come in about the same order in every frame, so that a search from where the last one
-  // ended seldom goes far.
+  // Manifolds have about the same order in every frame, so the search starts at the last match.
   void by_part() noexcept {
     std::uint32_t at = old_manifolds_.first;
     for (std::uint32_t m = manifolds_.first; m < manifolds_.end; ++m) {
@@ -62,10 +62,11 @@ class PointMatch {
     }
   }
 
-  // Whatever the parts: features of regions are told apart among all parts of two bodies.
+  // Ignores the primitives: features of regions are unique among all primitives of the two bodies.
   void by_feature() noexcept { by_feature(points_, old_points_); }
 
-  // Points in their order take the nearest one that is left, on the body on which that moved less.
+  // Each point in turn takes the nearest unmatched point of the last frame. The distance is the
+  // smaller one of the distances in the frames of the two bodies.
   template <typename Places>
   void by_place(const Places& places, double reach) noexcept {
     for (std::uint32_t p = points_.first; p < points_.end; ++p) {
@@ -128,7 +129,8 @@ class PointMatch {
   std::uint32_t matched_ = 0;
 };
 
-/// Where two bodies stand and stood, and what that makes of points relative to the first.
+/// Poses of two bodies now and in the last frame; measures how far a point has moved on either
+/// body. Points are relative to the position of the first body.
 class PairPlaces {
  public:
   PairPlaces(const Pose (&now)[2], const Pose (&before)[2]) noexcept {
@@ -187,19 +189,19 @@ bool Collision::begin_history() noexcept {
   return true;
 }
 
-// Room for what the frame has.
+// Resizes to the frame.
 bool Collision::grow_history() noexcept {
   ContactHistory& history = contacts_.history;
   return !remembers_places_ || (history.pair.resize(contacts_.frame.pairs()) &&
                                 history.point.resize(contacts_.frame.points.size()));
 }
 
-// The frame's points are looked for by the next call.
+// Reserves for the next call, which flags this frame's points.
 bool Collision::reserve_history() noexcept {
   return !remembers_places_ || contacts_.history.taken.reserve(contacts_.frame.points.size());
 }
 
-// Of the pairs that lie in a stretch of the frame.
+// Matches the points of all pairs of the frame.
 void Collision::match_points() noexcept {
   if (!remembers_places_) return;
   if (level_ == ContactLevel::manifold) {
@@ -233,7 +235,7 @@ void Collision::match_points(std::uint32_t shown) noexcept {
                  reach);
 }
 
-// A frame that stays as it is.
+// Called if the frame stays as it is: every contact keeps its index.
 bool Collision::keep_places() noexcept {
   if (!remembers_places_) return true;
   ContactHistory& history = contacts_.history;
@@ -247,7 +249,7 @@ bool Collision::keep_places() noexcept {
   return true;
 }
 
-// Where bodies stand, of those that have moved or are new.
+// Stores the poses of bodies that have moved or are new.
 void Collision::note_poses() noexcept {
   Column<Pose>& known = contacts_.history.pose;
   const std::size_t old = known.size();

@@ -9,31 +9,32 @@
 
 namespace winnow {
 
-/// How far a point without a feature of its own may have moved, on the body on which it moved less,
-/// to be taken for one of the last frame: this share of the smaller body's radius.
+/// A point that has no feature match may have moved by at most this share of the smaller body's
+/// radius, measured on the body on which it moved less, to match a point of the last frame.
 inline constexpr double kSamePlaceShare = 0.02;
 
-/// Of a pair that left more points of the last frame over than this, points are known by their
-/// features alone.
+/// If a pair has more unmatched points of the last frame than this, its points are matched by
+/// feature only: matching by position is quadratic.
 inline constexpr std::uint32_t kMostLeftOver = 256;
 
-/// Where the pairs and points of a ContactFrame were in the one before. Empty where nobody asked.
+/// Maps the pairs and points of a ContactFrame to their indices in the frame before, for warm
+/// starts. Empty if the scene does not request it.
 struct ContactHistory {
   explicit ContactHistory(std::pmr::memory_resource* memory) noexcept
       : pair(memory), point(memory), taken(memory), pose(memory) {}
 
-  /// By pair and by point: the place in the frame before, or kNoContact.
+  /// Index in the frame before, by pair and by point, or kNoContact.
   Column<std::uint32_t> pair;
   Column<std::uint32_t> point;
-  /// By point of the frame before: a point of this one was it.
+  /// By point of the frame before: 1 if a point of this frame matched it.
   Column<std::uint8_t> taken;
-  /// By id of a body: where it stood.
+  /// Pose at the last `collide`, by body id.
   Column<Pose> pose;
-  /// Everything is where it was.
+  /// The last call kept the whole frame: every pair and point maps to itself.
   bool is_same = false;
 
   void clear() noexcept;
-  /// Room for what Scene::reserve_contacts promises.
+  /// Reserves for Scene::reserve_contacts.
   [[nodiscard]] bool reserve(std::size_t pairs, std::size_t points, std::size_t bodies,
                              Pages pages) noexcept;
 };

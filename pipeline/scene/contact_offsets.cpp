@@ -1,6 +1,6 @@
-// Contact and rest offsets of bodies. Each pair has a gap of its own, which is its margin in the
-// narrow phase; contacts within it are then measured from where the bodies rest. None of this runs
-// in a scene without offsets.
+// Contact and rest offsets of bodies. Each pair has its own contact distance, which is its margin
+// in the narrow phase; contacts are then measured from the surfaces moved by the rest offsets.
+// Collision calls this after the narrow phase. None of it runs in a scene without offsets.
 
 #include "core/hooks/log.h"
 #include "core/sort/stretches.h"
@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kLargestLength = std::numeric_limits<double>::max();
 constexpr std::size_t kOffsetPairsPerStretch = 256;
-/// Of a sum of two doubles.
+/// Relative rounding error of a sum of two doubles.
 constexpr double kSumError = 0x1p-52;
 
-/// The depth and place of a point once the surfaces of both have moved out by their rest offsets.
+/// Updates the depth and position of a point after both surfaces moved out by their rest offsets.
 void shift(float& depth, float* const (&position)[3], const double (&normal)[3],
            const double (&rest)[2]) noexcept {
   depth = static_cast<float>(static_cast<double>(depth) + rest[0] + rest[1]);
@@ -29,7 +29,7 @@ void shift(float& depth, float* const (&position)[3], const double (&normal)[3],
   }
 }
 
-/// What a sum of a distance and rest offsets may be off by.
+/// Bounds the rounding error of a distance plus rest offsets.
 [[nodiscard]] double sum_error(double distance, const double (&rest)[2]) noexcept {
   return kSumError * (std::abs(distance) + std::abs(rest[0]) + std::abs(rest[1]));
 }
@@ -55,7 +55,7 @@ Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
   return Status::ok;
 }
 
-// From the first ones on every body has its own.
+// From the first offsets on, the column has an element for every body.
 bool SceneState::begin_offsets() noexcept {
   if (has_offsets()) return true;
   if (!offsets.grow(shape.capacity())) return false;
@@ -70,8 +70,8 @@ double SceneState::gap_of(const BodyPair& pair) const noexcept {
   return std::min(options.margin + own, kLargestLength);
 }
 
-// One limit for all decides which pairs touch: the distance of a pair that is beyond its own gap is
-// put as far beyond the limit.
+// One limit decides for all pairs which are in contact. `trim` changes the distance of each pair
+// beyond its own contact distance: to the limit plus the excess.
 void Collision::find_limit() noexcept {
   limit_ = scene_.options.margin;
   if (!scene_.has_offsets()) return;
@@ -146,7 +146,7 @@ void Collision::trim_parts() noexcept {
                 });
 }
 
-// Distances and points are measured from where the bodies rest.
+// Measures distance and points from the surfaces moved by the rest offsets.
 void Collision::rest(const BodyPair& bodies, std::uint32_t at,
                      const NarrowColumns& answers) noexcept {
   const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};

@@ -1,3 +1,6 @@
+// ContactFrame's columns, and the public interface of Contacts, which only reads them.
+// Scene::collide fills them (show_contacts.cpp).
+
 #include <winnow/pipeline/contacts.h>
 
 #include "core/memory/columns.h"

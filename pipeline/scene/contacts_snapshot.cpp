@@ -1,6 +1,6 @@
-// What contacts show and what they remember for the next call. Of keys whose bodies live the ids
-// are saved, so that contacts are of the scene that they are loaded for whatever its keys are by
-// then.
+// Scene::save_contacts and load_contacts: the contacts and the records for the next call. Keys of
+// live bodies are saved as ids, so that loaded contacts refer to the bodies of the present scene,
+// whatever keys these have.
 
 #include <winnow/pipeline/scene.h>
 
@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kContactsMagic = "WINNOWCT";
 constexpr std::uint32_t kContactsVersion = 2;
 
-/// A record as it is saved.
+/// The saved form of a record.
 struct SavedRecord {
   BodyPair pair;
   std::uint32_t code;
@@ -31,8 +31,8 @@ struct SavedRecord {
 
 static_assert(sizeof(SavedRecord) == 16 && sizeof(EndedContact) == 32);
 
-/// Calls visit(column) for all columns of a frame but runs, keys and parts, whatever its level, and
-/// visit_parts(side) for those.
+/// Calls visit(column) for all columns of a frame except runs, keys and parts, at any level, and
+/// visit_parts(side) for parts.
 template <typename Frame, typename Visit, typename VisitParts>
 void visit_frame(Frame& frame, Visit&& visit, VisitParts&& visit_parts) {
   visit(frame.event);
@@ -48,12 +48,12 @@ void visit_frame(Frame& frame, Visit&& visit, VisitParts&& visit_parts) {
   visit(frame.points.feature);
 }
 
-/// How a scene stands as far as contacts tell.
+/// The counters of a scene that must be equal when its contacts are loaded.
 [[nodiscard]] std::array<std::uint64_t, 4> standing(const SceneState& scene) noexcept {
   return {scene.clock, scene.regroupings, scene.keys.slot_count(), scene.keys.size()};
 }
 
-/// Contacts on their way into a snapshot.
+/// Writes contacts into a snapshot.
 class ContactsWriter {
  public:
   ContactsWriter(ByteWriter& out, const SceneState& scene) noexcept : out_(out), scene_(scene) {}
@@ -82,7 +82,7 @@ class ContactsWriter {
   void put_column(const Column<T>& column) noexcept {
     out_.put_array(std::span<const T>(column.data(), column.size()));
   }
-  /// A live one's stamp is 0, which no key has.
+  /// Writes the stamp of a live key as 0, which no key has.
   void put_key(Key key) noexcept {
     out_.put(key.id);
     out_.put(scene_.keys.is_valid(key) ? 0U : key.stamp);
@@ -124,7 +124,7 @@ class ContactsWriter {
       out_.put(one.widened);
     }
   }
-  // Those that are not kept are what the frame shows.
+  // Writes the records. Without stored records, each pair of the frame is its own record.
   void put_records(const ContactFrame& frame, const PairRecords& records) noexcept {
     const bool are_kept = records.size() != 0;
     out_.put(std::uint64_t{are_kept ? records.size() : frame.pairs()});
@@ -155,8 +155,8 @@ class ContactsWriter {
   const SceneState& scene_;
 };
 
-/// Reads contacts into a state that has none, and asks of all numbers that lead somewhere whether
-/// they do.
+/// Reads contacts into an empty state. Checks every index and count, because the bytes are
+/// untrusted.
 class ContactsReader {
  public:
   ContactsReader(ByteReader& in, const SceneState& scene, ContactsState& contacts) noexcept
@@ -178,7 +178,7 @@ class ContactsReader {
         read_history();
     if (!read || !in_.rest().empty()) in_.fail();
     contacts_.scene = scene_.serial;
-    // Of no pairs that the scene has found: all are matched anew.
+    // No serial of BodyPairs equals this, so the next call matches all pairs.
     contacts_.pairs_serial = ~std::uint64_t{0};
     return status_of(in_);
   }
@@ -192,7 +192,7 @@ class ContactsReader {
     return lives ? scene_.keys.key_of(id) : Key{id, stamp};
   }
 
-  /// Room for so many that take so many bytes each.
+  /// Resizes a column for elements of `bytes` bytes each; fails if the input is shorter.
   template <typename T>
   [[nodiscard]] bool make_room(Column<T>& column, std::uint64_t count, std::size_t bytes) noexcept {
     if (!in_.ok() || count > in_.rest().size() / bytes) return in_.fail();
@@ -232,7 +232,7 @@ class ContactsReader {
     return good ? take(saved, frame, data, records) : in_.fail();
   }
 
-  /// What was found to be good.
+  /// Stores the data after all checks.
   [[nodiscard]] bool take(const Column<SavedRecord>& saved, ContactFrame& frame,
                           const Column<ClientData> (&data)[2], PairRecords& records) noexcept {
     KnownBodies& known = contacts_.known;
@@ -278,7 +278,7 @@ class ContactsReader {
     return in_.ok();
   }
 
-  /// True if `first` begins at 0, never falls, and ends at `end`; of a level without, if empty.
+  /// True if `first` begins at 0, never decreases, and ends at `end`.
   [[nodiscard]] static bool leads(const Column<std::uint32_t>& first, std::size_t count,
                                   std::size_t end) noexcept {
     return first.size() == count + 1 && first[0] == 0 && first[count] == end &&
@@ -311,8 +311,8 @@ class ContactsReader {
                                            : points == 0 && frame.point_first.empty();
   }
 
-  /// Runs of all pairs of what is shown; records in their order, each shown pair once, of its
-  /// bodies.
+  /// Checks that runs cover all pairs of the frame, that records are sorted, and that each pair of
+  /// the frame has exactly one record, with its bodies.
   [[nodiscard]] bool are_good(const ContactFrame& frame,
                               const Column<SavedRecord>& records) noexcept {
     std::size_t end = 0;

@@ -13,8 +13,8 @@
 
 namespace winnow {
 
-/// Which layers do not meet: a square of bits, as wide as the highest layer that was told of. All
-/// others meet.
+/// A symmetric bit matrix of the layers that do not collide, as wide as the highest layer that has
+/// been set apart from another. All other layers collide.
 class LayerMatrix {
  public:
   enum class Restored : std::uint8_t { good, refused, out_of_memory };
@@ -27,14 +27,15 @@ class LayerMatrix {
     return (apart_[word(a, b)] >> b % kBits & 1U) == 0;
   }
 
-  /// Room to tell of layers up to `layer`. False, and unchanged, if memory is refused. O(layers^2).
+  /// Grows the matrix to include `layer`. Returns false and changes nothing if memory is refused.
+  /// O(layers^2).
   [[nodiscard]] bool reach(std::uint32_t layer) noexcept {
     if (layer < width_) return true;
     const std::uint32_t old = width_ / kBits;
     const std::uint32_t wide = (layer / kBits + 1);
     if (!apart_.grow(std::size_t{wide} * wide * kBits)) return false;
     apart_.set_size(std::size_t{wide} * wide * kBits);
-    // The last rows first: each lies behind where it was.
+    // From the last row on, because each row moves to a higher address.
     for (std::uint32_t row = wide * kBits; row-- > 0;) {
       std::uint64_t* const to = apart_.data() + std::size_t{row} * wide;
       const std::uint32_t known = row < width_ ? old : 0;
@@ -46,7 +47,7 @@ class LayerMatrix {
     return true;
   }
 
-  /// Both are within reach.
+  /// Requires both layers within the width of the matrix (see `reach`).
   void set(std::uint32_t a, std::uint32_t b, bool meet) noexcept {
     const std::uint32_t pair[2] = {a, b};
     for (int side = 0; side < 2; ++side) {
@@ -57,11 +58,12 @@ class LayerMatrix {
     }
   }
 
-  /// A bit for each pair that does not meet, row by row.
+  /// One bit for each pair that does not collide, row by row.
   [[nodiscard]] std::span<const std::uint64_t> words() const noexcept {
     return {apart_.data(), apart_.size()};
   }
-  /// Becomes the one that has these words.
+  /// Replaces the contents with saved words; refuses them unless the matrix is square and
+  /// symmetric.
   [[nodiscard]] Restored restore(std::span<const std::uint64_t> words) noexcept {
     std::uint32_t wide = 0;
     while (std::size_t{wide} * wide * kBits < words.size() && wide < kMostWords) ++wide;

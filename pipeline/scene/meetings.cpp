@@ -1,5 +1,5 @@
-// Which pairs of bodies may meet: beyond their sets and filters those whose layers meet, that are
-// not ignored and that the caller's predicate accepts.
+// Filters of pairs beyond sets and object filters: layers, ignored pairs and the caller's
+// predicate. SceneState::find_pairs and SceneSweep apply them through `may_pair`.
 
 #include "core/hooks/log.h"
 #include "pipeline/scene/scene_state.h"
@@ -10,7 +10,7 @@
 namespace winnow {
 namespace {
 
-/// Of a pair that is to be dropped. Ids are below kMaxBodies.
+/// Marks an ignored pair for removal. Ids are below kMaxBodies and leave this bit free.
 constexpr std::uint64_t kMark = std::uint64_t{1} << 63U;
 
 [[nodiscard]] std::uint64_t pair_number(ObjectId a, ObjectId b) noexcept {
@@ -48,7 +48,7 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
   return Status::ok;
 }
 
-/// Puts pairs that are there into their places among those that were.
+/// Merges new pairs into the sorted list.
 bool SceneState::add_ignored(std::span<const KeyPair> told) noexcept {
   const std::size_t before = ignored.size();
   const std::size_t all = before + told.size();
@@ -56,7 +56,7 @@ bool SceneState::add_ignored(std::span<const KeyPair> told) noexcept {
   if (!ignored.grow(all + told.size()) || !ignores.grow(shape.size())) return false;
   ignores.set_size(shape.size());
   std::fill(ignores.begin() + known, ignores.end(), std::uint8_t{0});
-  // Behind where all of them are going to end.
+  // The new pairs are sorted beyond the end of the merged list.
   ignored.set_size(all + told.size());
   std::uint64_t* const added = ignored.data() + all;
   for (std::size_t i = 0; i < told.size(); ++i) {
@@ -126,7 +126,7 @@ std::uint16_t Scene::layer(Key key) const noexcept {
   return contains(key) ? state_->layer_of(key.id) : std::uint16_t{0};
 }
 
-// From the first one on that is not 0 every body has its own.
+// From the first layer other than 0 on, the column has an element for every body.
 bool SceneState::begin_layers() noexcept {
   if (with_layers) return true;
   if (!layer.grow(shape.capacity())) return false;
@@ -145,7 +145,7 @@ bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
 bool SceneState::would_pair(ObjectId a, ObjectId b) const noexcept {
   if (motion[a] != Motion::dynamic) std::swap(a, b);
   if (a == b || motion[a] != Motion::dynamic || !may_meet(filter_of(a), filter_of(b))) return false;
-  // The predicate is asked about the two in the order in which partitions have them.
+  // The predicate gets the two bodies in the order in which partitions return them.
   if (motion[b] == Motion::dynamic && place[b].id < place[a].id) std::swap(a, b);
   return may_pair(a, b);
 }
@@ -156,7 +156,7 @@ ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
   return filter;
 }
 
-// Whatever was said of bodies that were removed: their ids are going to be others'.
+// Forgets the ignored pairs of removed bodies, because new bodies will get their ids.
 void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
   bool was_said = false;
   for (const Key& key : removed) {

@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// The pose of b in the frame of a, its orientation a unit quaternion.
+/// Returns the pose of b in the frame of a, with a unit quaternion.
 [[nodiscard]] inline Pose relative_pose(const Pose& a, const Pose& b) noexcept {
   const auto& p = a.orientation;
   const auto& q = b.orientation;
@@ -32,9 +32,9 @@ namespace winnow {
   return pose;
 }
 
-/// No point within `radius` of the origin moves farther than this from one pose to another. Both
-/// orientations are unit quaternions: the chord of a turn by t is 2 r sin(t / 2), and the
-/// quaternions are 2 sin(t / 4) apart.
+/// Upper bound on the distance that a point within `radius` of the origin moves from one pose to
+/// another. Both orientations must be unit quaternions. A rotation by t moves a point along a chord
+/// of 2 r sin(t / 2), and the quaternions differ by 2 sin(t / 4).
 [[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double radius) noexcept {
   double shift = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -50,12 +50,12 @@ namespace winnow {
     plus += s * s;
   }
   const double turn = std::min(minus, plus);
-  // An infinite radius times no turn is no motion.
+  // Avoids NaN for an infinite radius without rotation.
   const double chord = turn == 0.0 ? 0.0 : 2.0 * radius * std::sqrt(turn);
   return std::sqrt(shift) + chord;
 }
 
-/// The same pose with a unit quaternion.
+/// Returns the pose with its quaternion normalized.
 [[nodiscard]] inline Pose with_unit_turn(const Pose& pose) noexcept {
   Pose unit = pose;
   double square = 0.0;

@@ -1,5 +1,6 @@
-// What is known of a scene's pairs from the last call: matched with the pairs of this one, put
-// aside while they sleep, told where they have ended.
+// Records of pairs between calls: matches them with the pairs of this call, stores the records of
+// sleeping pairs separately, and lists the pairs that ended. Collision (collide.cpp,
+// show_contacts.cpp) calls this.
 
 #include "core/sort/stretches.h"
 #include "pipeline/narrow/steady_column.h"
@@ -15,7 +16,7 @@ constexpr std::size_t kPairsPerListing = 8192;
 
 }  // namespace
 
-// Of a frame whose records are not kept.
+// Lists the records of the last frame if they were not kept.
 bool Collision::list_records() {
   ContactsState& c = contacts_;
   known_last_ = shown_last_ = static_cast<std::uint32_t>(c.frame.pairs());
@@ -34,8 +35,7 @@ bool Collision::list_records() {
   return true;
 }
 
-// Pairs of bodies that slept are put back among those of the last frame, when bodies may have
-// woken.
+// Appends sleeping pairs to the last frame again if bodies may have woken.
 bool Collision::wake_dormant() {
   ContactsState& c = contacts_;
   if (!same_level_) {
@@ -65,7 +65,7 @@ bool Collision::wake_dormant() {
   return true;
 }
 
-// Both in the order of pairs. Room was made.
+// Merges two sorted lists. The columns must have room.
 void Collision::merge_dormant() noexcept {
   ContactsState& c = contacts_;
   const PairRecords& slept = c.dormant_records;
@@ -86,7 +86,8 @@ void Collision::merge_dormant() noexcept {
   c.dormant_carried.clear();
 }
 
-// Which record each pair of the batch had. Both are sorted alike. Room was made.
+// Finds the record of each pair of the batch; both lists are sorted alike. The column must have
+// room.
 void Collision::match(const PairRecords& records) noexcept {
   const std::uint64_t* const begin = records.bits.begin();
   const std::uint64_t* const none = records.bits.end();
@@ -101,7 +102,7 @@ void Collision::match(const PairRecords& records) noexcept {
     }
   });
 }
-// A pair that is not looked at because neither body is dynamic any more.
+// True if neither body is dynamic any more, so that the pair is no longer tested.
 bool Collision::sleeps(const BodyPair& pair) const noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
     if (!scene_.keys.is_valid(contacts_.known.key(body)) ||
@@ -112,10 +113,10 @@ bool Collision::sleeps(const BodyPair& pair) const noexcept {
   return true;
 }
 
-// Pairs of the last frame that are not in this one have ended, or sleep.
+// Pairs of the last frame that are not in this frame have ended, or sleep.
 bool Collision::close_frame() {
   ContactsState& c = contacts_;
-  // Bodies fall asleep by changing their partition, so that pairs are found anew.
+  // A body falls asleep by changing its partition, which makes find_pairs run again.
   const bool may_sleep = same_level_ && !same_pairs_ && c.regroupings != scene_.regroupings;
   if ((may_sleep && !put_to_sleep()) || !list_ended()) return false;
   c.is_settled =
@@ -160,7 +161,7 @@ bool Collision::put_to_sleep() {
   return true;
 }
 
-// In the order in which they were shown, those that slept last.
+// In the order of the last frame, pairs that slept last.
 bool Collision::list_ended() {
   ContactsState& c = contacts_;
   c.ended.clear();
@@ -180,7 +181,8 @@ bool Collision::list_ended() {
   return list(false) && (known_last_ == shown_last_ || list(true));
 }
 
-// Who the bodies are, where any touch; which has changed only if some came or went.
+// Stores the keys and data of all bodies, unless there are no contacts. They are unchanged if no
+// body was added or removed.
 bool Collision::note_bodies() {
   KnownBodies& known = contacts_.known;
   if (contacts_.frame.pairs() == 0 && contacts_.dormant_records.size() == 0) {

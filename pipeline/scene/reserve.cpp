@@ -1,6 +1,5 @@
-// Room made before it is needed: columns and partitions are told what they are going to hold, and
-// the narrow phase, which keeps to itself what it works with, is asked about as many pairs as there
-// are going to be.
+// Scene::reserve and reserve_contacts. Columns and partitions reserve for given counts; the narrow
+// phase, whose scratch is private, is called with the same number of pairs as a rehearsal.
 
 #include "core/memory/columns.h"
 #include "core/threads/float_environment.h"
@@ -15,8 +14,8 @@
 namespace winnow {
 namespace {
 
-// What comes and goes leaves holes in the rows of a partition, which closes them once they are a
-// fifth of all rows, and of more rows than this.
+// A partition with holes in its rows (from added and removed objects) compacts them once they are a
+// fifth of all rows and more than this number.
 constexpr std::size_t kFewRows = 64;
 
 [[nodiscard]] std::size_t rows_for(std::size_t bodies) noexcept {
@@ -27,7 +26,7 @@ constexpr std::size_t kFewRows = 64;
   return std::accumulate(std::begin(room.bodies), std::end(room.bodies), std::size_t{0});
 }
 
-// Pairs that are shown.
+// Number of pairs in Contacts.
 [[nodiscard]] std::size_t shown_pairs(const SceneRoom& room) noexcept {
   return room.level == ContactLevel::pairs ? room.pairs : room.touching;
 }
@@ -63,7 +62,7 @@ Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages
   return out.state_->reserve(room, state_->options, pages) ? Status::ok : Status::out_of_memory;
 }
 
-// The partitions come last: one that was made is seen.
+// Partitions come last, because a new partition is visible to callers.
 Status SceneState::reserve(const SceneRoom& room, Pages pages) {
   if (!reserve_bodies(room, pages)) return Status::out_of_memory;
   const Status status = reserve_answers(room, pages);
@@ -73,7 +72,7 @@ Status SceneState::reserve(const SceneRoom& room, Pages pages) {
 bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
   const std::size_t bodies = bodies_of(room);
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
-  // One call may be about all bodies, and gives boxes to those of one set at a time.
+  // One call may move all bodies, and gives boxes to one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
   if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
       !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, left)) {
@@ -100,7 +99,7 @@ Status SceneState::reserve_sets(const SceneRoom& room, Pages pages) {
     if (status == Status::ok) {
       status = target.partition->reserve_pairs(target.with_dynamic, room.pairs, pages);
     }
-    // As many may be added in one call as there are: see place_bodies.
+    // One call may add as many bodies as there are: see place_bodies.
     if (status == Status::ok && !target.body_of.reserve(2 * bodies, pages)) {
       status = Status::out_of_memory;
     }
@@ -138,7 +137,7 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
                      {room.level, NarrowTier::robust, options.margin, options.execution}, answers);
   convex.clear();
   if (status != Status::ok || room.level != ContactLevel::manifold) return status;
-  // On one thread a job writes where there is room for all that it may find.
+  // On one thread, a job requires room for the largest number of points it may find.
   ContactColumns& points = answers.columns().contacts;
   const std::size_t found = std::min(room.points, batch * kManifoldPoints);
   if (!points.grow(found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
@@ -148,8 +147,9 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
   return Status::ok;
 }
 
-// Pairs of bodies 2 k and 2 k + 1 of kind k: one of each two kinds, turned round so that it has to
-// be mirrored, since each run of pairs ends with a job that is not full; all others of the first.
+// Lists pairs of the bodies 2 k and 2 k + 1, which have kind k: first one pair for each two kinds,
+// in swapped order so that it must be mirrored, because the narrow phase ends each run of pairs of
+// equal kinds with a partial job; all other pairs are of the first kind.
 bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   if (!convex.reserve(count)) return false;
   convex.clear();
@@ -173,7 +173,8 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
                          room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
   const bool parts = options.composites != nullptr;
   if (!frame.reserve(room.level, parts, shown, room.manifolds, room.points, pages)) return false;
-  // Of the last frame nothing is kept, and of pairs that sleep pairs alone, unless more is read.
+  // The last frame is not kept, and sleeping pairs are kept without manifolds, unless carry-over or
+  // warm starts read these.
   const bool has_more = carries || remembers_places;
   const std::size_t manifolds = has_more ? room.manifolds : 0;
   const std::size_t points_kept = has_more ? room.points : 0;
@@ -184,17 +185,18 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   }
   const std::size_t points = room.level == ContactLevel::manifold ? room.points : 0;
   if (remembers_places && !history.reserve(shown, points, bodies_of(room), pages)) return false;
-  // Pairs that wake are put beside all that are remembered.
+  // Pairs that wake are added to all records.
   const std::size_t remembered = carries ? room.pairs + shown : shown;
   const std::size_t carried_over = carries ? remembered : 0;
-  // What may be carried over is looked at before anything is answered.
+  // Carry-over is decided for all pairs before the narrow phase begins.
   const std::size_t batch = Collision::batch_size(options, room.pairs);
   const std::size_t batch_room = Collision::batch_room(options, room.pairs);
   const std::size_t looked_at = carries ? std::max(room.pairs, batch_room) : batch_room;
   const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch_room;
   const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
-  // Without carry-over the two take turns with one column, whose order alone is kept, and where the
-  // scene's memory is that of the contacts, it is the scene's.
+  // Without carry-over and sleeping pairs, `records` and `records_before` share one column, of
+  // which only `bits` is used. If the scene and the contacts have the same memory resource, the
+  // column is borrowed from the scene (see Lodger in collide.cpp).
   const bool two_orders = carries || may_sleep;
   const bool one_order = two_orders || frame.event.memory() != options.memory;
   return reserve_all(shown, pages, ended, shown_again) &&

@@ -1,3 +1,7 @@
+// The public interface of Scene: checks arguments and calls SceneState (scene_state.cpp). Other
+// members of Scene are in collide.cpp, meetings.cpp, contact_offsets.cpp, contact_groups.cpp,
+// reserve.cpp, scene_snapshot.cpp and contacts_snapshot.cpp.
+
 #include <winnow/pipeline/scene.h>
 
 #include "core/hooks/log.h"
@@ -32,7 +36,7 @@ namespace {
   return motion <= Motion::sleeping;
 }
 
-/// Draws in the world what a partition measures from an origin.
+/// Adds a partition's origin to all that it draws, which gives world coordinates.
 class InTheWorld final : public DebugDraw {
  public:
   InTheWorld(DebugDraw& draw, const Vec3d& origin) noexcept
@@ -153,7 +157,7 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   if (is_first) s.choose_origin();
   const Status status = s.settle(bodies, keys);
   if (status == Status::ok) return logged(status, "Scene::add");
-  // The last ones first: the next bodies get the ids that these had.
+  // In reverse, so that the next bodies get the same ids.
   for (std::size_t i = keys.size(); i-- > 0;) {
     s.keys.release(keys[i].id);
     keys[i] = {};

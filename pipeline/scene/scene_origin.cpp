@@ -6,12 +6,13 @@
 namespace winnow {
 namespace {
 
-/// A float's step beside its value, and the share of a radius that it may be.
+/// Relative spacing of floats, and the largest acceptable spacing as a share of a radius.
 constexpr double kFloatStep = 0x1p-23;
 constexpr double kFineStep = 0x1p-10;
-/// How much nearer bodies must come for boxes to be made anew.
+/// The distance to the origin must exceed the spread of the bodies by this factor before all boxes
+/// are computed again.
 constexpr double kWorthMoving = 8.0;
-/// Beyond this, differences to another point would not be finite floats.
+/// Beyond this, differences to the origin could overflow floats.
 constexpr double kFarthestOrigin = 0x1p120;
 
 double median_of(std::array<double, ScenePlaces::kMost> values, std::size_t count) noexcept {

@@ -6,23 +6,24 @@
 
 namespace winnow {
 
-/// Some bodies of a scene, which tell where it stands.
+/// A sample of a scene's bodies, from which the origin of its boxes is chosen.
 ///
-/// Boxes are floats: at 1e8 they are 8 apart, and unit spheres there would have boxes that all
-/// overlap. Measured from a point among the bodies, rounded outward from double, boxes are as tight
-/// as at (0, 0, 0).
+/// Boxes are floats: at 1e8 floats are 8 apart, and the boxes of unit spheres there would all
+/// overlap. Boxes that are measured from a point among the bodies, rounded outward from double, are
+/// as tight as near (0, 0, 0).
 class ScenePlaces {
  public:
   static constexpr std::size_t kMost = 32;
 
-  /// A body within a radius about a position. Those that reach to infinity tell nothing.
+  /// Adds a body with its bounding radius. Bodies of infinite radius are ignored.
   void add(const double position[3], double radius) noexcept;
   [[nodiscard]] bool is_full() const noexcept { return count_ == kMost; }
 
-  /// Where boxes are to be measured from: `current`, unless the middle of the bodies lies so far
-  /// from there that a float's step is 2^-10 of their radius, and eight times as far as most of
-  /// them lie from their middle, so that another point helps. The median of each axis, rounded to a
-  /// power of two about as large as the bodies lie apart: differences to it are then mostly exact.
+  /// Returns the origin for boxes. This is `current`, unless the median of the body positions is so
+  /// far from it that (1) the float spacing there exceeds 2^-10 of the median radius, and (2) the
+  /// distance is at least eight times the spread of the bodies, so that the new origin is much
+  /// better. The new origin is the median on each axis, rounded to a multiple of a power of two
+  /// about as large as the spread: differences to it are then mostly exact.
   [[nodiscard]] Eigen::Vector3d origin(const Eigen::Vector3d& current) const noexcept;
 
  private:

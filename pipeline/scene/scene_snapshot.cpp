@@ -1,5 +1,6 @@
-// Bodies as they stand, and what each set's partition holds of them. Read into a scene beside,
-// which then gives its columns: whoever asks this scene goes on asking it.
+// Scene::save and load: the bodies, and the boxes that each set's partition has. Loading reads into
+// a second SceneState and swaps its columns in at the end, so that a failure changes nothing and
+// pointers to the scene's state stay valid.
 
 #include <winnow/pipeline/scene.h>
 
@@ -21,7 +22,7 @@ namespace {
 constexpr std::string_view kSceneMagic = "WINNOWSC";
 constexpr std::uint32_t kSceneVersion = 1;
 
-/// Calls visit(column) for all that a body is, by its id: one line for each column.
+/// Calls visit(column) for each per-body column.
 template <typename State, typename Visit>
 void visit_body_columns(State& scene, Visit&& visit) {
   visit(scene.shape);
@@ -72,14 +73,14 @@ void read_clocks(ByteReader& in, SceneState& scene) noexcept {
   scene.boxes_updated = in.get<std::uint64_t>();
   scene.clock = in.get<std::uint32_t>();
   scene.regroupings = in.get<std::uint64_t>();
-  // Of a pool that was loaded, and counts its changes anew.
+  // A loaded pool starts to count its revisions anew.
   const std::uint64_t revision =
       scene.options.composites != nullptr ? scene.options.composites->revision() : 0;
   scene.composites_seen = in.get_bool() ? revision : ~revision;
   if (!scene.origin.allFinite()) in.fail();
 }
 
-/// The boxes that a set's partition has, and the filters if any is not the default.
+/// Writes the boxes of a set's partition, and its filters if any is not the default.
 void put_set(ByteWriter& out, const SceneState& scene, Motion which) noexcept {
   const SceneSet& set = scene.set(which);
   out.put_bytes(set.origin.data(), 3 * sizeof(double));
@@ -123,7 +124,8 @@ void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
   for (const Motion which : kEveryMotion) put_set(out, scene, which);
 }
 
-/// Reads a scene into a state that has no bodies; its keys are read beside, to be restored last.
+/// Reads a scene into a state without bodies. Keys are read into a separate table, which is
+/// restored last.
 class SceneReader {
  public:
   SceneReader(ByteReader& in, SceneState& scene, ReadKeys& keys, const SavedNames* names) noexcept
@@ -148,7 +150,7 @@ class SceneReader {
     return body < keys_.stamps.size() && (keys_.stamps[static_cast<std::size_t>(body)] & 1U) != 0;
   }
 
-  /// Places of bodies that are gone hold nothing.
+  /// Elements of removed bodies get default values.
   [[nodiscard]] bool read_columns() {
     const std::size_t slots = keys_.stamps.size();
     Column<std::uint8_t> seen(scene_.options.memory);
@@ -263,9 +265,9 @@ class SceneReader {
   const SavedNames* names_;
 };
 
-/// Gives bodies the keys that they have in this scene if these are kept, and else new ones.
+/// Keeps the present keys of the bodies in `kept` and gives new keys to all others.
 void rename(ReadKeys& keys, const KeyTable& present, std::span<const ObjectId> kept) noexcept {
-  // No table has the tag of this stamp.
+  // No key table has the tag of this stamp.
   constexpr std::uint32_t kRenamed = 1;
   for (std::uint32_t& stamp : keys.stamps) {
     if ((stamp & 1U) != 0) stamp = kRenamed;
@@ -277,7 +279,7 @@ void rename(ReadKeys& keys, const KeyTable& present, std::span<const ObjectId> k
   }
 }
 
-/// Gives a scene all that another one was read to be. Room for the keys was made.
+/// Moves the state that was read into the scene. The key table must have room.
 void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexcept {
   scene.options = read.options;
   scene.options_are_good = true;
@@ -312,7 +314,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.origin = read.origin;
   scene.boxes_since_look = read.boxes_since_look;
   scene.boxes_updated = read.boxes_updated;
-  // Contacts that were filled before are of another scene now.
+  // Contacts that were filled before do not match the new serial.
   scene.serial = read.serial;
   scene.clock = read.clock;
   scene.regroupings = read.regroupings;

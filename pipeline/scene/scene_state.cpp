@@ -1,3 +1,7 @@
+// Bodies and their partitions: adding, removing, moving between sets, boxes and the origin they are
+// measured from, and the broad phase (find_pairs). scene.cpp calls this; the pairs go to Collision
+// (collide.cpp).
+
 #include "pipeline/scene/scene_state.h"
 
 #include "core/hooks/stage_scope.h"
@@ -19,13 +23,14 @@ namespace {
 
 constexpr std::size_t kBodiesPerStretch = 256;
 constexpr std::size_t kFewBoxes = 128;
-// Boxes that are made before their partition is given them: few enough that they take little beside
-// the bodies, enough for many threads.
+// Boxes computed before they are given to their partition: few enough to use little memory beside
+// the bodies, enough to occupy many threads.
 constexpr std::size_t kBoxesPerBatch = 16384;
 constexpr std::size_t kPlacesPerCall = 512;
 
-// Pairs are found while there is room for half as many more; they are as many in most frames. Where
-// memory for less is refused, there is more.
+// A buffer that grows while pairs are found grows by half. The number of pairs is about the same in
+// most frames, so the unused part is freed. If the smaller allocation is refused, the larger one
+// stays.
 void trim(PairBuffer& pairs) noexcept {
   const std::size_t steady = pairs.size() + pairs.size() / 16;
   if (pairs.capacity() * sizeof(Pair) >= kSmallColumn) (void)pairs.shrink(steady);
@@ -43,7 +48,7 @@ BoxRoom::~BoxRoom() {
   scene_.visit_box_columns([&](auto& column) {
     if (column.capacity() <= std::max(room_[i++], kBoxesPerBatch)) return;
     column.clear();
-    // Where memory for less is refused, there is more.
+    // If the smaller allocation is refused, the larger one stays.
     (void)column.shrink(kBoxesPerBatch);
   });
 }
@@ -82,7 +87,7 @@ PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const 
   Pose moved = at;
   double growth_to[3];
   for (int axis = 0; axis < 3; ++axis) {
-    // By what the difference was rounded, the box is larger.
+    // Grows the box by the rounding error of the difference.
     const double low = add_down(at.position[axis], -from[axis]);
     const double high = add_up(at.position[axis], -from[axis]);
     moved.position[axis] = low;
@@ -104,7 +109,7 @@ bool SceneState::has_one_origin() const noexcept {
   });
 }
 
-// Every so many slots one body is looked at.
+// Samples at most ScenePlaces::kMost bodies, at equal steps of ids.
 void SceneState::choose_origin() noexcept {
   boxes_since_look = 0;
   if (keeps_origin) return;
@@ -118,7 +123,7 @@ void SceneState::choose_origin() noexcept {
   origin = places.origin(origin);
 }
 
-// What rounding and the difference lose is added to the radius.
+// The radius includes the rounding errors of the difference and of the conversion to float.
 BodyBall SceneState::ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept {
   constexpr double kCenterError = 0x1p-23;
   const Pose& at = anchor.empty() ? pose[body] : anchor[body];
@@ -147,7 +152,7 @@ void SceneState::set_balls(std::span<const std::uint32_t> bodies,
                 });
 }
 
-// Of what lies in `boxes`.
+// A view of `boxes`.
 BoxView SceneState::box_view() const noexcept {
   const PlainBox* const first = boxes.data();
   return {{&first->min[0], &first->min[1], &first->min[2]},
@@ -179,7 +184,7 @@ Status SceneState::place_boxes(Motion which, std::span<const std::uint32_t> bodi
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   const std::size_t count = bodies.size();
-  // Ids that the partition gives lie below those that it gave before and as many more.
+  // New ids of the partition are below its largest former id count plus `count`.
   if (!boxes_of.resize(count) || !boxes_body.resize(count) ||
       !target.body_of.grow(target.body_of.size() + count)) {
     return Status::out_of_memory;
@@ -202,12 +207,12 @@ Status SceneState::place_boxes(Motion which, std::span<const std::uint32_t> bodi
 
 void SceneState::displace(Motion which, std::span<const Key> places) {
   if (places.empty()) return;
-  // It asks for no memory, and the keys are the scene's own.
+  // Cannot fail: removal allocates nothing, and the keys are valid.
   (void)set(which).partition->remove(places);
   ++set(which).changes;
 }
 
-// Some at a time, so that it needs no memory.
+// In chunks on the stack, so that it needs no memory.
 void SceneState::take_out(std::span<const Key> given, Motion which) {
   Key places[kPlacesPerCall];
   std::size_t count = 0;
@@ -220,12 +225,12 @@ void SceneState::take_out(std::span<const Key> given, Motion which) {
   displace(which, {places, count});
 }
 
-// The last ones first, so that ids are given again in the same order.
+// In reverse, so that the partition assigns the same ids again.
 void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) {
   for (std::size_t i = bodies.size(); i-- > 0;) displace(which, {&place[bodies[i]], 1});
 }
 
-// Room in every column, so that what follows cannot fail.
+// Reserves every column, so that adding the bodies cannot fail.
 bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
   const std::size_t slots = keys.slots_with(fresh);
@@ -273,7 +278,7 @@ std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
   return {chosen.data(), chosen.size()};
 }
 
-// Places bodies that have just got their keys, or none of them.
+// Inserts bodies that have just got their keys into their partitions: all of them or none.
 Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
   const BoxRoom room(*this);
   if (!chosen.grow(bodies.size())) return Status::out_of_memory;
@@ -294,7 +299,8 @@ Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<cons
   return status;
 }
 
-// Marks by the second bit of the flags; keys.size() <= slots is implied by being distinct.
+// Marks bodies with the second bit of `is_stale` to find duplicates. If all are distinct there are
+// at most as many as slots, which needs no test.
 bool SceneState::are_distinct(std::span<const Key> given) noexcept {
   constexpr std::uint8_t kSeen = 2;
   std::size_t marked = 0;
@@ -335,8 +341,8 @@ void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
   mark_stale(body);
 }
 
-// All get their new places, with their filters, before the first one leaves its old place: until
-// then everything can be taken back.
+// Every body is inserted in its new partition, with its filter, before the first one is removed
+// from its old partition. Until then everything can be undone.
 Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
   const BoxRoom room(*this);
   chosen.clear();
@@ -370,10 +376,10 @@ Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
   return Status::ok;
 }
 
-// False if the box that the partition has still holds the body, its growth included.
+// False if the box in the partition, which includes its growth, still contains the body.
 bool SceneState::needs_box(std::uint32_t body) const noexcept {
   if (anchor.empty() || shaped_at[body] >= moved_at[body]) return true;
-  // The comparison is false for NaN too.
+  // NaN compares false and gives true.
   return !(motion_bound(anchor[body], with_unit_turn(pose[body]), radius(body)) <=
            options.carry_over);
 }
@@ -387,7 +393,7 @@ Status SceneState::refresh() {
       mark_stale(body);
     }
   }
-  // Looked at as often as boxes are made, so that it costs little beside them.
+  // The sampling is as frequent as box updates and so costs little beside them.
   if (boxes_since_look >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
   if (is_fresh()) return Status::ok;
   const StageScope stage(WorkStage::refresh);
@@ -417,8 +423,7 @@ Status SceneState::refresh_set(Motion which) {
   return Status::ok;
 }
 
-// All boxes of a set at once: while a part of them is refused, none is measured from another point
-// than the others.
+// Updates all boxes of a set in one call. If the update is refused, all boxes keep the old origin.
 Status SceneState::move_origin(Motion which) {
   SceneSet& target = set(which);
   const BoxRoom room(*this);
@@ -432,7 +437,7 @@ Status SceneState::move_origin(Motion which) {
   return Status::ok;
 }
 
-// Gives the partition new boxes of the chosen bodies.
+// Gives the partition new boxes of the bodies in `chosen`.
 Status SceneState::renew_boxes(SceneSet& target) {
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
@@ -458,7 +463,8 @@ Status SceneState::renew_boxes(SceneSet& target) {
   return Status::ok;
 }
 
-// Dynamic bodies among themselves, then with each other set. Asked only if something changed.
+// Finds pairs among dynamic bodies, then of dynamic bodies with the other sets, unless no partition
+// changed.
 Status SceneState::find_pairs(bool all) {
   if (const Status status = refresh(); status != Status::ok) return status;
   bool changed = pairs.are_all() != all;

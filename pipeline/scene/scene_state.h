@@ -1,5 +1,9 @@
 #pragma once
 
+// The data of a Scene: bodies as columns by id, one partition for each set (fixed, dynamic,
+// sleeping) and the buffers of `collide`. scene.cpp and scene_state.cpp implement most of it; other
+// .cpp files are named at the members that they implement.
+
 #include <winnow/pipeline/scene.h>
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
@@ -17,7 +21,7 @@ namespace winnow {
 
 inline constexpr Motion kEveryMotion[kMotions] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
 
-/// A box as a column can hold it.
+/// An Aabb that is a plain struct, for Column.
 struct PlainBox {
   float min[3];
   float max[3];
@@ -25,7 +29,7 @@ struct PlainBox {
 
 [[nodiscard]] bool are_good(const ContactOffsets& offsets) noexcept;
 
-/// One set of bodies and its partition, made when its first body comes.
+/// One set of bodies and its partition, which is created for the first body of the set.
 struct SceneSet {
   explicit SceneSet(std::pmr::memory_resource* memory) noexcept
       : body_of(memory), with_dynamic(memory) {
@@ -33,18 +37,18 @@ struct SceneSet {
   }
 
   std::optional<Partition> partition;
-  /// What the partition's boxes are measured from: the scene's origin, or the one before while
-  /// memory for new boxes is refused.
+  /// Origin of the partition's boxes: the scene's origin, or the former one while memory for new
+  /// boxes is refused.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  /// By the partition's object id.
+  /// By object id of the partition.
   Column<std::uint32_t> body_of;
-  /// Pairs (dynamic body, body of this set); of the dynamic set its own.
+  /// Pairs (dynamic body, body of this set); in the dynamic set, the pairs among its own bodies.
   PairBuffer with_dynamic;
-  /// Grows with every change of the partition.
+  /// Incremented by every change of the partition.
   std::uint64_t changes = 0;
 };
 
-/// What is asked and answered about the parts of pairs with a composite shape.
+/// Input and results of the mid and narrow phase for pairs that have a composite shape.
 struct PartAnswers {
   explicit PartAnswers(std::pmr::memory_resource* memory) noexcept
       : pairs(memory),
@@ -55,19 +59,19 @@ struct PartAnswers {
         regions(memory) {}
 
   PrimitivePairs pairs;
-  /// By pair of parts, the gap of their bodies. Empty without offsets.
+  /// Contact distance of the two bodies, by pair of primitives. Empty without offsets.
   Column<double> gaps;
   NarrowPhase narrow;
   NarrowResult answers;
-  /// By pair of parts: where its answer lies.
+  /// Index of the result in `answers`, by pair of primitives.
   Column<std::uint32_t> slot;
   ContactRegions regions;
 
   [[nodiscard]] Bytes bytes() const noexcept;
 };
 
-/// What a Scene consists of. Bodies are numbered by the ids of their keys; columns are by id and
-/// have holes where bodies were removed.
+/// The state of a Scene. Body numbers are the ids of their keys; columns are indexed by id and have
+/// holes for removed bodies.
 struct SceneState {
   SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
   SceneState(const SceneState&) = delete;
@@ -77,38 +81,39 @@ struct SceneState {
   const ShapePool& shapes;
   SceneOptions options;
   bool options_are_good;
-  /// By how much boxes are grown to every side, but for offsets.
+  /// Boxes are grown by this in every direction, in addition to contact offsets.
   double growth;
 
   KeyTable keys;
   Column<ShapeId> shape;
   Column<Pose> pose;
   Column<Motion> motion;
-  /// Of the body in the partition of its set.
+  /// The body's key in the partition of its set.
   Column<Key> place;
-  /// When the pose, and when the shape last changed, in calls of `collide`.
+  /// The `clock` at the last change of the pose, and of the shape.
   Column<std::uint32_t> moved_at;
   Column<std::uint32_t> shaped_at;
-  /// Pose at which the partition was given the body's box. Empty without carry-over.
+  /// Pose for which the partition's box was computed. Empty without carry-over.
   Column<Pose> anchor;
-  /// What holds the body as it was when the partition was given its box, measured from where that
-  /// is, and grown as much.
+  /// Bounding ball of the body at the time of its last box, relative to the partition's origin and
+  /// grown like the box.
   Column<BodyBall> ball;
-  /// Empty as long as no body has had any.
+  /// Empty until a body has offsets that are not zero.
   Column<ContactOffsets> offsets;
   bool with_offsets = false;
-  /// The same of layers, and which of them meet.
+  /// Layers of bodies, empty until a body is in a layer other than 0; and the layers that collide.
   Column<std::uint16_t> layer;
   bool with_layers = false;
   LayerMatrix layers;
-  /// Bodies whose boxes may no longer be right, and a flag by id.
+  /// Bodies whose boxes may be out of date, and a flag by id.
   Column<std::uint32_t> stale;
   Column<std::uint8_t> is_stale;
-  /// Boxes on their way to a partition, and whose they are.
+  /// Boxes to be given to a partition, with their keys and bodies.
   Column<PlainBox> boxes;
   Column<Key> boxes_of;
   Column<ClientData> boxes_body;
-  /// Bodies of one set that a call is about, and where they were.
+  /// Scratch: bodies of one set that a call works on, and the keys that they had in their
+  /// partition.
   Column<std::uint32_t> chosen;
   Column<Key> left;
   template <typename Visit>
@@ -121,42 +126,44 @@ struct SceneState {
   }
 
   SceneSet sets[kMotions];
-  /// What boxes are measured from; see ScenePlaces.
+  /// World point from which boxes are measured; see ScenePlaces.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  /// Boxes made since bodies were last looked at for a better one.
+  /// Boxes computed since choose_origin last sampled the bodies.
   std::size_t boxes_since_look = 0;
-  /// The origin stays where it is: on ranks of a cluster, whose boxes are all of one frame.
+  /// Fixes the origin, for ranks of a cluster: all ranks measure boxes from one point.
   bool keeps_origin = false;
-  /// Tells this scene from every other one.
+  /// Unique in this process.
   std::uint64_t serial;
   std::uint32_t clock = 1;
-  /// Grows when a body is removed or changes its set.
+  /// Incremented if a body is removed or changes its set.
   std::uint64_t regroupings = 0;
   std::uint64_t composites_seen = 0;
 
   BodyPairs pairs;
-  /// Null but on ranks of a cluster.
+  /// Null except on ranks of a cluster.
   const PairSelection* selection = nullptr;
   NarrowPhase narrow;
   NarrowResult answers;
-  /// Which pairs of `pairs` are asked about: convex ones, and those with a composite shape.
+  /// The pairs of `pairs` that go to the narrow phase: pairs of convex shapes, and pairs that have
+  /// a composite shape.
   Column<BodyPair> convex;
   Column<BodyPair> composite;
-  /// By pair of `convex` or `composite`, whichever the narrow phase answers. Empty without offsets.
+  /// Contact distance by pair of `convex` or of `composite`, whichever list the narrow phase works
+  /// on. Empty without offsets.
   Column<double> gaps;
-  /// Of `composite`; made when there is the first one.
+  /// Results for `composite`; created for the first such pair.
   PartAnswers* parts = nullptr;
-  /// Not used unless floors are seamless.
+  /// Used only with SceneOptions::seamless_floors.
   Column<FloorContact> floor_contacts;
-  /// Room for the order in which those of one body are looked at.
+  /// Scratch: the order of one body's floor contacts.
   Column<std::uint32_t> floor_order;
   SceneStatistics statistics;
-  /// Bodies that never meet, as (smaller id << 32 | larger id), sorted; and by id whether a body
-  /// is among them, where there were that many when it was told.
+  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and a flag by id of the
+  /// bodies in these pairs, as long as the number of ids at the time of the last set_ignored.
   Column<std::uint64_t> ignored;
   Column<std::uint8_t> ignores;
   PairPredicate predicate;
-  /// Boxes updated since the last `collide`.
+  /// Boxes given to partitions since the last `collide`.
   std::uint64_t boxes_updated = 0;
 
   [[nodiscard]] SceneSet& set(Motion which) noexcept {
@@ -165,10 +172,10 @@ struct SceneState {
   [[nodiscard]] const SceneSet& set(Motion which) const noexcept {
     return sets[static_cast<std::size_t>(which)];
   }
-  /// False if no body has a composite shape; true also a while after the last one that had.
+  /// False if no body has a composite shape. May stay true after the last such body was removed.
   [[nodiscard]] bool has_composites() const noexcept;
   [[nodiscard]] bool is_fresh() const noexcept { return stale.empty() && has_one_origin(); }
-  /// True unless some set's boxes are still measured from another point.
+  /// False while the boxes of some set are measured from a former origin.
   [[nodiscard]] bool has_one_origin() const noexcept;
   void choose_origin() noexcept;
   [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
@@ -178,10 +185,10 @@ struct SceneState {
     return has_offsets() ? offsets[body] : ContactOffsets{};
   }
   [[nodiscard]] bool begin_offsets() noexcept;
-  /// Pairs no farther apart than this are contacts.
+  /// Contact distance of a pair: bodies at most this far apart are in contact.
   [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
-  /// See Scene::reserve (reserve.cpp).
+  /// Implements Scene::reserve (reserve.cpp).
   [[nodiscard]] Status reserve(const SceneRoom& room, Pages pages);
   [[nodiscard]] bool reserve_bodies(const SceneRoom& room, Pages pages) noexcept;
   [[nodiscard]] Status reserve_sets(const SceneRoom& room, Pages pages);
@@ -191,30 +198,30 @@ struct SceneState {
   [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
   [[nodiscard]] bool are_distinct(std::span<const Key> given) noexcept;
   void forget_stale() noexcept;
-  /// No point of the body is farther than this from its position.
+  /// Upper bound on the distance of the body's points from its position.
   [[nodiscard]] double radius(std::uint32_t body) const noexcept;
-  /// The box around a shape, grown to every side, and measured from a point.
+  /// Returns the box of a shape, grown in every direction, relative to `from`.
   [[nodiscard]] PlainBox bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,
                                      double grown_by) const noexcept;
-  /// The bodies' boxes are measured from `from`.
+  /// Recomputes the balls of bodies whose boxes are measured from `from`.
   void set_balls(std::span<const std::uint32_t> bodies, const Eigen::Vector3d& from) noexcept;
   [[nodiscard]] BodyBall ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept;
   [[nodiscard]] BoxView box_view() const noexcept;
   [[nodiscard]] Status make_partition_of(Motion which);
-  /// Those of the given keys whose bodies are in a set, into `chosen`. Room was made.
+  /// Writes the bodies of the given keys that are in a set into `chosen`, which must have room.
   [[nodiscard]] std::span<const std::uint32_t> choose(std::span<const Key> given,
                                                       Motion which) noexcept;
-  /// Puts bodies, whose columns are set, into the partition of a set.
+  /// Inserts bodies whose columns are set into the partition of a set.
   [[nodiscard]] Status place_bodies(Motion which, std::span<const std::uint32_t> bodies);
-  /// The same with what lies in `boxes`, one for each, measured from the set's origin.
+  /// Inserts bodies with the boxes in `boxes`, one for each body, measured from the set's origin.
   [[nodiscard]] Status place_boxes(Motion which, std::span<const std::uint32_t> bodies);
-  /// Takes out what lies at `places`.
+  /// Removes the objects `places` from the partition of a set.
   void displace(Motion which, std::span<const Key> places);
-  /// Takes those of the given bodies that are in a set out of it, and gives their keys back.
+  /// Removes the given bodies that are in a set, and releases their keys.
   void take_out(std::span<const Key> given, Motion which);
-  /// Takes out bodies that were just placed, as if they had never been.
+  /// Undoes place_bodies: removes bodies that were just inserted.
   void take_back(std::span<const std::uint32_t> bodies, Motion which);
-  /// Moves those of the given bodies that are elsewhere. A refusal changes nothing.
+  /// Moves the given bodies that are in other sets to the set `to`. A failure changes nothing.
   [[nodiscard]] Status move_to_set(std::span<const Key> given, Motion to);
   void mark_stale(std::uint32_t body) noexcept;
   void set_pose(std::uint32_t body, const Pose& to) noexcept;
@@ -223,9 +230,10 @@ struct SceneState {
   [[nodiscard]] Status move_origin(Motion which);
   [[nodiscard]] Status renew_boxes(SceneSet& target);
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
-  /// With all pairs whose boxes meet, or without those whose balls are apart.
+  /// Finds all pairs whose boxes overlap, or (`all` false) only those whose bounding balls overlap
+  /// too.
   [[nodiscard]] Status find_pairs(bool all);
-  /// Which pairs may meet (meetings.cpp).
+  /// Filters of pairs beyond sets and object filters (meetings.cpp).
   [[nodiscard]] bool meets_all() const noexcept {
     return ignored.empty() && layers.all_meet() && predicate.accept == nullptr;
   }
@@ -234,7 +242,8 @@ struct SceneState {
     return with_layers ? layer[body] : std::uint16_t{0};
   }
   [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
-  /// All that decides whether `collide` makes a pair of two live bodies whose boxes meet.
+  /// True if `collide` would make a pair of two live bodies, provided that their boxes overlap:
+  /// tests sets, filters, layers, ignored pairs and the predicate.
   [[nodiscard]] bool would_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] ObjectFilter filter_of(ObjectId body) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
@@ -245,12 +254,12 @@ struct SceneState {
     std::uint64_t* const end = std::remove_if(ignored.begin(), ignored.end(), is_unwanted);
     ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
   }
-  /// All pairs are found anew by the next `collide`.
+  /// Makes the next `collide` find all pairs again.
   void ask_again() noexcept;
 };
 
-/// When it goes it gives back what boxes of more bodies than a batch took, unless there was room
-/// for them when it came.
+/// Limits the box columns of a scene on destruction: shrinks the columns that grew beyond one
+/// batch, unless they were larger at construction.
 class BoxRoom {
  public:
   explicit BoxRoom(SceneState& scene) noexcept;
@@ -263,17 +272,17 @@ class BoxRoom {
   std::size_t room_[5];
 };
 
-/// What shapes and bodies of a snapshot are called where it is played.
+/// Maps shape ids and bodies of a snapshot to the ids of the process that replays it.
 struct SavedNames {
   struct Name {
     ShapeId saved;
     ShapeId now;
   };
-  std::span<const Name> by_saved;  ///< ascending by the bits of `saved`
-  /// Ids of bodies that had the same keys before; keys of all others are new ones.
+  std::span<const Name> by_saved;  ///< sorted by the bits of `saved`
+  /// Ids of bodies that keep the keys they have now; all other bodies get new keys.
   std::span<const ObjectId> kept;
 
-  /// No shape of one that is not among them.
+  /// Returns the present id of a saved shape, or an invalid id if it is not listed.
   [[nodiscard]] ShapeId now(ShapeId saved) const noexcept {
     const auto at = std::lower_bound(
         by_saved.begin(), by_saved.end(), saved.bits,
@@ -282,7 +291,7 @@ struct SavedNames {
   }
 };
 
-/// As Scene::load; with names, of what is called otherwise here.
+/// Implements Scene::load. `names` is null unless ids are to be mapped.
 [[nodiscard]] Status load_scene(SceneState& scene, std::span<const std::byte> saved,
                                 const SavedNames* names);
 

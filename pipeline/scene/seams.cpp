@@ -1,17 +1,21 @@
-// Fixed bodies that lie flush are one floor: contacts with the seams between them are left out.
+// Suppresses ghost contacts at seams (internal edges) between fixed bodies that lie flush and form
+// one floor. Collision::answer calls drop_seams after the narrow phase of all pairs.
 //
-// A manifold of a body with a fixed one has a plane: through the point of the fixed surface in
-// which the body is deepest, across the normal. The body lies above that plane, but for the depth.
-// A contact with another fixed body is one with a side or an edge of a seam if
-// - it is no deeper, and along another normal,
-// - all its points lie in the plane or below it, and
-// - the other body does not rise above the plane there: the tangent plane of the contact cuts the
-//   plane in a line, and the other body lies below the plane through that line that rises, away
-//   from the body, by the angle by which normals of one surface may differ.
-// A wall, a kerb, a step and the foot of a slope rise above the plane where the body touches them,
-// however high above it the points are. Flush bodies are as deep along the first one's normal, and
-// the shortest way out of the other is no longer, so that it is the less deep one that goes, and no
-// two put each other out.
+// Each manifold of a dynamic body with a fixed body defines a floor plane: perpendicular to the
+// normal, through the point of the fixed surface at which the dynamic body is deepest. Except for
+// the penetration depth, the dynamic body is above this plane. A contact with another fixed body is
+// a ghost contact if
+// - its depth is not larger, and its normal differs,
+// - all its points are in the plane or below it, and
+// - the other fixed body does not rise above the plane near the contact: the tangent plane of the
+//   contact intersects the floor plane in a line, and the other body is below the plane through
+//   this line that rises away from the dynamic body, by the largest angle at which two normals
+//   count as normals of one surface.
+// Walls, kerbs, steps and the feet of slopes rise above the plane where the body touches them, at
+// whatever height the points are, so their contacts stay. Flush bodies have the same depth along
+// the floor's normal, and the contact with the other body has the least depth in any direction,
+// which is not larger. So the contact of lesser depth is dropped, and two contacts never drop each
+// other.
 
 #include "pipeline/scene/collision.h"
 #include "pipeline/shapes/extent.h"
@@ -30,27 +34,29 @@ namespace {
 
 using mid::Vec;
 
-/// A share of the body's radius: what rises so far above a plane is in it.
+/// As a share of the body's radius: anything that rises less than this above a plane counts as in
+/// it.
 constexpr double kPlaneShare = 1e-3;
-/// A share of the radius: of two that are equally deep but for this, either may be the floor.
+/// As a share of the radius: two depths that differ by less are equal, and either contact may be
+/// the floor.
 constexpr double kEqualShare = 1e-6;
-/// The cosine of the angle between two normals: a ceiling is no seam.
+/// Cosine of the largest angle between the two normals: a ceiling is not a seam.
 constexpr double kOppositeCosine = -0.5;
-/// The sine of the angle that kRegionCosine is the cosine of.
+/// The sine of the angle whose cosine is kRegionCosine.
 constexpr double kRegionSine = 0.08715574274765817;
 
 [[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
   return scene.motion[pair.a] == Motion::fixed || scene.motion[pair.b] == Motion::fixed;
 }
 
-/// Whether a contact of a body is one with a seam.
+/// Decides whether a contact of a body is a ghost contact at a seam.
 class SeamJudge {
  public:
-  /// `limit`: answers about parts that are no farther apart are contacts.
+  /// `limit`: primitive pairs with at most this distance are in contact.
   SeamJudge(const SceneState& scene, double radius, double limit) noexcept
       : scene_(scene), radius_(radius), limit_(limit) {}
 
-  /// True if `other` holds the body where `floor` holds it already.
+  /// True if `other` is a ghost contact beside the contact `floor`.
   [[nodiscard]] bool is_seam(const FloorContact& other, const FloorContact& floor) const noexcept {
     const Vec up = Vec::Map(floor.normal);
     const double cosine = up.dot(Vec::Map(other.normal));
@@ -66,7 +72,7 @@ class SeamJudge {
   }
 
  private:
-  /// True if the body of a contact rises above the plane up . x = `plane` where it is touched.
+  /// True if the fixed body of a contact rises above the plane up . x = `plane` near the contact.
   [[nodiscard]] bool rises(const FloorContact& contact, const Vec& up,
                            double plane) const noexcept {
     const Vec normal = Vec::Map(contact.normal);
@@ -74,14 +80,15 @@ class SeamJudge {
     const Vec side = normal - cosine * up;
     const double sine = side.norm();
     const Vec steepest = kRegionCosine * up + kRegionSine / sine * side;
-    // From the point of contact up its tangent plane to the other plane.
+    // Offset along `steepest` from the contact point to the line in which the contact's tangent
+    // plane intersects the floor plane.
     const Vec point = Vec::Map(contact.point[contact.deepest]);
     const double climb = (kRegionCosine - kRegionSine * cosine / sine) * (plane - up.dot(point));
     return highest(contact, steepest) > steepest.dot(point) + climb + kPlaneShare * radius_;
   }
 
-  /// How far the fixed body of a contact, or those of its parts that are touched, reaches along a
-  /// unit direction, as seen from the dynamic body's position.
+  /// Support of the fixed body along a unit direction, relative to the dynamic body's position; for
+  /// composite shapes, only of the primitives that are in contact.
   [[nodiscard]] double highest(const FloorContact& contact, const Vec& along) const noexcept {
     const Vec apart = Vec::Map(scene_.pose[contact.floor].position) -
                       Vec::Map(scene_.pose[contact.body].position);
@@ -95,12 +102,12 @@ class SeamJudge {
       most = highest_of_parts(contact, along, floor_is_a);
       if (floor_is_a) most += along.dot(apart);
     }
-    // Surfaces that have moved out, or in: corners that move in go farther than sides do.
+    // Rest offsets move the surface out or in. If it moves in, corners move farther than faces do.
     const double rest = scene_.offsets_of(contact.floor).rest;
     return most + (rest < 0.0 ? rest * (kRegionCosine + kRegionSine) : rest);
   }
 
-  /// The same from the position of body a of the pair.
+  /// As `highest`, relative to the position of body a of the pair.
   [[nodiscard]] double highest_of_parts(const FloorContact& contact, const Vec& along,
                                         bool floor_is_a) const noexcept {
     const PrimitivePairs& parts = scene_.parts->pairs;
@@ -136,11 +143,11 @@ class SeamJudge {
   double limit_;
 };
 
-/// Contacts of one body by their normals. Most are with the same plane, of which none is a seam of
-/// another: a plate on n tiles takes O(n).
+/// Groups the contacts of one body by their normals. Contacts that have the same normal are never
+/// seams of each other, so a plate on n tiles takes O(n).
 class FloorGroups {
  public:
-  /// `order`: room for a number for each contact.
+  /// `order`: scratch, one number for each contact.
   FloorGroups(std::span<FloorContact> contacts, std::uint32_t* order) noexcept
       : contacts_(contacts), order_(order) {
     for (FloorContact& contact : contacts_) {
@@ -151,13 +158,13 @@ class FloorGroups {
     for (std::size_t i = contacts_.size(); i-- > 0;) {
       order_[--end_[contacts_[i].group]] = static_cast<std::uint32_t>(i);
     }
-    // Each began where the one before ended.
+    // Each end is the start now: set it to the start of the next group.
     for (std::size_t g = 0; g < count_; ++g) {
       end_[g] = g + 1 < count_ ? end_[g + 1] : static_cast<std::uint32_t>(contacts_.size());
     }
   }
 
-  /// Whether one of the others that were not dropped is a floor to it.
+  /// True if another contact, which was not dropped, is a floor for this one.
   [[nodiscard]] bool is_seam_of_any(const FloorContact& one,
                                     const SeamJudge& judge) const noexcept {
     std::uint32_t at = 0;
@@ -174,10 +181,10 @@ class FloorGroups {
   }
 
  private:
-  /// The last group takes what no other does.
+  /// The last group takes all normals that fit no other group.
   static constexpr std::size_t kMostGroups = 32;
-  /// Lengths of differences between unit normals of one group, and more than what a cosine with one
-  /// of them may be off by.
+  /// Largest length of the difference between unit normals of a group, and an upper bound on the
+  /// error of a cosine with the group's normal.
   static constexpr double kSameNormal = 1e-3;
   static constexpr double kCosineSlack = 1.001e-3;
 
@@ -205,10 +212,10 @@ class FloorGroups {
 
 }  // namespace
 
-/// Takes the points of manifolds, to a point on the fixed body's surface each.
+/// Converts the points of manifolds to points on the fixed body's surface.
 class Collision::FloorWriter {
  public:
-  /// Of pair `index` in its list.
+  /// `index`: of the pair in its list.
   FloorWriter(const SceneState& scene, const BodyPair& pair, std::uint32_t index) noexcept
       : floor_is_a_(scene.motion[pair.a] == Motion::fixed) {
     contact_.pair = index;
@@ -226,7 +233,7 @@ class Collision::FloorWriter {
     contact_.count = contact_.deepest = 0;
     Vec::Map(contact_.normal) = floor_is_a_ ? normal : Vec(-normal);
   }
-  /// Halfway between the surfaces, from the position of body a.
+  /// Adds a point that is halfway between the surfaces, relative to the position of body a.
   void add(const Vec& halfway, double depth) noexcept {
     if (contact_.count == 0 || depth > most_) contact_.deepest = contact_.count;
     if (contact_.count == 0 || depth > most_) most_ = depth;
@@ -324,7 +331,7 @@ bool Collision::drop_seams() {
   if (!list_floor_contacts()) return false;
   Column<FloorContact>& all = scene_.floor_contacts;
   if (!scene_.floor_order.resize(all.size())) return false;
-  // Of a body next to each other, as they were listed.
+  // Groups contacts by body, in the order in which they were listed.
   const auto is_before = [](const FloorContact& one, const FloorContact& other) {
     return std::tuple(one.body, one.source, one.answer) <
            std::tuple(other.body, other.source, other.answer);
@@ -342,7 +349,7 @@ bool Collision::drop_seams() {
   return true;
 }
 
-// Of one body.
+// Drops the seams of one body.
 void Collision::drop_seams_of(FloorContact* first, FloorContact* end) noexcept {
   const double radius = scene_.radius(first->body);
   if (end - first < 2 || !std::isfinite(radius)) return;
@@ -355,7 +362,7 @@ void Collision::drop_seams_of(FloorContact* first, FloorContact* end) noexcept {
   }
 }
 
-// Regions that were dropped have no points.
+// Removes regions that were dropped, which have no points.
 void Collision::close_regions() noexcept {
   if (!reduces_ || scene_.composite.empty()) return;
   ContactRegions& all = scene_.parts->regions;

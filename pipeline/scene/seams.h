@@ -6,24 +6,25 @@
 
 namespace winnow {
 
-/// A manifold of a dynamic body with a fixed one, as seen from the dynamic body's position.
+/// A manifold of a dynamic body with a fixed one, in world axes, relative to the dynamic body's
+/// position.
 struct FloorContact {
   enum class Source : std::uint8_t { convex, part, region, dropped };
 
   std::uint32_t body;
   std::uint32_t floor;
-  /// Which of the convex or of the composite pairs it is of.
+  /// Index of the pair in SceneState::convex or SceneState::composite.
   std::uint32_t pair;
-  /// Where the answer lies, in its source.
+  /// Index of the result in its source.
   std::uint32_t answer;
   Source source;
-  /// How many points there are, on the fixed body's surface; the deepest of them.
+  /// Number of points, which lie on the fixed body's surface, and the index of the deepest one.
   std::uint8_t count;
   std::uint8_t deepest;
-  /// Which of the body's contacts have about the same normal: see FloorGroups.
+  /// Group of the body's contacts that have about the same normal: see FloorGroups.
   std::uint8_t group;
   double distance;
-  /// Unit, to the dynamic body.
+  /// Unit vector towards the dynamic body.
   double normal[3];
   double point[4][3];
 };

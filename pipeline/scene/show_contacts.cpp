@@ -1,5 +1,6 @@
-// What was found of the pairs of a batch becomes contacts: tasks count what their pairs take, and
-// once there is room for all, each writes its own stretch of the columns.
+// Writes the contacts of a batch into the frame: tasks count the contacts of their pairs, and once
+// there is room for all, each task writes its own range of the columns. Collision::show
+// (collide.cpp) calls this.
 
 #include "pipeline/narrow/steady_column.h"
 #include "pipeline/scene/collision.h"
@@ -11,22 +12,22 @@
 namespace winnow {
 namespace {
 
-/// Batches that find a little more than those before them need no more room.
+/// Headroom, so that later batches that have slightly more contacts need no new allocation.
 constexpr double kProjectionSlack = 1.02;
 
 }  // namespace
 
-// What was shown becomes what was before.
+// Makes the current frame the last frame, or clears it if nothing reads the last frame.
 bool Collision::open_frame() {
   ContactsState& c = contacts_;
   if (reads_last_manifolds()) {
     c.frame.swap(c.before);
   } else {
-    // Another level may have left some.
+    // May have contents from a call at another level.
     c.before.clear();
   }
   if (same_pairs_) {
-    // Records stay in place, but for their places in the frame: tasks read old ones of some pairs
+    // Records stay in place except for their frame indices: tasks read old indices of some pairs
     // after they wrote new ones of others.
     c.records.shown.swap(c.records_before.shown);
   } else {
@@ -44,7 +45,7 @@ bool Collision::open_frame() {
   return begin_history();
 }
 
-// Counts what the pairs of a batch take in the frame, makes room, and writes them from `end` on.
+// Counts the contacts of a batch, makes room, and writes them from `end` on.
 bool Collision::show_batch(Place& end) {
   ContactsState& c = contacts_;
   const std::size_t tasks = task_count();
@@ -63,8 +64,8 @@ bool Collision::show_batch(Place& end) {
   return true;
 }
 
-// Room in the frame up to `end`, and if there was none for what the batches to come take too, if
-// they take as much.
+// Resizes the frame to `end`. If it has to grow, reserves for the remaining batches too, on the
+// assumption that they have as many contacts per pair.
 bool Collision::grow_frame(const Place& end) {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
@@ -82,7 +83,7 @@ bool Collision::grow_frame(const Place& end) {
   return frame.resize(level_, end.pair, end.manifold, end.point) && grow_history();
 }
 
-// The frames change places at the next call, which may find as much as this one.
+// Reserves for the next call, which swaps the frames and may find as many contacts.
 bool Collision::reserve_next() {
   ContactsState& c = contacts_;
   const bool has_room = !reads_last_manifolds() || c.before.reserve_as(c.frame);
@@ -90,12 +91,12 @@ bool Collision::reserve_next() {
          c.carried_before.reserve(c.carried.capacity()) && reserve_history();
 }
 
-// What all batches wrote, up to `end`.
+// Completes the frame after the last batch.
 bool Collision::close(const Place& end) {
   contacts_.frame.close(level_, end);
   if (!reserve_next() || !write_runs() || !close_frame()) return false;
   if (!carries_) {
-    // The next call lists them anew, in the same memory.
+    // The next call lists them again, in the same memory.
     contacts_.records.swap(contacts_.records_before);
     contacts_.records.clear();
   }
@@ -115,8 +116,9 @@ std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
   return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
 }
 
-// How many pairs from this one on are carried over and lie next to each other in the last frame;
-// those that do not touch are passed over. What touches can be copied in one go.
+// Returns the number of pairs from this one on that are carried over and whose contacts are
+// adjacent in the last frame, so that they are copied in one piece. Pairs not in contact do not
+// interrupt the range.
 std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept {
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
@@ -129,7 +131,7 @@ std::uint32_t Collision::carried_stretch(std::uint32_t pair, std::uint32_t end) 
   return at - pair;
 }
 
-// What a pair that is not carried over takes in the frame: nothing if it does not touch.
+// Returns the size of a pair's new contacts; 0 if it is not in contact.
 ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
     return level_ == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
@@ -156,7 +158,7 @@ ContactFrame::Place Collision::extent(std::uint32_t pair) const noexcept {
 
 namespace {
 
-/// The pairs of a stretch that touch.
+/// The range of pairs in contact within a range of carried pairs.
 struct Touching {
   std::uint32_t first = kNoEntry;
   std::uint32_t count = 0;
@@ -170,13 +172,13 @@ struct Touching {
 
 }  // namespace
 
-// What pairs [first, end) take.
+// Returns the size of the contacts of pairs [first, end).
 ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
   if (level_ == ContactLevel::pairs) return {end - first, 0, 0};
   Place sum;
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
-      // Without a branch: whether pairs touch is what cannot be foreseen.
+      // Branchless: contact is unpredictable.
       const std::uint32_t at = source_of(i++);
       const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
       const std::uint32_t points =
@@ -196,7 +198,7 @@ ContactFrame::Place Collision::count(std::uint32_t first, std::uint32_t end) con
   return sum;
 }
 
-// Writes pairs [first, end), and what is to be remembered of them.
+// Writes pairs [first, end) and their records.
 void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept {
   if (level_ == ContactLevel::pairs) return write_all(first, end, at.pair);
   ContactsState& c = contacts_;
@@ -233,8 +235,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Place at) noe
   }
 }
 
-// Writes whose bodies pairs that touch and are not carried over are, and says whether they touched
-// before.
+// Writes keys and events of pairs that are in contact and not carried over.
 void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
@@ -256,15 +257,15 @@ void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t
   }
 }
 
-// Pairs [first, end), at most a task's, of which nothing was asked.
+// Writes pairs [first, end), at most one task's, at level pairs.
 void Collision::write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept {
   std::uint32_t pairs[kPairsPerTask];
   std::iota(pairs, pairs + (end - first), first);
   write_bodies({pairs, end - first}, to);
 }
 
-// Pairs [first, end), at most a task's, all convex and not carried over: those that touch, column
-// by column.
+// Writes the pairs of [first, end) that are in contact, column by column. All are convex and not
+// carried over; at most one task's pairs.
 void Collision::write_convex(std::uint32_t first, std::uint32_t end, Place& at) noexcept {
   std::uint32_t touching[kPairsPerTask];
   std::uint32_t count = 0;
@@ -285,7 +286,7 @@ void Collision::write_convex(std::uint32_t first, std::uint32_t end, Place& at) 
   write_answers({touching, count}, at);
 }
 
-// The answers about convex pairs that touch.
+// Writes results of the narrow phase for convex pairs in contact.
 void Collision::write_answers(std::span<const std::uint32_t> pairs, Place& at) noexcept {
   const auto count = static_cast<std::uint32_t>(pairs.size());
   const auto copy = [&](std::span<const double> from, Column<double>& to) {
@@ -310,7 +311,7 @@ void Collision::write_answers(std::span<const std::uint32_t> pairs, Place& at) n
   at.manifold += count;
 }
 
-// A pair of which a shape is composite and that touches, and was not carried over.
+// Writes a pair with a composite shape that is in contact and not carried over.
 void Collision::write_composite(std::uint32_t pair, const Place& to) noexcept {
   write_bodies({&pair, 1}, to.pair);
   ContactFrame& frame = contacts_.frame;
@@ -334,7 +335,8 @@ void Collision::write_composite(std::uint32_t pair, const Place& to) noexcept {
   }
 }
 
-// The answer about a pair of primitives, of which that of a stands at `offset` from body a.
+// Writes the result of a pair of primitives; `offset` is the position of a's primitive relative to
+// body a.
 void Collision::write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                                Place& to) noexcept {
   ContactFrame& frame = contacts_.frame;
@@ -355,7 +357,7 @@ void Collision::write_manifold(const NarrowResult& answers, std::size_t at, cons
   ++to.manifold;
 }
 
-// The points of an answer; `offset` is null where the primitive of a is the body.
+// Writes the points of a result; `offset` is null if body a is convex.
 void Collision::write_points(const NarrowResult& answers, std::size_t at, const double* offset,
                              std::uint32_t& to) noexcept {
   ContactColumns& points = contacts_.frame.points;
@@ -389,7 +391,7 @@ void Collision::write_region(const ContactRegion& region, Place& to) noexcept {
   ++to.manifold;
 }
 
-// Runs of pairs of the same two kinds, which lie next to each other.
+// Writes the runs of pairs that have the same two shape kinds.
 bool Collision::write_runs() {
   ContactFrame& frame = contacts_.frame;
   frame.runs.clear();
@@ -402,7 +404,7 @@ bool Collision::write_runs() {
   const auto pairs = static_cast<std::uint32_t>(frame.pairs());
   for (std::uint32_t first = 0; first < pairs;) {
     ContactRun run = run_at(first);
-    // The last one of the run, by halving what may follow.
+    // Finds the end of the run by binary search.
     std::uint32_t end = first + 1;
     for (std::uint32_t last = pairs; end < last;) {
       const std::uint32_t middle = end + (last - end) / 2;

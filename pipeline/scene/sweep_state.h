@@ -1,5 +1,8 @@
 #pragma once
 
+// The state of a SceneSweep. scene_sweep.cpp drives it: swept_ways.cpp computes boxes of the moving
+// bodies' paths and finds candidate pairs, swept_impacts.cpp finds their first impacts.
+
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/partitions/partition.h>
@@ -22,7 +25,8 @@ namespace winnow {
 inline constexpr std::uint32_t kNoMover = ~0U;
 inline constexpr std::size_t kMoversPerStretch = 64;
 
-/// Part `index` of `count` equal ones of the way of a body, in time, which has a box of its own.
+/// Part `index` of the `count` equal intervals of time into which a body's path is split; each part
+/// has its own box.
 struct WayPiece {
   std::uint32_t mover;
   std::uint8_t index;
@@ -30,28 +34,27 @@ struct WayPiece {
   Motion motion;
   bool bullet;
 
-  /// Whether the two have a moment in common.
+  /// True if the two time intervals overlap.
   [[nodiscard]] bool meets(const WayPiece& other) const noexcept {
     return index * other.count <= (other.index + 1) * count &&
            other.index * count <= (index + 1) * other.count;
   }
 };
 
-/// A candidate, and until when its impact is wanted.
+/// A candidate pair and the latest time at which its impact still matters.
 struct SweptPair {
   std::uint32_t candidate;
   double until;
 };
 
-/// Where the impact of a candidate is in `SweepState::found`.
+/// An impact: its index in `SweepState::found` and its candidate pair.
 struct FoundImpact {
   double time;
   std::uint32_t candidate;
   std::uint32_t at;
 };
 
-/// What a sweep holds between its steps: of `swept_ways.cpp`, which puts boxes around ways and
-/// finds the candidates, and of `swept_impacts.cpp`, which finds their impacts.
+/// State of a sweep that its steps share.
 struct SweepState {
   SweepState(Scene& swept_scene, SceneState& its_state, std::pmr::memory_resource* memory) noexcept
       : scene(swept_scene),
@@ -96,45 +99,49 @@ struct SweepState {
   SceneState& bodies;
   PartTraversal parts;
   Partition ways;
-  /// By mover: its motion, which body it is and the ball around it; by body, which mover.
+  /// By mover: its motion, its body and its bounding ball. By body: its mover, or kNoMover.
   Column<RigidMotion> motions;
   Column<std::uint32_t> movers;
   Column<MovingBall> balls;
   Column<std::uint32_t> mover_of;
-  /// By Motion, how many bodies move.
+  /// Number of moving bodies by Motion.
   std::array<std::size_t, kMotions> movers_in{};
-  /// How the frame moves in which ways are boxed, and what movers go along one axis.
+  /// Translation of the reference frame in which path boxes are computed; and scratch for its
+  /// choice: the movers' travel along one axis.
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();
   Column<double> along_axis;
-  /// By mover, and one more.
+  /// Index of each mover's first box, and one past the end.
   Column<std::uint32_t> first_piece;
   Column<PlainBox> boxes;
   Column<Key> piece_keys;
-  /// By object of `ways`.
+  /// By object id of `ways`.
   Column<WayPiece> pieces;
   PairBuffer pairs;
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
   Column<std::uint64_t> spare;
-  /// Candidates whose balls meet, as (when << 32 | candidate), sorted; when in time steps.
+  /// Candidates whose balls overlap at some time, as (time << 32 | candidate), sorted; the time is
+  /// a number of time steps (see kTimeSteps).
   Column<std::uint64_t> chances;
-  /// By kinds of shapes, and as they were listed.
+  /// The pairs of a round, sorted by the kinds of their shapes; and in the order in which they were
+  /// listed.
   Column<SweptPair> round;
   Column<SweptPair> listed;
   Column<impact::BodyImpact> answers;
-  /// By answer: what other threads have written is looked at only where it is 1.
+  /// By result: 1 if there is an impact. Results whose flag is 0 are not written.
   Column<std::uint8_t> hits;
-  /// By candidate or, where there is one, by mover; and when the latter is.
+  /// First impacts by candidate (find_all) or by mover (find_first); and the time of a mover's
+  /// first impact.
   Column<impact::BodyImpact> found;
   Column<double> first_time;
-  /// The impacts to be shown, sorted.
+  /// The impacts to be returned, sorted.
   Column<FoundImpact> order;
   Column<SceneImpact> impacts;
   Column<std::uint32_t> first;
   SweepStatistics statistics;
 
  private:
-  /// Calls body(mover) for all whose motions are known, in parallel.
+  /// Calls body(mover) in parallel for every mover that has a motion.
   template <typename Body>
   void for_movers(Body&& body) const {
     for_stretches(bodies.options.execution, motions.size(), kMoversPerStretch,
@@ -152,11 +159,11 @@ struct SweepState {
             static_cast<std::uint32_t>(candidates[candidate])};
   }
 
-  // Boxes and candidates.
+  // Boxes and candidates (swept_ways.cpp).
 
   [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
   [[nodiscard]] bool choose_drift() noexcept;
-  /// From which boxes are measured.
+  /// Reference frame of the path boxes.
   [[nodiscard]] RigidMotion frame() const noexcept {
     const Eigen::Vector3d& at = bodies.origin;
     RigidMotion frame = RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
@@ -179,20 +186,21 @@ struct SweepState {
   [[nodiscard]] bool is_met(Motion motion, const SweepOptions& options) const noexcept;
   [[nodiscard]] Status find_pairs_with(Motion motion, const SweepOptions& options);
 
-  // Impacts of candidates.
+  // Impacts of candidates (swept_impacts.cpp).
 
-  /// In `room` if the body stands.
+  /// Returns the ball of a body; for a body that does not move it is computed into `room`.
   [[nodiscard]] const MovingBall& ball_of(std::uint32_t body, MovingBall& room) const noexcept {
     const std::uint32_t mover = mover_of[body];
     if (mover != kNoMover) return balls[mover];
     return room = ball_of(RigidMotion::standing(bodies.pose[body]), body);
   }
-  /// Starts to load the ball of the second body: the first is mostly that of the candidate before.
+  /// Prefetches the ball of the second body. The first body is mostly the same as in the candidate
+  /// before.
   void fetch_ball(std::size_t candidate) const noexcept {
     const std::uint32_t mover = mover_of[bodies_of(candidate)[1]];
     if (mover != kNoMover) __builtin_prefetch(&balls[mover]);
   }
-  /// Of balls that are grown by a share of their sizes.
+  /// Relative motion of two balls, which are enlarged by the factor 1 + `tolerance`.
   [[nodiscard]] Approach approach_of(std::uint32_t a, std::uint32_t b,
                                      double tolerance) const noexcept;
   [[nodiscard]] std::uint64_t chance_of(std::size_t candidate, double tolerance) const noexcept;

@@ -8,17 +8,17 @@
 
 namespace winnow {
 
-/// Beyond the end of time.
+/// A time after the end of the motion, which is 1.
 inline constexpr double kNever = 2.0;
 
-/// The ball around a body that goes along its way.
+/// The bounding ball of a body that moves.
 struct MovingBall {
   double start[3];
   double travel[3];
   double radius;
 };
 
-/// How the balls around two bodies near each other.
+/// Relative motion of the bounding balls of two bodies.
 struct Approach {
   Eigen::Vector3d between;
   Eigen::Vector3d travel;
@@ -27,9 +27,9 @@ struct Approach {
   [[nodiscard]] impact::Interval window() const noexcept {
     return impact::ball_window(between, travel, reach);
   }
-  /// When they first overlap or a little before, beyond the end of time if they never do: the
-  /// smaller root of a quadratic whose coefficients are rounded towards sooner. Most overlap from
-  /// the start, which needs no root.
+  /// Returns a lower bound on the time at which the balls first overlap, or kNever: the smaller
+  /// root of a quadratic whose coefficients are rounded towards an earlier time. Most balls overlap
+  /// at the start, which needs no root.
   [[nodiscard]] double begin() const noexcept {
     constexpr double kSlack = 1e-12;
     constexpr double kSquares = 1e150;

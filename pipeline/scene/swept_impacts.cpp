@@ -1,5 +1,7 @@
-// The impacts of candidates: what balls around the bodies allow is judged exactly, a round of pairs
-// after the other, as long as a pair may have the first impact of a body.
+// First impacts of candidate pairs. A pair whose bounding balls do not overlap in time is skipped.
+// With `first_only`, pairs are processed in rounds, ordered by the time at which their balls
+// overlap, and a pair is skipped once both bodies have an earlier impact. SceneSweep
+// (scene_sweep.cpp) calls this after swept_ways.cpp.
 
 #include "core/sort/radix_sort.h"
 #include "pipeline/motion/impact_batch.h"
@@ -16,18 +18,18 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kCandidatesPerStretch = 256;
-/// So many pairs are looked at before what they say spares others.
+/// Pairs in a round. The impacts of a round may exclude pairs of later rounds.
 constexpr std::size_t kPairsPerRound = 1024;
-/// To so many bits pairs are ordered by when they may meet, in steps of time.
+/// Bits of the time by which candidates are sorted, in steps.
 constexpr unsigned kTimeBits = 11;
 constexpr double kTimeSteps = (1U << kTimeBits) - 1U;
-/// Of a candidate whose balls do not meet.
+/// Marks a candidate whose balls never overlap.
 constexpr std::uint64_t kNoChance = ~std::uint64_t{0};
 constexpr std::size_t kPairsAhead = 16;
-/// More than rounding changes times by, and the sizes of balls as a share of them.
+/// Exceeds the rounding error of times, and of ball sizes as a share of them.
 constexpr double kRounding = 1e-9;
 
-/// Room for a motion, which nothing is written to before there is one.
+/// Uninitialized storage for a motion.
 union MotionRoom {
   MotionRoom() noexcept {}
   RigidMotion motion;
@@ -45,8 +47,8 @@ Approach SweepState::approach_of(std::uint32_t a, std::uint32_t b,
           (of_a.radius + of_b.radius) * (1.0 + tolerance)};
 }
 
-/// The first impacts of no more pairs than fit into a batch; `impacts_of` gets one of each, which
-/// is to be looked at where `hits_of` is 1.
+/// Computes the first impacts of at most one batch of pairs. Writes an element of `impacts_of` only
+/// if it sets `hits_of` to 1.
 void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
                               impact::BodyImpact* impacts_of,
                               std::uint8_t* hits_of) const noexcept {
@@ -57,7 +59,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
   };
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
   std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
-  // At most one of a pair stands.
+  // At most one body of a pair is at rest.
   const auto motion = [&](std::size_t i, std::uint32_t body) -> const RigidMotion& {
     if (mover_of[body] != kNoMover) return motions[mover_of[body]];
     return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
@@ -81,7 +83,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
     }
   }
   batch.run([&](std::size_t i, const impact::Impact& impact, bool) {
-    // Shapes nearly touch at the start, and perhaps slide.
+    // The shapes nearly touch at the start, and may slide.
     const bool may_slide =
         !options.touching && impact.hit && impact.time == 0.0 && impact.gap > 0.0;
     if (may_slide) return answer_alone(i);
@@ -89,7 +91,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
   });
 }
 
-/// The first impact of every pair.
+/// Finds the first impact of every pair.
 Status SweepState::find_all(const SweepOptions& options) {
   if (!found.resize(candidates.size()) || !hits.resize(candidates.size())) {
     return Status::out_of_memory;
@@ -111,17 +113,18 @@ Status SweepState::find_all(const SweepOptions& options) {
   return Status::ok;
 }
 
-/// No impact of the candidate is found before.
+/// Returns the time step before which the candidate has no impact, with the candidate's number, or
+/// kNoChance.
 std::uint64_t SweepState::chance_of(std::size_t candidate, double tolerance) const noexcept {
   const auto [a, b] = bodies_of(candidate);
-  // A gap of the tolerance is an impact, and rounding may find it a little sooner.
+  // A gap within the tolerance is an impact, and rounding may make it earlier.
   const double meets = approach_of(a, b, tolerance + kRounding).begin();
   if (meets == kNever) return kNoChance;
   const double soonest = std::max(0.0, meets - kRounding);
   return static_cast<std::uint64_t>(soonest * kTimeSteps) << 32U | candidate;
 }
 
-/// Lists the candidates whose balls meet, the first that do first.
+/// Lists the candidates whose balls overlap, the earliest overlap first.
 Status SweepState::list_chances(double tolerance) {
   const std::size_t count = candidates.size();
   if (!chances.resize(count)) return Status::out_of_memory;
@@ -141,8 +144,8 @@ Status SweepState::list_chances(double tolerance) {
   return Status::ok;
 }
 
-/// Fills a round with chances from `at` on: those that may be the first one of a body. False if
-/// memory was refused.
+/// Fills a round with candidates from `at` on that may be the first impact of a body. Returns false
+/// if memory is refused.
 bool SweepState::list_round(std::size_t& at) noexcept {
   listed.clear();
   for (; at < chances.size() && listed.size() < kPairsPerRound; ++at) {
@@ -155,14 +158,14 @@ bool SweepState::list_round(std::size_t& at) noexcept {
       const std::uint32_t mover = mover_of[body];
       if (mover != kNoMover) latest = std::max(latest, first_time[mover]);
     }
-    // In whole steps, and one more for what rounding takes.
+    // In whole steps, plus one for rounding.
     if (static_cast<double>(chances[at] >> 32U) > latest * kTimeSteps + 1.0) continue;
     if (!listed.push_back({candidate, latest})) return false;
   }
   return sort_round() && answers.resize(round.size()) && hits.resize(round.size());
 }
 
-/// Pairs of the same kinds are next to each other, so that batches have few kinds.
+/// Sorts the pairs of a round by shape kinds, so that batches have few kinds.
 bool SweepState::sort_round() noexcept {
   constexpr std::size_t kKinds = 16;
   const auto kinds_of = [&](const SweptPair& pair) {
@@ -180,7 +183,7 @@ bool SweepState::sort_round() noexcept {
   return true;
 }
 
-/// For each of the two whose first impact it is so far.
+/// Updates the first impact of each of the two bodies.
 void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept {
   for (const std::uint32_t body : bodies_of(candidate)) {
     const std::uint32_t mover = mover_of[body];
@@ -214,7 +217,7 @@ Status SweepState::find_first(const SweepOptions& options) {
   }
   for (std::uint32_t mover = 0; mover < count; ++mover) {
     if (first[mover] == kNoImpact) continue;
-    // What is the first impact of both is shown once.
+    // An impact that is the first one of both bodies is listed once.
     const bool shown_before = std::ranges::any_of(bodies_of(first[mover]), [&](std::uint32_t body) {
       const std::uint32_t other = mover_of[body];
       return other < mover && first[other] == first[mover];
@@ -246,10 +249,10 @@ SceneImpact SweepState::shown(std::uint64_t candidate,
   return result;
 }
 
-/// Puts the impacts in order, and tells each mover which its first one is. False if memory was
-/// refused.
+/// Sorts and writes the impacts, and finds the index of each mover's first impact. Returns false if
+/// memory is refused.
 bool SweepState::show_impacts() noexcept {
-  // Candidates are in the order of their bodies.
+  // Candidate numbers are in the order of body ids.
   std::sort(order.begin(), order.end(), [](const FoundImpact& a, const FoundImpact& b) {
     return std::tuple(a.time, a.candidate) < std::tuple(b.time, b.candidate);
   });

@@ -1,6 +1,6 @@
-// Ways of bodies are boxed and put into a partition of their own, which is asked for pairs among
-// them and with the scene's partitions. Where ways are long because most bodies go the same way,
-// pairs among them are asked for in a frame that goes with them.
+// Candidate pairs of a sweep. Boxes of the moving bodies' paths are inserted in a partition, which
+// finds pairs among them and with the scene's partitions. If paths are long because most bodies
+// move in the same direction, pairs among them are found in a frame that moves along.
 
 #include "pipeline/scene/sweep_state.h"
 
@@ -16,15 +16,16 @@
 namespace winnow {
 namespace {
 
-/// A frame that moves shortens ways to less than this share, and by more than so many radii.
+/// The moving frame is used only if it shortens paths to less than this share, and by more than
+/// kLongWay times the sum of the radii.
 constexpr double kShortened = 0.25;
 constexpr double kLongWay = 4.0;
 
-/// Which pairs of ways, or of ways and bodies that stand, are looked at.
+/// Filter for pairs of paths, or of paths and bodies at rest.
 struct WayJudge {
   const SweepState& sweep;
   const SweepOptions& options;
-  /// Null: ways among themselves.
+  /// Null for pairs among paths.
   const SceneSet* standing;
 
   [[nodiscard]] bool is_wanted(const WayPiece& way, Motion other, bool bullet) const noexcept {
@@ -102,8 +103,8 @@ Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> 
   return take_bodies(keys);
 }
 
-/// Along each axis the median of what movers travel, or nothing where ways are not much longer for
-/// that.
+/// Sets `drift` to the median travel on each axis, or to zero if this does not shorten the paths
+/// much.
 bool SweepState::choose_drift() noexcept {
   drift.setZero();
   double as_they_are = 0.0;
@@ -130,7 +131,7 @@ bool SweepState::choose_drift() noexcept {
   return true;
 }
 
-/// Says into how many pieces each way is cut.
+/// Computes the number of boxes of each path.
 bool SweepState::count_pieces() noexcept {
   const std::size_t count = movers.size();
   if (!first_piece.resize(count + 1)) return false;
@@ -162,7 +163,7 @@ void SweepState::box_way(std::uint32_t mover) noexcept {
   }
 }
 
-/// Fills `ways` anew.
+/// Fills `ways` with new boxes.
 Status SweepState::box_ways(const SweepOptions& options) {
   if (!count_pieces()) return Status::out_of_memory;
   for_movers([&](std::size_t mover) { box_way(static_cast<std::uint32_t>(mover)); });
@@ -206,7 +207,8 @@ Status SweepState::set_filters() {
   return Status::ok;
 }
 
-/// Adds the pairs that were found, of which the second is `second_body` of an object.
+/// Appends the pairs that were found; second_body(object) returns the body of a pair's second
+/// object.
 template <typename Body>
 Status SweepState::collect(Body&& second_body) {
   const std::size_t before = candidates.size();
@@ -220,7 +222,7 @@ Status SweepState::collect(Body&& second_body) {
   return Status::ok;
 }
 
-/// Each once: a pair is found for each two pieces.
+/// Sorts and removes duplicates: a pair is found once for each two overlapping pieces.
 bool SweepState::sort_candidates() noexcept {
   const std::size_t count = candidates.size();
   if (!spare.resize(count)) return false;
@@ -243,7 +245,7 @@ Status SweepState::find_pairs_among(const SweepOptions& options) {
   return collect([&](ObjectId way) { return movers[pieces[way].mover]; });
 }
 
-/// Whether movers may meet bodies of a set that stand.
+/// True if movers may overlap bodies of a set that do not move.
 bool SweepState::is_met(Motion motion, const SweepOptions& options) const noexcept {
   const SceneSet& set = bodies.set(motion);
   if (!set.partition.has_value()) return false;

@@ -6,7 +6,8 @@
 
 namespace winnow {
 
-/// The product of two edges: of a sliver, too, a direction at right angles to both.
+/// Cross product of two edges with an error of a few ulps per component, so that the normal of a
+/// sliver is accurate.
 [[nodiscard]] inline Eigen::Vector3d accurate_cross(const Eigen::Vector3d& a,
                                                     const Eigen::Vector3d& b) noexcept {
   return {difference_of_products(a.y(), b.z(), a.z(), b.y()),

@@ -6,7 +6,8 @@
 
 namespace winnow {
 
-/// to - from, rounded, and what was lost: to - from = difference + rest, unless that overflows.
+/// The double nearest to `to - from`, and its rounding error: to - from = difference + rest
+/// exactly, unless the difference overflows (it is then clamped to the largest double).
 struct Difference {
   double difference[3];
   double rest[3];
@@ -16,7 +17,8 @@ struct Difference {
   Difference result{};
   constexpr double kMost = std::numeric_limits<double>::max();
   for (int i = 0; i < 3; ++i) {
-    // The error of a difference is a double (Knuth, TAOCP vol. 2, 4.2.2, theorem B).
+    // The error of a floating-point difference is itself a double (TwoSum: Knuth, TAOCP vol. 2,
+    // 4.2.2, theorem B).
     const double d = to[i] - from[i];
     const double back = d - to[i];
     const double rest = (to[i] - (d - back)) + (-from[i] - back);

@@ -1,11 +1,12 @@
 #pragma once
 
-// Kernel files include this: inlined always, since what they inline is built for one instruction
-// set.
+// Included by kernel files, which are compiled once per instruction set. Functions here are always
+// inlined, so that no copy compiled for one instruction set is linked into another.
 
 namespace winnow {
 
-/// x * y - z * w to an ulp or two of the result (Kahan; Jeannerod, Louvet and Muller, 2013).
+/// x * y - z * w with an error of one or two ulps (Kahan's algorithm; Jeannerod, Louvet and Muller
+/// 2013).
 [[nodiscard, gnu::always_inline]] inline double difference_of_products(double x, double y, double z,
                                                                        double w) noexcept {
   const double product = z * w;

@@ -2,8 +2,8 @@
 
 namespace winnow {
 
-// Cosine and sine of parts of a turn, one after another. As numbers: mathematical libraries differ
-// in the last digits of what they find, and one does by what the processor has.
+// Cosine and sine of successive fractions of a turn. Stored as literals because mathematical
+// libraries differ in the last digits, one of them even by the processor it runs on.
 
 inline constexpr double kSixteenthsOfTurn[16][2] = {
     {1, 0},

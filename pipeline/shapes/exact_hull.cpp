@@ -1,3 +1,6 @@
+// Quickhull with exact orientation tests. hull_points.cpp calls exact_hull for solid point sets;
+// the result goes to merge_coplanar and assemble_hull (hull_builder.cpp).
+
 #include "pipeline/shapes/exact_hull.h"
 
 #include "pipeline/exact/exact_vector.h"
@@ -13,15 +16,15 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint32_t kNone = ~0U;
-// Above what underflow takes from products of numbers of this size.
+// Above the absolute error that underflow may cause in products of coordinates of at most 2.
 constexpr double kUnderflow = 1e-300;
 
 [[nodiscard]] ExactVector exact_difference(const Vector3d& a, const Vector3d& b) noexcept {
   return exact_vector(a.data()) - exact_vector(b.data());
 }
 
-/// Six times the volume of the tetrahedron (a, b, c, d), in double, and its sign, which is right:
-/// positive if a, b, c are counter-clockwise seen from d.
+/// Six times the signed volume of the tetrahedron (a, b, c, d). `volume` is rounded, `sign` is
+/// exact: positive if a, b, c are counter-clockwise seen from d.
 struct Side {
   double volume;
   int sign;
@@ -85,14 +88,14 @@ class Quickhull {
  private:
   struct Face {
     std::uint32_t vertex[3];
-    std::uint32_t across[3];        // the face beyond the edge from vertex[i] to the next one
-    std::uint32_t outside = kNone;  // the farthest of a list of points that lie beyond it
-    double height = 0.0;            // of that point, times twice the face's area
-    std::uint32_t looked_at = 0;    // by which point last, and what it saw
+    std::uint32_t across[3];        // the face across the edge from vertex[i] to the next vertex
+    std::uint32_t outside = kNone;  // head of the list of points beyond this face; the farthest one
+    double height = 0.0;  // distance of `outside` from the plane, times twice the face's area
+    std::uint32_t looked_at = 0;  // the find_horizon call that computed is_seen
     bool is_seen = false;
     bool alive = true;
   };
-  /// An edge between a face that is seen from a point and one that is not.
+  /// An edge between a face that is visible from the new point and one that is not.
   struct HorizonEdge {
     std::uint32_t from;
     std::uint32_t to;
@@ -104,7 +107,8 @@ class Quickhull {
                    points_[point]);
   }
 
-  /// The point that measures the most among those that are valid; kNone if none is.
+  /// The index with the largest `measure`, if it is `valid`; else any valid index; kNone if there
+  /// is none.
   template <typename Measure, typename Valid>
   [[nodiscard]] std::uint32_t best(Measure&& measure, Valid&& valid) const {
     std::uint32_t found = kNone;
@@ -117,14 +121,14 @@ class Quickhull {
       }
     }
     if (found != kNone && valid(found)) return found;
-    // What double finds may be none: then any will do.
+    // Rounding in `measure` can select an invalid point; then any valid one will do.
     for (found = 0; found < points_.size(); ++found) {
       if (valid(found)) return found;
     }
     return kNone;
   }
 
-  /// Four points that lie in no plane.
+  /// Finds four points that are not coplanar.
   bool find_corners(std::uint32_t corner[4]) const {
     if (points_.empty()) return false;
     corner[0] = 0;
@@ -142,13 +146,14 @@ class Quickhull {
         best([&](std::uint32_t i) { return std::fabs(side_of(p, q, r, points_[i]).volume); },
              [&](std::uint32_t i) { return side_of(p, q, r, points_[i]).sign != 0; });
     if (corner[3] == kNone) return false;
-    // Counter-clockwise seen from outside, where the fourth is not.
+    // Orders the corners so that (0, 1, 2) is counter-clockwise seen from outside, the side
+    // opposite to corner 3.
     if (side_of(p, q, r, points_[corner[3]]).sign > 0) std::swap(corner[0], corner[1]);
     return true;
   }
 
   void add_tetrahedron(const std::uint32_t (&corner)[4]) {
-    // Face k is without corner k; beyond the edge that lacks corner i as well lies face i.
+    // Face k omits corner k. The edge of face k that also omits corner i is shared with face i.
     constexpr std::uint32_t kLoop[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
     for (const auto& loop : kLoop) {
       Face face{};
@@ -163,9 +168,9 @@ class Quickhull {
     open_.assign(made_.begin(), made_.end());
   }
 
-  /// Gives a point to one of the new faces that it lies beyond, if there is one. (What lay beyond a
-  /// face that is gone, and is not inside by now, lies beyond a new one: the plane of that turns
-  /// between those of two old faces.)
+  /// Adds the point to the list of a new face that it lies beyond, if there is one. It suffices to
+  /// test the new faces: a point beyond a removed face that is still outside lies beyond a new
+  /// face, because the plane of a new face lies between the planes of two old ones.
   void assign(std::uint32_t point) {
     for (const std::uint32_t made : made_) {
       Face& face = faces_[made];
@@ -183,8 +188,8 @@ class Quickhull {
     }
   }
 
-  /// Adds the farthest point beyond a face: what it sees makes way for a fan from it to the
-  /// horizon.
+  /// Adds the farthest point beyond face `first`: replaces the faces visible from it by a fan from
+  /// the point to the horizon.
   void add_point(std::uint32_t first) {
     const std::uint32_t point = faces_[first].outside;
     find_horizon(first, point);
@@ -202,7 +207,7 @@ class Quickhull {
     open_.insert(open_.end(), made_.begin(), made_.end());
   }
 
-  /// Whether the face is seen from the point, asked once.
+  /// Returns whether the face is visible from the point. Computed once per point and face.
   bool look(std::uint32_t at, std::uint32_t point) {
     Face& face = faces_[at];
     if (face.looked_at != looks_) {
@@ -216,8 +221,9 @@ class Quickhull {
     return face.is_seen;
   }
 
-  /// Faces that are seen are connected, and where they end is one loop: neither does a point in
-  /// the plane of a face see that, nor does one on the line of an edge see either of its faces.
+  /// Collects the visible faces and the horizon edges. Visible faces are connected and bounded by
+  /// one loop, because a point in a face's plane does not see the face, and a point on the line of
+  /// an edge sees neither of its faces.
   void find_horizon(std::uint32_t first, std::uint32_t point) {
     ++looks_;
     seen_.clear();
@@ -232,7 +238,7 @@ class Quickhull {
     }
   }
 
-  /// The face between an edge of the horizon and the point, joined to what is beyond the edge.
+  /// Makes the face between a horizon edge and the point, and links it to the face across the edge.
   std::uint32_t add_face(const HorizonEdge& edge, std::uint32_t point) {
     std::uint32_t at = static_cast<std::uint32_t>(faces_.size());
     if (free_.empty()) {
@@ -250,7 +256,7 @@ class Quickhull {
     return at;
   }
 
-  /// Joins a new face to the one that follows it around the horizon.
+  /// Links a new face to the next one around the horizon.
   void join(std::uint32_t at) {
     const std::uint32_t following = begins_[faces_[at].vertex[1]];
     faces_[at].across[1] = following;
@@ -260,12 +266,13 @@ class Quickhull {
   std::span<const Vector3d> points_;
   std::pmr::vector<Face> faces_;
   std::pmr::vector<std::uint32_t> free_;
-  std::pmr::vector<std::uint32_t> open_;    // faces that may have points beyond them
-  std::pmr::vector<std::uint32_t> next_;    // of each point in its face's list
-  std::pmr::vector<std::uint32_t> begins_;  // the new face whose first vertex a point is
+  std::pmr::vector<std::uint32_t> open_;  // faces that may have points beyond them
+  std::pmr::vector<std::uint32_t> next_;  // for each point, the next one in the list of its face
+  std::pmr::vector<std::uint32_t>
+      begins_;  // for each vertex, the new face whose first vertex it is
   std::pmr::vector<std::uint32_t> seen_;
   std::pmr::vector<HorizonEdge> horizon_;
-  std::pmr::vector<std::uint32_t> made_;  // the faces of the last point
+  std::pmr::vector<std::uint32_t> made_;  // faces made for the current point
   std::uint32_t looks_ = 0;
 };
 

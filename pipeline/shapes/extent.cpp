@@ -1,3 +1,7 @@
+// Extents, bounds and bounding radii of convex shapes, by kind. `extent` takes any direction;
+// ShapePool::bounds takes the unit rows of a rotation. Called by the mid phase, the scene and
+// motion.
+
 #include "pipeline/shapes/extent.h"
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
@@ -13,23 +17,24 @@ namespace winnow {
 namespace mid {
 namespace {
 
-// A direction in a shape's own frame, and what an extent along it needs to be told of it.
+// The two direction types compute the quantities of a direction that extents need; UnitDirection is
+// cheaper.
 
-/// Of any length.
+/// A direction of any length.
 struct AnyDirection {
   const Vec& d;
 
   [[nodiscard]] double length() const noexcept { return d.norm(); }
   [[nodiscard]] Vec unit() const noexcept { return d.stableNormalized(); }
-  /// Of its part at right angles to the z axis.
+  /// Length of the component orthogonal to the z axis.
   [[nodiscard]] double across() const noexcept { return hypotenuse(d.x(), d.y()); }
-  /// No product with a point of a hull's core is larger.
+  /// Upper bound on |d . p| over the points p of the hull's core.
   [[nodiscard]] double most(const HullShape& hull) const noexcept {
     return d.lpNorm<1>() * (Eigen::Map<const Vec>(hull.center).cwiseAbs().maxCoeff() + hull.radius);
   }
 };
 
-/// Of length 1, to rounding: its squares stay in range.
+/// A unit direction, up to rounding; its squares neither overflow nor underflow.
 struct UnitDirection {
   const Vec& d;
 
@@ -49,8 +54,8 @@ struct UnitDirection {
   return {core.low - rounding, core.high + rounding, core.scale + rounding};
 }
 
-// Vertex columns are padded to 16 by copies of vertex 0; four independent minima and maxima keep
-// the loop from waiting for each comparison.
+// Vertex columns are padded to a multiple of 16 with copies of vertex 0. Four independent minima
+// and maxima hide the latency of the comparisons.
 [[nodiscard]] Extent of_vertices(const HullShape& hull, const Vec& d, double scale) noexcept {
   constexpr std::uint32_t kBlock = 4;
   double low[kBlock];
@@ -83,7 +88,7 @@ struct UnitDirection {
   return extent;
 }
 
-/// Of a cone's core, whose disc reaches to `side`.
+/// Extent of a cone's core. `side` is the disc's extent along d, `tip` the apex's.
 [[nodiscard]] Extent of_cone(double side, double tip) noexcept {
   return {std::min(tip, -side - tip), std::max(tip, side - tip), side + std::abs(tip)};
 }
@@ -155,7 +160,7 @@ template <typename Direction>
   return {-kInfinity, kInfinity, 0.0};
 }
 
-/// Bounded only where its normal is the axis, to the last bit.
+/// Finite only if the axis equals the half-space's normal or its opposite bit for bit.
 [[nodiscard]] Extent of_half_space(const HalfSpaceShape& shape, const Vec& axis) noexcept {
   const Eigen::Map<const Vec> n(shape.normal);
   const bool is_above = axis == n;
@@ -164,14 +169,15 @@ template <typename Direction>
           is_above || is_below ? std::abs(shape.offset) : 0.0};
 }
 
-// An upper bound that neither overflows nor vanishes, within 1.8 of the length.
+// Upper bound on the length of v that neither overflows nor underflows; at most sqrt(3) times the
+// length.
 [[nodiscard]] double length_bound(const Vec& v) noexcept {
   constexpr double kLeast = 1e-150;
   const double length = v.norm();
   return length > kLeast && length < 1.0 / kLeast ? length : v.lpNorm<1>();
 }
 
-// Rounded up; a reach may be infinite.
+// position + reach, rounded up. `reach` may be infinite.
 [[nodiscard]] double end_of(double position, double reach) noexcept {
   return std::isinf(reach) ? reach : add_up(position, reach);
 }
@@ -307,7 +313,7 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
 
 Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
   const DefaultEnvironment environment;
-  // Balls need no turn.
+  // A sphere needs no rotation.
   const mid::Mat turn = id.kind() == ShapeKind::sphere
                             ? mid::Mat(mid::Mat::Identity())
                             : mid::Mat(rotation_of_unit(normalized(tame(pose.orientation))));
@@ -317,7 +323,7 @@ Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
     const mid::Extent reach = id.kind() == ShapeKind::half_space
                                   ? mid::of_half_space(tables_.half_spaces[id.index()], row)
                                   : mid::extent_along(tables_, id, mid::UnitDirection{row});
-    // For the rounding of the rotation and of the sums below.
+    // Covers the rounding of the rotation and of the sums below.
     const double slack = mid::kSlack * reach.scale;
     box.max[axis] = round_up(mid::end_of(pose.position[axis], reach.high + slack));
     box.min[axis] = -round_up(mid::end_of(-pose.position[axis], -reach.low + slack));

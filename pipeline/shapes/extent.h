@@ -6,33 +6,34 @@
 
 namespace winnow::mid {
 
-/// The values of d . x over a shape, and how large the numbers were that made them.
+/// The range of d . x over a shape, and the magnitude of the numbers it was computed from.
 struct Extent {
   double low;
   double high;
   double scale;
 };
 
-/// Along any finite direction in the shape's own frame; that of a half-space is endless. Within a
-/// few roundings of `scale`.
+/// Extent along any finite direction d, in the shape's own frame. The error is a few roundings of
+/// `scale`. Infinite for a half-space.
 [[nodiscard]] Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
 
-/// The least value alone.
+/// Extent::low only.
 [[nodiscard]] double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
 
-/// The box of linear * x + offset over a convex shape, grown by the image of a ball of radius
-/// `grow`, and by what rounding may have taken.
+/// An AABB of { linear * x + offset : x in the shape }, for a convex shape, grown by the image of a
+/// ball of radius `grow` and by a bound on rounding errors.
 [[nodiscard]] Box box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear,
                             const Vec& offset, double grow) noexcept;
-/// The same of a box.
+/// As above for the points of a box.
 [[nodiscard]] Box box_under(const Box& box, const Mat& linear, const Vec& offset,
                             double grow) noexcept;
 
-/// No point of the convex shape is farther from its origin, but for a few roundings; infinite for a
-/// half-space.
+/// Upper bound on the distance of the shape's points from its origin, up to a few roundings;
+/// infinite for a half-space.
 [[nodiscard]] double radius_of(const ShapeTables& tables, ShapeId shape) noexcept;
 
-/// How much of it is rounding: the radius of a sphere or capsule.
+/// The rounding radius of the shape: the radius for a sphere or capsule, the `rounding` member for
+/// others.
 [[nodiscard]] double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept;
 
 }  // namespace winnow::mid

@@ -14,7 +14,7 @@ namespace winnow::mid {
 using Vec = Eigen::Vector3d;
 using Mat = Eigen::Matrix3d;
 
-/// Of a length, for the roundings of a few sums and rotations.
+/// Relative error bound for a few sums and rotations of a length.
 inline constexpr double kSlack = 1e-14;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -27,7 +27,7 @@ struct Box {
     return {box.min.cast<double>(), box.max.cast<double>()};
   }
   [[nodiscard]] bool is_finite() const noexcept { return min.allFinite() && max.allFinite(); }
-  /// Closed; true where a bound is NaN, so that nothing is missed.
+  /// Returns whether the closed boxes overlap; true if a bound is NaN, so that no pair is missed.
   [[nodiscard]] bool meets(const Box& other) const noexcept {
     for (int i = 0; i < 3; ++i) {
       if (min[i] > other.max[i] || other.min[i] > max[i]) return false;
@@ -38,7 +38,7 @@ struct Box {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);
   }
-  /// Sums of infinities have no value: bounds without one reach to infinity.
+  /// Sums of opposite infinities are NaN; such bounds become infinite.
   void settle() noexcept {
     for (int i = 0; i < 3; ++i) {
       if (!(min[i] <= kInfinity)) min[i] = -kInfinity;
@@ -47,7 +47,7 @@ struct Box {
   }
 };
 
-/// A difference of positions, at most the largest double.
+/// Clamps each coordinate to the finite doubles.
 [[nodiscard]] inline Vec finite(const Vec& v) noexcept {
   constexpr double kMost = std::numeric_limits<double>::max();
   return v.cwiseMin(kMost).cwiseMax(-kMost);

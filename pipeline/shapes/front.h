@@ -1,17 +1,18 @@
 #pragma once
 
-// One-sided triangles: what stands behind one does not meet it.
+// Culling for one-sided triangles: objects behind a triangle do not collide with it.
 
 #include <Eigen/Core>
 #include <algorithm>
 
 namespace winnow {
 
-/// As a share of its size: what is no farther behind a plane stands in it.
+/// Tolerance relative to the size of the box: boxes whose centre is no farther behind the plane
+/// count as in it.
 inline constexpr double kBehindSlack = 1e-6;
 
-/// True if the middle of a box lies behind a plane through `corner` with the normal `front`, of any
-/// length. False for boxes without an end, which have no middle.
+/// Returns whether the centre of the box lies behind the plane through `corner` with normal
+/// `front`, which need not be a unit vector. False for unbounded boxes, which have no centre.
 [[nodiscard]] inline bool is_behind(const Eigen::Vector3d& front, const Eigen::Vector3d& corner,
                                     const Eigen::Vector3d& min,
                                     const Eigen::Vector3d& max) noexcept {

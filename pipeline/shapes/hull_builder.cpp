@@ -1,3 +1,7 @@
+// Merges coplanar faces of a surface (Merge), checks convexity and lays out the columns of a hull
+// in one block (Assembly). Entry points for faces are here, for points in hull_points.cpp;
+// ShapePool::add_hull (kinds/hull.cpp) calls both.
+
 #include "pipeline/shapes/hull_builder.h"
 #include "core/memory/guarded.h"
 #include "pipeline/exact/exact_vector.h"
@@ -14,8 +18,8 @@
 namespace winnow {
 namespace {
 
-// Faces whose vertices lie this close to one plane, in units of the hull's size, are one face. An
-// error of this size in a depth is below what the tier `reference` promises.
+// Faces whose vertices are within this distance of one plane, relative to the hull's size, are
+// merged. A depth error of this size is below the error bound of the tier `reference`.
 constexpr double kCoplanar = 1e-13;
 constexpr std::uint32_t kUnset = ~0U;
 
@@ -25,8 +29,8 @@ struct FacePlane {
   double area = 0.0;
 };
 
-// Newell's normal (Sutherland, Sproull, Schumacker 1974), from the first vertex so that places far
-// from the origin cost no digits.
+// Newell's normal (Sutherland, Sproull, Schumacker 1974), computed relative to the first vertex so
+// that it loses no digits far from the origin.
 [[nodiscard]] FacePlane plane_of(std::span<const Eigen::Vector3d> points,
                                  std::span<const std::uint32_t> loop) {
   const Eigen::Vector3d origin = points[loop[0]];
@@ -36,7 +40,7 @@ struct FacePlane {
   }
   FacePlane plane;
   const double area = sum.norm();
-  // Not for NaN, which has no place in an order.
+  // False for NaN, which would break the sort by area.
   if (area > 0.0) {
     plane.area = area;
     plane.normal = sum / area;
@@ -63,7 +67,7 @@ class Merge {
         open_(memory_),
         face_of_(memory_) {}
 
-  /// `invalid_shape` unless the surface is closed, of one piece and without handles.
+  /// `invalid_shape` unless the surface is closed, connected and has no handles.
   Status pair_edges() {
     face_of_.reserve(surface_.loops.size());
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
@@ -98,7 +102,7 @@ class Merge {
     }
     std::pmr::vector<std::uint32_t> by_area(surface_.faces(), memory_);
     std::iota(by_area.begin(), by_area.end(), 0U);
-    // A stable sort would ask the global heap for a buffer.
+    // std::stable_sort would allocate a buffer on the global heap.
     std::ranges::sort(by_area, [&](std::uint32_t a, std::uint32_t b) {
       return planes[a].area > planes[b].area || (planes[a].area == planes[b].area && a < b);
     });
@@ -120,7 +124,7 @@ class Merge {
     return box.diagonal().norm();
   }
 
-  // Takes the neighbours that lie in the seed's plane, and theirs.
+  // Flood fill from `seed` over neighbouring faces that lie in the seed's plane.
   void absorb(std::uint32_t seed, std::uint32_t group, std::span<const FacePlane> planes,
               double tolerance) {
     const FacePlane& plane = planes[seed];
@@ -141,14 +145,16 @@ class Merge {
 
   [[nodiscard]] bool lies_in(std::uint32_t face, const FacePlane& plane, const FacePlane& own,
                              double tolerance) const {
-    // A sliver's own normal says nothing; the two sides of a flat hull must stay apart.
+    // The normal of a sliver is meaningless. Otherwise the normals must agree, so that the two
+    // sides of a flat hull stay apart.
     if (own.area > tolerance * tolerance && own.normal.dot(plane.normal) <= 0.0) return false;
     return std::ranges::all_of(surface_.loop(face), [&](std::uint32_t v) {
       return std::abs(plane.normal.dot(points_[v]) - plane.offset) <= tolerance;
     });
   }
 
-  // The outlines of the groups, without vertices on the line between two corners.
+  // Replaces the faces by the outlines of the groups, without vertices on a straight line between
+  // two corners.
   Status rebuild(std::uint32_t groups, double tolerance) {
     std::pmr::vector<Numbers<std::uint32_t>> next(groups, memory_);
     Numbers<std::uint32_t> meets(memory_);
@@ -173,11 +179,11 @@ class Merge {
     return Status::ok;
   }
 
-  // The vertices of an outline in their order.
+  // Writes the vertices of an outline in order. Returns false if it is not one loop.
   static bool follow(const Numbers<std::uint32_t>& outline, std::pmr::vector<std::uint32_t>& loop) {
     loop.clear();
     if (outline.empty()) return false;
-    // The smallest vertex begins, so that the result does not depend on the order of a hash.
+    // Start at the smallest vertex, so that the result does not depend on the hash order.
     std::uint32_t start = kUnset;
     for (const auto& [from, to] : outline) start = std::min(start, from);
     std::uint32_t at = start;
@@ -190,9 +196,9 @@ class Merge {
     return at == start && loop.size() == outline.size() && loop.size() >= 3;
   }
 
-  // The outline as a face of `merged`. Where at least three faces meet there is a corner; vertices
-  // of two faces alone stay unless all from corner to corner lie on a line. False if less than a
-  // triangle is left.
+  // Adds the outline as a face of `merged`. Vertices shared by at least three faces are corners.
+  // Vertices shared by two faces are dropped if all of them between two corners lie on a straight
+  // line. Returns false if fewer than three vertices are left.
   bool add_corners(std::span<const std::uint32_t> loop, const Numbers<std::uint32_t>& meets,
                    double tolerance, HullSurface& merged) const {
     const std::size_t count = loop.size();
@@ -215,7 +221,7 @@ class Merge {
     return merged.loops.size() - before >= 3;
   }
 
-  // Asked for both faces along a line, in opposite directions, which must agree.
+  // Called for both faces along a line, in opposite directions; `minmax` makes the results equal.
   [[nodiscard]] bool is_straight(std::span<const std::uint32_t> loop, std::size_t from,
                                  std::size_t to, double tolerance) const {
     const std::size_t count = loop.size();
@@ -224,7 +230,7 @@ class Merge {
     const double most = tolerance * line.norm();
     for (std::size_t i = from + 1; i < to; ++i) {
       const Eigen::Vector3d way = points_[loop[i % count]] - points_[low];
-      // A thin face's outline turns back beside its own line.
+      // The outline of a thin face can run backwards along its own line.
       const double along = way.dot(line);
       if (!(along >= 0.0 && along <= line.squaredNorm())) return false;
       if (!(accurate_cross(line, way).norm() <= most)) return false;
@@ -249,16 +255,16 @@ Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surf
 namespace {
 
 constexpr std::size_t kLineBytes = 64;
-// How far beyond a face, in units of the hull's size, its neighbours may reach.
+// Convexity tolerance: how far neighbours may reach beyond a face, relative to the hull's size.
 constexpr double kConvex = 1e-9;
-// What the few roundings of a length may take from it or add to it.
+// Relative error bound of a length.
 constexpr double kRoundings = 1e-15;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
   return (count + 15) / 16 * 16;
 }
 
-// Hands out parts of a block, each on a line of its own; without a block it only counts.
+// Allocates cache-line-aligned parts of a block. Without a block it only counts bytes.
 class Block {
  public:
   explicit Block(std::byte* base) : base_(base) {}
@@ -302,7 +308,7 @@ HullColumns lay_out(Block& block, const HullShape& hull) {
   return c;
 }
 
-/// The block of a hull until it is finished.
+/// Owns the block of a hull until the hull is complete.
 class OwnedBlock {
  public:
   OwnedBlock(Memory memory, std::size_t bytes)
@@ -377,7 +383,8 @@ class Assembly {
         c_.vertex[axis][i] = p[axis];
         c_.vertex_float[axis][i] = static_cast<float>(p[axis]);
       }
-      // Shares instead of a sum: a mean of numbers near the largest double does not overflow.
+      // Sum of fractions, not fraction of the sum: the mean of numbers near the largest double does
+      // not overflow.
       if (i < used_.size()) sum += p / static_cast<double>(used_.size());
     }
     for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {
@@ -432,8 +439,8 @@ class Assembly {
     }
   }
 
-  // False if the surface is not convex along an edge, which for a closed surface without handles is
-  // the whole question (van Heijenoort, "On locally convex manifolds", 1952).
+  // Returns false if the surface is not convex along an edge. For a closed surface without handles,
+  // local convexity implies convexity (van Heijenoort, "On locally convex manifolds", 1952).
   bool write_faces() {
     const Eigen::Vector3d center(hull_.center[0], hull_.center[1], hull_.center[2]);
     std::uint32_t first = 0;
@@ -461,8 +468,8 @@ class Assembly {
     return true;
   }
 
-  // Newell's normal, with edges scaled so that small hulls keep their digits. Of a sliver, whose
-  // edges' products hardly differ from zero, without rounding.
+  // Newell's normal, with edges scaled so that small hulls lose no digits. Computed exactly for
+  // slivers, where the cross products of edges nearly cancel.
   [[nodiscard]] Eigen::Vector3d normal_of(const HullFace& face) const {
     constexpr double kSliver = 1e-4;
     const Eigen::Vector3d origin = at(c_.loop[face.first]);
@@ -542,7 +549,7 @@ Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface&
 
 namespace {
 
-/// Throws what the surface's memory throws.
+/// Throws if the surface's memory throws.
 Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& faces,
                   HullSurface& surface) {
   std::size_t at = 0;
@@ -558,7 +565,7 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
   return at == faces.indices.size() ? Status::ok : Status::invalid_shape;
 }
 
-/// What is built of no faces.
+/// Returns whether the points make a hull without faces.
 [[nodiscard]] bool is_point_or_segment(std::span<const Eigen::Vector3d> points) {
   const bool distinct = points.size() == 1 || (points.size() == 2 && points[0] != points[1]);
   return distinct && std::ranges::all_of(points, [](const auto& p) { return p.allFinite(); });
@@ -575,7 +582,7 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
   return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
 }
 
-// Faces that were merged would be in another order if they were merged again.
+// Does not merge: merging faces that are already merged could change their order.
 [[nodiscard]] Status build_again(const PointView& given, const HullFaces& faces,
                                  std::pmr::memory_resource* memory, HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);

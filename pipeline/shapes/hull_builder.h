@@ -12,31 +12,31 @@
 
 namespace winnow {
 
-/// Builds the hull of points; see ShapePool::add_hull. All of its columns lie in one block of
-/// `memory`, which release_hull gives back. What building needs comes from `memory` too, and is
-/// given back before they return.
+/// Builds a hull from points or faces; see ShapePool::add_hull. All columns of the hull are in one
+/// block of `memory`; free it with release_hull. Scratch also comes from `memory` and is freed
+/// before the functions return.
 Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory, HullShape& hull);
 Status hull_of_faces(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);
-/// A hull that was built before, of its vertices and its faces as they are.
+/// Rebuilds a hull from the vertices and faces of a built hull, without merging faces.
 Status hull_as_built(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);
 
-/// The points as building takes them.
+/// Copies the points into contiguous vectors.
 [[nodiscard]] std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,
                                                        std::pmr::memory_resource* memory);
 
 /// A hull of one vertex at the origin that owns no memory.
 [[nodiscard]] HullShape point_hull() noexcept;
 
-/// Bytes of the hull's block; 0 for point_hull.
+/// Size of the hull's block in bytes; 0 for point_hull.
 [[nodiscard]] std::size_t hull_bytes(const HullShape& hull) noexcept;
 void release_hull(const HullShape& hull, std::pmr::memory_resource* memory) noexcept;
 
-/// The surface of a hull while it is being built: face i is loops[first[i]] to loops[first[i + 1]],
+/// The surface of a hull under construction. Face i is loops[first[i]] to loops[first[i + 1]],
 /// indices of points, counter-clockwise seen from outside.
 struct HullSurface {
-  /// Throws what `memory` throws, as everything that grows a surface.
+  /// Throws if `memory` throws, as do all operations that grow the surface.
   explicit HullSurface(std::pmr::memory_resource* memory) : loops(memory), first(1, 0U, memory) {}
 
   std::pmr::vector<std::uint32_t> loops;
@@ -49,14 +49,15 @@ struct HullSurface {
   void end_face() { first.push_back(static_cast<std::uint32_t>(loops.size())); }
 };
 
-/// Joins coplanar neighbours and drops vertices that lie within faces or edges. `invalid_shape`
-/// unless every edge has exactly two faces, which run along it in opposite directions, and the
-/// surface is of one piece without handles. Scratch comes from the surface's memory.
+/// Merges coplanar neighbouring faces and drops vertices inside faces or edges. Returns
+/// `invalid_shape` unless each edge has exactly two faces, which traverse it in opposite
+/// directions, and the surface is connected and has no handles (genus 0). Scratch comes from the
+/// surface's memory.
 Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface);
 
-/// Makes the block of columns in `memory`: vertices are the points that the loops use (or, without
-/// faces, all points: one or two). Checks that the surface is convex. Scratch comes from the
-/// surface's memory.
+/// Allocates the block of columns in `memory` and fills it. The vertices are the points that the
+/// loops use, or all points (one or two) if there are no faces. Returns `invalid_shape` if the
+/// surface is not convex. Scratch comes from the surface's memory.
 Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
                      std::pmr::memory_resource* memory, HullShape& hull);
 

@@ -6,8 +6,9 @@
 
 namespace winnow {
 
-/// A hull as recordings and snapshots have it: three arrays of coordinates, an array of the corners
-/// of all faces, a count of faces and how many corners each has, rounding.
+/// Writes a hull in the format of recordings and snapshots: three arrays of coordinates, one array
+/// with the corners of all faces, the number of faces and the number of corners of each, the
+/// rounding.
 template <typename Writer>
 void put_hull(Writer& out, const HullShape& hull) {
   std::size_t corners = 0;
@@ -21,7 +22,7 @@ void put_hull(Writer& out, const HullShape& hull) {
   out.put(hull.rounding);
 }
 
-/// What was read of one.
+/// A hull as read from a recording or snapshot.
 struct ReadHull {
   explicit ReadHull(std::pmr::memory_resource* memory) noexcept
       : vertex{Column<double>(memory), Column<double>(memory), Column<double>(memory)},

@@ -1,3 +1,7 @@
+// Hull of a point set: classifies it as point, segment, polygon or solid, computes the surface
+// (exact_hull for solids, monotone chain for polygons) and passes it to assemble_hull
+// (hull_builder.cpp).
+
 #include "core/memory/guarded.h"
 #include "pipeline/shapes/accurate_cross.h"
 #include "pipeline/shapes/exact_hull.h"
@@ -11,13 +15,13 @@
 namespace winnow {
 namespace {
 
-// Sets that are thinner than this, in units of their extent, are flat.
+// Point sets thinner than this, relative to their extent, count as flat.
 constexpr double kFlat = 1e-13;
 
 using Points = std::pmr::vector<Eigen::Vector3d>;
 
-// The largest coordinate in [1, 2): tolerances are relative to it, and squares of very small or
-// large numbers leave double.
+// Scales by a power of two so that the largest coordinate is in [1, 2). Tolerances are relative to
+// it, and squares of very small or large numbers would leave the range of double.
 void scale(Points& points) {
   double largest = 0.0;
   for (const Eigen::Vector3d& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
@@ -27,7 +31,7 @@ void scale(Points& points) {
   }
 }
 
-// Points around their middle, scaled.
+// The points relative to the centre of their AABB, scaled.
 Points centred(std::span<const Eigen::Vector3d> points, std::pmr::memory_resource* memory) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
@@ -55,8 +59,8 @@ std::size_t farthest(const Points& points, Measure&& measure) {
 
 using Chain = std::pmr::vector<std::uint32_t>;
 
-// The corners of a convex outline, without those that lie, as far as counts, on the line between
-// others that stay.
+// Drops corners of a convex outline that lie, within the tolerance, on the line between corners
+// that stay.
 Chain simplified(const Points& points, const Chain& outline, int u, int v) {
   const auto at = [&](std::size_t i) -> const Eigen::Vector3d& {
     return points[outline[i % outline.size()]];
@@ -64,7 +68,7 @@ Chain simplified(const Points& points, const Chain& outline, int u, int v) {
   const auto counts = [&](std::size_t from, std::size_t to, std::size_t i) {
     const Eigen::Vector2d line(at(to)[u] - at(from)[u], at(to)[v] - at(from)[v]);
     const Eigen::Vector2d way(at(i)[u] - at(from)[u], at(i)[v] - at(from)[v]);
-    // A thin outline turns back beside its own line.
+    // A thin outline can run backwards along its own line.
     if (!(way.dot(line) >= 0.0 && way.dot(line) <= line.squaredNorm())) return true;
     const double across = difference_of_products(line.x(), way.y(), line.y(), way.x());
     return std::abs(across) > kFlat * line.norm();
@@ -82,8 +86,8 @@ Chain simplified(const Points& points, const Chain& outline, int u, int v) {
   return kept;
 }
 
-// Outline of points near a plane, by monotone chain (Andrew 1979) over the two axes on which the
-// plane is least steep: a projection along an axis moves no coordinate.
+// Outline of points near a plane, by monotone chain (Andrew 1979), on the two axes on which the
+// plane is least steep: dropping a coordinate does not round the others.
 void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurface& surface) {
   int drop = 0;
   normal.cwiseAbs().maxCoeff(&drop);
@@ -115,8 +119,8 @@ void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurfac
   surface.end_face();
 }
 
-// The surface of a solid with all but flat neighbours joined, where that leaves it convex; else
-// of triangles, which are.
+// Assembles the hull with nearly coplanar triangles merged, if the result is convex; else from the
+// triangles themselves, which always are.
 Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& points,
                       const HullSurface& triangles, std::pmr::memory_resource* memory,
                       HullShape& hull) {
@@ -154,7 +158,7 @@ Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& poin
   const std::size_t i3 =
       farthest(points, [&](const auto& p) { return std::abs(unit.dot(p - p0)); });
   if (std::abs(unit.dot(points[i3] - p0)) > kFlat) {
-    // Of the points as they were given: sums with the middle are rounded.
+    // Uses the original points, because subtracting the centre rounds.
     Points exact(given, &scratch);
     scale(exact);
     if (exact_hull(exact, surface)) return assemble_solid(given, points, surface, memory, hull);

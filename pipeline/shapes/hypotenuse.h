@@ -5,8 +5,8 @@
 
 namespace winnow {
 
-/// sqrt(x^2 + y^2) of 0 <= y <= x whose squares are within range, to an ulp (Borges, "An improved
-/// algorithm for hypot(a,b)", 2019).
+/// sqrt(x^2 + y^2) for 0 <= y <= x whose squares neither overflow nor underflow, with an error of
+/// at most an ulp (Borges, "An improved algorithm for hypot(a,b)", 2019).
 [[nodiscard]] inline double corrected_hypotenuse(double x, double y) noexcept {
   const double h = std::sqrt(x * x + y * y);
   if (h <= 2.0 * y) {
@@ -18,9 +18,9 @@ namespace winnow {
          (2.0 * beyond * (x - 2.0 * y) + ((4.0 * beyond - y) * y + beyond * beyond)) / (2.0 * h);
 }
 
-/// sqrt(x^2 + y^2) of finite numbers to an ulp, without overflow or underflow on the way. The same
-/// on every machine, which std::hypot is not: mathematical libraries differ in its last digit, and
-/// one does by what the processor has.
+/// sqrt(x^2 + y^2) of finite numbers with an error of at most an ulp, without intermediate overflow
+/// or underflow. Gives equal bits on every machine, unlike std::hypot: mathematical libraries
+/// differ in its last digit, one of them even by the processor.
 [[nodiscard]] inline double hypotenuse(double x, double y) noexcept {
   constexpr double kNegligible = 0x1p-54;
   constexpr double kScale = 0x1p-600;

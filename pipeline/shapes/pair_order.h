@@ -1,7 +1,7 @@
 #pragma once
 
-// Which shape of a pair comes first, how pairs of kinds are numbered, and what the answer about a
-// pair (a, b) is as one about (b, a).
+// The order of the two shapes of a pair, the index of a pair of kinds, and the conversion of a
+// result for (b, a) into one for (a, b).
 
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/shapes.h>
@@ -12,14 +12,14 @@
 
 namespace winnow {
 
-/// Pairs are answered with the shape of the smaller kind first. One given the other way round is
-/// mirrored: it is answered as (b, a), and the answer is mirrored back.
+/// Kernels take the shape with the smaller kind first. A mirrored pair is computed as (b, a) and
+/// its result is mirrored back.
 [[nodiscard]] constexpr bool is_mirrored(ShapeId a, ShapeId b) noexcept {
   return a.kind_index() > b.kind_index();
 }
 
-/// The numbers of pairs of kinds, convex and composite, that of a not above that of b: they rise
-/// with a and, of one a, with b.
+/// Indices of pairs of kinds, convex and composite, with kind a <= kind b, in lexicographic order
+/// of (a, b).
 struct KindPairs {
   static constexpr std::uint32_t kCount = kShapeKinds * (kShapeKinds + 1) / 2;
 
@@ -43,19 +43,20 @@ struct KindPairs {
   }
 };
 
-/// The feature of a in the upper half and that of b in the lower one change places.
+/// Swaps the feature of a (upper half) and the feature of b (lower half).
 [[nodiscard]] constexpr std::uint64_t mirrored_feature(std::uint64_t feature) noexcept {
   return feature << 32U | feature >> 32U;
 }
 
-/// A coordinate of a point relative to body a, relative to body b, which is `apart` farther; at
-/// most the largest float.
+/// Converts a coordinate relative to body a into one relative to body b; `apart` is b's position
+/// minus a's. Clamped to the finite floats.
 [[nodiscard]] inline float mirrored_position(float x, double apart) noexcept {
   return finite_float(static_cast<double>(x) - apart);
 }
 
-/// A coordinate of the point of b relative to body b, which is `apart` farther, from that of a
-/// relative to body a and the way from there to it; at most the largest double.
+/// Computes a coordinate of b's witness point relative to body b: `x` is the coordinate of a's
+/// witness point relative to body a, `way` the vector from a's point to b's, `apart` b's position
+/// minus a's. Clamped to the finite doubles.
 [[nodiscard]] inline double mirrored_point(double x, double way, double apart) noexcept {
   static constexpr double kMost = std::numeric_limits<double>::max();
   const auto finite = [](double v) { return std::clamp(v, -kMost, kMost); };

@@ -1,6 +1,6 @@
 #pragma once
 
-// How a shape gets into its table in the pool.
+// Defines ShapePool::put, which adds a shape to the table of its kind.
 
 #include <winnow/pipeline/shape_pool.h>
 
@@ -27,7 +27,7 @@ Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, S
   } else {
     if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
     index = static_cast<std::uint32_t>(table.shapes.size());
-    // Room to remember the place, so that removal needs no memory.
+    // Reserve room in the free list now, so that removal never allocates.
     if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
         !table.shapes.push_back(shape)) {
       return Status::out_of_memory;

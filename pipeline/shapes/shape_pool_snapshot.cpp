@@ -33,7 +33,7 @@ void put_shape(ByteWriter& out, const Shape& shape) noexcept {
   }
 }
 
-/// Into the place that is next.
+/// Adds the next saved shape to the pool; it gets the next free index.
 template <typename Shape>
 [[nodiscard]] Status read_shape(ByteReader& in, std::pmr::memory_resource* memory,
                                 ShapePool& pool) {
@@ -69,7 +69,7 @@ void ShapePool::for_tables(Pool& pool, Pool& other, Visit&& visit) {
 }
 
 Status ShapePool::save(Column<std::byte>& out) const {
-  // Another process does not have the functions.
+  // Function pointers cannot be saved.
   if (size(ShapeKind::support) != 0) return logged(Status::unsupported, "ShapePool::save");
   const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
     writer.put(kShapeKinds);
@@ -83,7 +83,8 @@ Status ShapePool::save(Column<std::byte>& out) const {
   return logged(status, "ShapePool::save");
 }
 
-// Each shape is added as any other, and so checked, with the places free that they had.
+// Adds each shape through the checked public functions, with the free list arranged so that each
+// gets its saved index.
 Status ShapePool::load(std::span<const std::byte> saved) {
   const DefaultEnvironment environment;
   ByteReader in = open_snapshot(saved, kShapesMagic, kShapesVersion);

@@ -11,8 +11,8 @@ using Eigen::Vector3d;
 
 constexpr double kLongest = std::numeric_limits<double>::max();
 
-// Radii times the direction's part along them, relative to the largest: nothing overflows, and no
-// square vanishes that counts.
+// Support point: radii^2 * direction, normalised by the ellipsoid norm. Scaled by the largest
+// component first, so that nothing overflows and no significant square underflows.
 [[nodiscard]] Vector3d farthest_of_ellipsoid(const void* shape,
                                              const Vector3d& direction) noexcept {
   const Vector3d radius = Vector3d::Map(static_cast<const EllipsoidShape*>(shape)->radius);
@@ -33,7 +33,8 @@ constexpr double kLongest = std::numeric_limits<double>::max();
   return farthest_of_ellipsoid(shape, direction) - radius * direction;
 }
 
-// A ball of the difference of the radii about the larger one's centre, and the smaller one's.
+// The core is the convex hull of a ball and a point: the ball has the difference of the radii and
+// the larger end's centre, the point is the smaller end's centre.
 [[nodiscard]] Vector3d farthest_of_taper(const void* shape, const Vector3d& direction) noexcept {
   const auto& taper = *static_cast<const TaperedCapsuleShape*>(shape);
   const double excess = std::abs(taper.radius[1] - taper.radius[0]);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shapes that are known by their farthest points alone.
+// Shapes that are given by a support function only.
 
 #include <winnow/pipeline/shapes.h>
 
@@ -8,18 +8,16 @@
 
 namespace winnow {
 
-/// The core of an ellipsoid, a tapered capsule or a shape of the program's own, in its own frame
-/// and lengths.
+/// The core of an ellipsoid, a tapered capsule or a user shape, in its own frame and units.
 struct SupportCore {
   using Vec = Eigen::Vector3d;
 
-  /// A point that is farthest along a unit direction, to a few roundings of `radius`: always
-  /// finite, and within it.
+  /// Support function: a farthest point along a unit direction, with an error of a few roundings of
+  /// `radius`. The result is always finite and within `radius` of the origin.
   Vec (*function)(const void* shape, const Vec& direction) noexcept = nullptr;
   const void* shape = nullptr;
-  /// What the shape is.
   ShapeKind kind = ShapeKind::support;
-  /// No point is farther from the origin.
+  /// Upper bound on the distance of the core's points from the origin.
   double radius = 0.0;
   double rounding = 0.0;
 
@@ -28,20 +26,21 @@ struct SupportCore {
   }
 };
 
-/// Each points to the shape given.
+/// The core refers to the given shape, which must outlive it.
 /// @{
 [[nodiscard]] SupportCore support_core(const EllipsoidShape& shape) noexcept;
-/// The rounding is the smaller radius: what is left is a ball and a point.
+/// The rounding is the smaller radius, so the core is the convex hull of a ball and a point.
 [[nodiscard]] SupportCore support_core(const TaperedCapsuleShape& shape) noexcept;
 [[nodiscard]] SupportCore support_core(const SupportShape& shape) noexcept;
 /// @}
 
-/// Of an ellipsoid what is left once the largest ball that rolls everywhere inside is taken away,
-/// which becomes rounding (Blaschke, "Kreis und Kugel", 1916: its radius is the least radius of
-/// curvature). Most overlaps are shallower than that: then the cores are apart.
+/// An ellipsoid eroded by the largest ball that rolls freely inside it; the ball's radius becomes
+/// rounding. The radius is the least radius of curvature (Blaschke, "Kreis und Kugel", 1916). Most
+/// overlaps are shallower than it, so that the cores are disjoint.
 [[nodiscard]] SupportCore eroded_core(const EllipsoidShape& shape) noexcept;
 
-/// Of a shape of one of these kinds; without a function for all others.
+/// The core of an ellipsoid, tapered capsule or user shape; a default SupportCore, without a
+/// function, for other kinds.
 [[nodiscard]] SupportCore support_core(const ShapeTables& tables, ShapeId id) noexcept;
 
 }  // namespace winnow

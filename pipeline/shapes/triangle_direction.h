@@ -4,9 +4,11 @@
 
 namespace winnow::mid {
 
-/// The direction from the point of a triangle that is closest to a point to that point, which is
-/// relative to the first corner; `ab` and `ac` are the edges from there. (Ericson, Real-Time
-/// Collision Detection, 5.1.5.) Rounding makes it another direction, no more.
+/// Returns the vector from the closest point of a triangle to `point`, up to rounding. `point` is
+/// relative to the triangle's first corner; `ab` and `ac` are the edges from there. Over the face's
+/// interior the result has the direction of the normal, not its length (Ericson, Real-Time
+/// Collision Detection, 5.1.5). Callers use the result as a search direction only, so that its
+/// error is harmless.
 [[nodiscard]] inline Vec direction_to(const Vec& point, const Vec& ab, const Vec& ac) noexcept {
   const double d1 = ab.dot(point);
   const double d2 = ac.dot(point);

@@ -1,3 +1,6 @@
+// Candidate axes for core_distance.cpp: from a GJK simplex, from face normals and edge products
+// (SAT), and from the symmetry of cores of revolution.
+
 #include "pipeline/solver/axis_search.h"
 
 #include <cmath>
@@ -5,7 +8,8 @@
 namespace winnow::solver {
 namespace {
 
-/// Differences of up to four points: the longest, and the one that spans most with it.
+/// The longest difference of up to four points, and the difference that spans the largest area with
+/// it.
 struct Span {
   Vec first = Vec::Zero();
   Vec second = Vec::Zero();
@@ -46,7 +50,7 @@ void look_at_products(const Core& a, const Core& b, AxisSearch& search) noexcept
   }
 }
 
-/// An edge's neighbouring normals, in the world.
+/// The normals of an edge's two faces, in world axes: an arc of the Gauss map.
 struct Arc {
   Vec direction;
   Vec normal[2];
@@ -60,8 +64,8 @@ Arc arc(const Core& core, std::uint32_t i) noexcept {
           vertex(core, e.vertex[0])};
 }
 
-/// True unless the arc of a and the reversed arc of b surely do not cross on the sphere of
-/// directions.
+/// Returns false only if the arc of a and the reversed arc of b certainly do not cross on the Gauss
+/// map; the edges then make no face of the Minkowski difference.
 bool may_cross(const Arc& a, const Arc& b) noexcept {
   constexpr double kDoubt = 1e-9;
   const double b0 = -b.normal[0].dot(a.direction);
@@ -80,7 +84,9 @@ void look_at_hull_products(const Problem& problem, AxisSearch& search) noexcept 
       const Arc of_b = arc(b, k);
       if (!may_cross(of_a, of_b)) continue;
       const Vec n = perpendicular(of_a.direction, of_b.direction);
-      // Outward of a, an axis that makes a face has no other separation than that of the edges.
+      // If the axis is the normal of a face that the two edges make, its separation is the distance
+      // of the edges along it; projecting all vertices is needed only if that may beat the best so
+      // far.
       const double outward = n.dot(of_a.normal[0] + of_a.normal[1]);
       const double between = n.dot(of_b.point - of_a.point) * (outward < 0.0 ? -1.0 : 1.0);
       const bool sure = std::abs(outward) > 1e-6;
@@ -150,7 +156,7 @@ bool is_round(const Core& core) noexcept {
          core.kind == CoreKind::cylinder || core.kind == CoreKind::cone;
 }
 
-/// The two normals of a cone's side in the plane of its axis and `across`.
+/// Tests the two normals of a cone's side in the plane of its axis and `across`.
 void look_at_side(const Core& core, const Vec& across, AxisSearch& search) noexcept {
   if (core.kind != CoreKind::cone) return;
   const Vec out = across * (2.0 * core.half.z());
@@ -175,7 +181,8 @@ void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
   const Core& first = a.kind != CoreKind::point ? a : b;
   const Vec axis = first.rotation.col(2);
   Vec across = without(b.center - a.center, axis);
-  // On the axis all directions are alike.
+  // If the centers lie on the axis, every direction across is equally good: take the first tie
+  // axis.
   const Vec aside = (b.center - a.center) - axis * axis.dot(b.center - a.center);
   for (int i = 0; i < 3 && aside.norm() <= kEpsilon * problem.size; ++i) {
     across = without(problem.tie_axes.col(i), axis);

@@ -1,3 +1,6 @@
+// Support functions, projections and features (vertices, edges, faces) of the cores of all shapes;
+// the other files of this folder build on them.
+
 #include "pipeline/solver/core.h"
 
 #include "pipeline/shapes/hypotenuse.h"
@@ -11,7 +14,7 @@ namespace {
 Vec rim(const Core& core, const Vec& local, double z) noexcept {
   const double length = hypotenuse(local.x(), local.y());
   if (length == 0.0) return {0.0, 0.0, z};
-  // Divided first: directions may be short enough for the quotient of the radius to overflow.
+  // Divide by the length first: for very short directions, radius / length may overflow.
   return {core.half.x() * (local.x() / length), core.half.x() * (local.y() / length), z};
 }
 
@@ -19,7 +22,7 @@ double radial(const Core& core, const Vec& local) noexcept {
   return core.half.x() * hypotenuse(local.x(), local.y());
 }
 
-/// From the center, in the core's axes; `d` is unit.
+/// Relative to the center, in the core's axes; `d` is unit.
 Vec farthest_point(const Core& core, const Vec& d) noexcept {
   return core.farthest.farthest(d) * core.unit[0] * core.unit[1];
 }
@@ -29,7 +32,8 @@ Vec farthest_point(const Core& core, const Vec& d) noexcept {
 Vec unit(const Vec& v) noexcept {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0.0)) return Vec::Zero();
-  // A power of two would change nothing: squares are far from the ends of double.
+  // Vectors in this range need no scaling: their squares neither overflow nor underflow, and
+  // scaling by a power of two would not change the result.
   constexpr double kSafe = 1e140;
   if (largest > 1.0 / kSafe && largest < kSafe) return v / v.norm();
   int exponent = 0;
@@ -48,7 +52,8 @@ Vec without(const Vec& v, const Vec& e) noexcept {
   return unit(once - e * e.dot(once));
 }
 
-// Blocks of eight keep independent maxima, so that the loop does not wait for each comparison.
+// Blocks of eight keep independent maxima, so that iterations do not depend on each other's
+// comparisons.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept {
   constexpr int kBlock = 8;
   using Block = Eigen::Array<double, kBlock, 1>;
@@ -66,7 +71,7 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
     best_at = i + static_cast<std::uint32_t>(k);
   }
   value = best;
-  // Padding repeats vertex 0.
+  // The columns are padded with copies of vertex 0.
   return best_at < hull.vertex_count ? best_at : 0;
 }
 
@@ -172,7 +177,7 @@ double separation(const Core& a, const Core& b, const Vec& axis) noexcept {
 Core meridian(const Core& core, const Vec& direction) noexcept {
   if (core.kind != CoreKind::cylinder && core.kind != CoreKind::cone) return core;
   const Vec d = core.rotation.transpose() * direction;
-  // Along the axis all planes are alike.
+  // Along the axis all meridian planes are alike.
   if (hypotenuse(d.x(), d.y()) <= 1e-7 * std::abs(d.z())) return core;
   const double h = core.half.z();
   const Vec low = rim(core, d, -h);
@@ -194,8 +199,9 @@ Vec hull_point(const Core& core, std::uint32_t i) noexcept {
   return core.rotation * (local * core.unit[0] * core.unit[1]);
 }
 
-/// The corners of a box's faces, counter-clockwise seen from outside; bit i of a corner's number
-/// is set on the positive side of axis i. Face 2 i + 1 is the positive one of axis i.
+/// The corners of a box's faces, counter-clockwise seen from outside. Bit i of a corner's number is
+/// set on the positive side of axis i. Face 2 i is the negative, face 2 i + 1 the positive face of
+/// axis i.
 constexpr std::uint32_t kBoxFace[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
@@ -211,7 +217,7 @@ std::uint32_t box_edge_of(std::uint32_t p, std::uint32_t q) noexcept {
 }
 
 Vec triangle_normal(const Core& core) noexcept {
-  // From the longest edge, which is the one known best, and the shortest.
+  // Use the longest side, which has the most accurate direction, and the shortest.
   std::array<double, 3> length{};
   for (std::size_t i = 0; i < 3; ++i) {
     length[i] = (core.corner[(i + 1) % 3] - core.corner[i]).squaredNorm();

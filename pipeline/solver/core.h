@@ -1,5 +1,8 @@
 #pragma once
 
+// The core of a shape: the shape without its rounding, which the solver treats separately. See
+// problem.h for the frame and the units.
+
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/shapes/support_core.h"
@@ -15,7 +18,6 @@ namespace winnow::solver {
 using Vec = Eigen::Vector3d;
 using Mat = Eigen::Matrix3d;
 
-/// What is left of a shape when its rounding is taken away.
 enum class CoreKind : std::uint8_t {
   point,
   segment,
@@ -28,33 +30,34 @@ enum class CoreKind : std::uint8_t {
   half_space
 };
 
-/// A core at its place: in the axes of the world, in units of the problem. All of its functions
-/// are exact but for a few roundings of the core's size.
+/// A core in world axes, scaled to the units of its Problem. All functions of a core are exact up
+/// to a few roundings relative to the core's size.
 struct Core {
   CoreKind kind = CoreKind::point;
   Mat rotation = Mat::Identity();
   Vec center = Vec::Zero();
-  /// Box: half extents. Segment, cylinder, cone: radius, radius, half length.
+  /// Box: half extents. Segment, cylinder, cone: (radius, radius, half length).
   Vec half = Vec::Zero();
   double rounding = 0.0;
-  /// No point of the shape is farther from the center.
+  /// Upper bound of the distance of the shape's points from `center`, rounding included.
   double size = 0.0;
-  /// Triangle: from the center, turned.
+  /// Triangle: relative to the center, in world axes.
   std::array<Vec, 3> corner{};
-  /// Triangle: from corner i to the next, unit; turned from the shape's own numbers, so that it
-  /// does not carry the rounding of corners far from the center. Zero where corners coincide.
+  /// Triangle: unit vector from corner i to the next. Computed from the shape's own numbers and
+  /// then rotated, so that it does not carry the rounding error of corners far from the center.
+  /// Zero if the corners coincide.
   std::array<Vec, 3> side{};
   const HullShape* hull = nullptr;
-  /// Ellipsoid, tapered capsule, own convex.
+  /// Ellipsoid, tapered capsule or user shape.
   SupportCore farthest;
-  /// Two factors that bring a hull's or a support function's own units to the problem's: one could
-  /// overflow.
+  /// Two factors that scale a hull's or a support function's lengths to the problem's units; a
+  /// single factor could overflow.
   double unit[2] = {1.0, 1.0};
-  /// Half-space: unit outward normal in the world, and offset from the center.
+  /// Half-space: unit outward normal in world axes, and offset of the plane from the center.
   Vec normal = Vec::UnitZ();
   double offset = 0.0;
 
-  /// Cores with corners: everything but cylinders, cones, support functions and half-spaces.
+  /// True for cores with corners: all but cylinders, cones, support functions and half-spaces.
   [[nodiscard]] bool is_polytope() const noexcept { return kind < CoreKind::cylinder; }
 };
 
@@ -63,43 +66,45 @@ struct Range {
   double high;
 };
 
-/// The first vertex of a hull that is farthest along a direction in the hull's frame, and how far.
+/// Returns the first of the hull's vertices that are farthest along `d`, a direction in the hull's
+/// frame; `value` receives its dot product with `d`.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept;
 
-/// A point of the core that is farthest along `direction`.
+/// Returns a point of the core that is farthest along `direction`.
 [[nodiscard]] Vec support(const Core& core, const Vec& direction) noexcept;
 
 /// Smallest and largest n . (x - center) over the core.
 [[nodiscard]] Range project(const Core& core, const Vec& n) noexcept;
 
-/// The largest alone.
+/// As `project`, but returns only the largest.
 [[nodiscard]] double highest(const Core& core, const Vec& n) noexcept;
 
-/// The gap between the cores along a unit axis from a to b; negative where they overlap on it.
+/// Returns the gap between the cores along a unit axis from a to b; negative if their projections
+/// overlap.
 [[nodiscard]] double separation(const Core& a, const Core& b, const Vec& axis) noexcept;
 
-/// A triangle inside of a cylinder or cone, in the plane of its axis and `direction`, that has the
-/// supporting point and the line of the side through it. Other cores are returned as they are, and
-/// so are these where the direction is that of their axis.
+/// Returns a triangle inside a cylinder or cone, in the plane of its axis and `direction`, that
+/// contains the supporting point and the line of the side through it. Other cores are returned
+/// unchanged, and so are cylinders and cones if `direction` runs along their axis.
 [[nodiscard]] Core meridian(const Core& core, const Vec& direction) noexcept;
 
-// Corners, edges and faces of polytopes. Extents of zero make some of them coincide.
+// Corners, edges and faces of polytopes. If extents are zero, some of them coincide.
 [[nodiscard]] std::uint32_t vertex_count(const Core& core) noexcept;
 [[nodiscard]] Vec vertex(const Core& core, std::uint32_t i) noexcept;
 [[nodiscard]] std::uint32_t edge_count(const Core& core) noexcept;
 [[nodiscard]] std::array<std::uint32_t, 2> edge(const Core& core, std::uint32_t i) noexcept;
 
-/// Directions of edges, each but once for a box; of any length, zero too. A cylinder's or cone's
-/// axis counts as one.
+/// Directions of the edges, of any length, which may be zero. A box has three, as parallel edges
+/// count once; a cylinder or cone has one, its axis.
 [[nodiscard]] std::uint32_t direction_count(const Core& core) noexcept;
 [[nodiscard]] Vec direction(const Core& core, std::uint32_t i) noexcept;
 
-/// Unit face normals, one of each opposite pair for boxes and triangles; zero where a triangle has
-/// none. A cylinder's or cone's cap counts as a face.
+/// Unit face normals; of opposite faces of a box or triangle only one. The normal of a triangle
+/// without area is zero. A cylinder or cone has one, the normal of its cap.
 [[nodiscard]] std::uint32_t normal_count(const Core& core) noexcept;
 [[nodiscard]] Vec normal(const Core& core, std::uint32_t i) noexcept;
 
-/// Faces: 6 of a box, 1 of a triangle, those of a hull.
+/// Faces: 6 for a box, 1 for a triangle, all faces of a hull.
 [[nodiscard]] std::uint32_t face_count(const Core& core) noexcept;
 [[nodiscard]] std::uint32_t face_size(const Core& core, std::uint32_t face) noexcept;
 [[nodiscard]] std::uint32_t face_vertex(const Core& core, std::uint32_t face,
@@ -107,24 +112,26 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 /// The edge from vertex i of a face to the next.
 [[nodiscard]] std::uint32_t face_edge(const Core& core, std::uint32_t face,
                                       std::uint32_t i) noexcept;
-/// Unit and outward; either one for a triangle.
+/// Unit and outward; for a triangle either of its two normals.
 [[nodiscard]] Vec face_normal(const Core& core, std::uint32_t face) noexcept;
 
-/// Unit vector along v, zero for zero. Neither overflows nor vanishes for any finite v.
+/// Returns the unit vector along v, or zero if v is zero. Neither overflows nor underflows for any
+/// finite v.
 [[nodiscard]] Vec unit(const Vec& v) noexcept;
 
-/// Unit vector perpendicular to the unit vectors e and f, so exactly to e that projections along it
-/// are right to rounding whatever the angle between them; zero where they are parallel.
+/// Returns a unit vector perpendicular to the unit vectors e and f, or zero if they are parallel.
+/// It is perpendicular to e to full precision whatever the angle between e and f, so that
+/// projections onto it are right to rounding.
 [[nodiscard]] Vec perpendicular(const Vec& e, const Vec& f) noexcept;
 
-/// Unit vector along the part of v that is perpendicular to the unit vector e; zero if there is
-/// none.
+/// Returns the unit vector along the part of v that is perpendicular to the unit vector e, or zero
+/// if there is none.
 [[nodiscard]] Vec without(const Vec& v, const Vec& e) noexcept;
 
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Shares of a pair's noise (see Problem::noise). Iterations end where no more than the first is to
-/// be gained; distances that differ by less than the second count as equal.
+/// Fractions of a pair's noise (see Problem::noise). Iterations end if at most kEnough of it can be
+/// gained; distances that differ by less than kHardly of it count as equal.
 inline constexpr double kEnough = 0.125;
 inline constexpr double kHardly = 0.25;
 

@@ -1,3 +1,7 @@
+// The distance of two cores in three steps: GJK; if its bounds do not close, SAT axes and
+// brute-force feature tests; if the cores overlap, the penetration depth by SAT, by symmetry or by
+// an expanding polytope (EPA). Called by solver.cpp.
+
 #include "pipeline/solver/core_distance.h"
 
 #include "pipeline/solver/axis_search.h"
@@ -15,7 +19,7 @@
 namespace winnow::solver {
 namespace {
 
-/// Two points, one on each core.
+/// A point of each core and the squared distance between them.
 struct ClosestPoints {
   Vec on_a = Vec::Zero();
   Vec on_b = Vec::Zero();
@@ -24,7 +28,7 @@ struct ClosestPoints {
 
 constexpr std::uint64_t kMostPairs = 4'000'000;
 
-/// The part of a polytope in which the closest point lies: axis . x above `from`.
+/// The part of a polytope that contains the closest point: axis . x >= `from`.
 struct Slab {
   const Core& core;
   Vec axis;
@@ -40,16 +44,16 @@ void offer(const Vec& on_a, const Vec& on_b, ClosestPoints& best) noexcept {
   if (square < best.square) best = {on_a, on_b, square};
 }
 
-/// Nearest point of the segment p + [0, 1] e.
+/// Returns the point of the segment p + [0, 1] e that is nearest to x.
 Vec on_segment(const Vec& p, const Vec& e, const Vec& x) noexcept {
   const double square = e.squaredNorm();
   if (!(square > 0.0)) return p;
   return p + e * std::clamp(e.dot(x - p) / square, 0.0, 1.0);
 }
 
-/// All ends against the other segment, and the insides of both by the parts of everything that are
-/// perpendicular to the longer one: that stays right to rounding at small angles, where the usual
-/// determinant loses twice as many digits.
+/// Tests each end of a segment against the other segment, and the interiors against each other. The
+/// interior test uses only components perpendicular to e, the longer segment: that stays right to
+/// rounding at small angles, where the usual determinant loses twice as many digits.
 void edge_edge(const Vec& p, const Vec& e, const Vec& q, const Vec& f, bool flip,
                ClosestPoints& best) noexcept {
   const auto put = [&](const Vec& x, const Vec& y) {
@@ -71,7 +75,7 @@ void edge_edge(const Vec& p, const Vec& e, const Vec& q, const Vec& f, bool flip
 }
 
 bool edges(const Slab& a, const Slab& b, ClosestPoints& best) noexcept {
-  // A point is an edge without length.
+  // A point counts as an edge of length zero.
   const std::uint32_t count_a = std::max(edge_count(a.core), 1U);
   const std::uint32_t count_b = std::max(edge_count(b.core), 1U);
   std::uint64_t pairs = 0;
@@ -100,8 +104,8 @@ bool edges(const Slab& a, const Slab& b, ClosestPoints& best) noexcept {
   return true;
 }
 
-/// Surely above the inside of a face; what is not is nearer to an edge, or as near. Faces without
-/// area have no inside.
+/// True if x is certainly above the interior of a face. All other points are at least as near to an
+/// edge. Faces without area have no interior.
 bool above_face(const Core& core, std::uint32_t face, const Vec& n, const Vec& x) noexcept {
   const std::uint32_t count = face_size(core, face);
   Vec p = vertex(core, face_vertex(core, face, count - 1));
@@ -135,11 +139,11 @@ bool corners_faces(const Slab& corners, const Slab& faces, bool flip,
   return true;
 }
 
-/// The closest points of two polytopes that do not overlap, by trying features: corners against
-/// faces, edges against edges. `axis` is unit, from a to b, along which the cores are at least
-/// `lower` apart, and they are at most `upper` apart: only features that reach into the slabs in
-/// which the closest points then lie are tried. O(features of a x features of b in those slabs);
-/// false if that is above a bound of some millions.
+/// Finds the closest points of two separate polytopes by testing corners against faces and edges
+/// against edges. The cores are at least `lower` apart along the unit axis from a to b, and at most
+/// `upper` apart: only features that reach into the two slabs that can contain the closest points
+/// are tested. O(features of a x features of b in the slabs); returns false if that is above
+/// kMostPairs.
 bool closest_features(const Core& a, const Core& b, const Vec& axis, double lower, double upper,
                       double noise, ClosestPoints& points) noexcept {
   const double depth = upper - lower + noise;
@@ -149,11 +153,11 @@ bool closest_features(const Core& a, const Core& b, const Vec& axis, double lowe
          edges(of_a, of_b, points);
 }
 
-/// Up to so many products of edges, trying all axes is cheaper than growing a polytope.
+/// Up to this many edge products, all axes are tested instead of expanding a polytope.
 constexpr std::uint32_t kFewProducts = 40;
-/// Axes of cylinders and cones whose angle has no larger sine are parallel, but for noise.
+/// Axes of cylinders and cones count as parallel if the sine of their angle is at most this.
 constexpr double kParallel = 8.0 * kEpsilon;
-/// What the depth of cylinders and cones is proved to, relative to the sizes.
+/// Tolerance of the depth of cylinders and cones, relative to the sizes.
 constexpr double kSmoothTolerance = 1e-11;
 
 CoreDistance half_space_distance(const Problem& problem) noexcept {
@@ -167,7 +171,7 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
     if ((a.normal + b.normal).cwiseAbs().maxCoeff() <= 4.0 * kEpsilon) {
       found.distance = a.normal.dot(b.center) - b.offset - a.offset;
     } else {
-      // No translation parts them.
+      // No translation separates them.
       found.distance = -std::numeric_limits<double>::max();
       found.doubt = std::numeric_limits<double>::infinity();
     }
@@ -179,7 +183,8 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
   return found;
 }
 
-/// Axes for pairs of segments, points and triangles without area: perpendicular to their line.
+/// Tests axes for pairs of segments, points and triangles without area: perpendicular to their
+/// line.
 void look_across_line(const Problem& problem, AxisSearch& search) noexcept {
   Vec line = Vec::Zero();
   for (const Core* core : {&problem.a, &problem.b}) {
@@ -190,11 +195,12 @@ void look_across_line(const Problem& problem, AxisSearch& search) noexcept {
       line = unit(direction(*core, i));
     }
   }
-  // Two points have no line: any axis will do.
+  // Two points have no line: every axis is perpendicular to it.
   for (int i = 0; i < 3; ++i) search.look(without(problem.tie_axes.col(i), line));
 }
 
-/// Of axes that are as good as the best, the first of the caller's frame.
+/// Replaces the axis by the first of +x, -x, +y, -y, +z, -z of the caller's frame that separates as
+/// well as the best, if there is one.
 void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   for (int i = 0; i < 6; ++i) {
     const Vec candidate = problem.tie_axes.col(i / 2) * (i % 2 == 0 ? 1.0 : -1.0);
@@ -205,8 +211,8 @@ void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   }
 }
 
-/// Where curved cores nearly touch, the iteration comes close but slowly; along a good axis the
-/// parts of them that meet are straight, and closest at once.
+/// GJK converges slowly if curved cores nearly touch. Along a good axis the closest parts of
+/// cylinders and cones are straight lines, so that GJK on their meridian triangles ends at once.
 void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
                    GjkResult& found) noexcept {
   const Core straight_a = meridian(a, axis);
@@ -224,7 +230,7 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   }
 }
 
-/// Of a point, along an axis that is known to be the best.
+/// The distance of a point from the other core, along an axis that is the best.
 CoreDistance distance_along(const Problem& problem, const Vec& axis) noexcept {
   CoreDistance found;
   found.axis = axis;
@@ -235,7 +241,7 @@ CoreDistance distance_along(const Problem& problem, const Vec& axis) noexcept {
   return found;
 }
 
-/// A point that is on both cores once b has been moved out along the axis.
+/// Returns a point that is on both cores once b has been moved by `depth` along the axis.
 Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcept {
   const Core& a = problem.a;
   const double noise = problem.noise();
@@ -243,7 +249,7 @@ Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcep
   moved.center += axis * depth;
   GjkResult met = gjk(a, moved, axis, kEnough * noise, std::numeric_limits<double>::infinity());
   Vec x = met.simplex.on_a();
-  // A flat tetrahedron has the origin inside, but does not tell well where.
+  // If the simplex is a flat tetrahedron, the origin is inside, but its weights are inaccurate.
   met.upper = met.simplex.closest().norm();
   if (met.upper > kHardly * noise && a.is_polytope() && moved.is_polytope()) {
     ClosestPoints points;
@@ -277,15 +283,16 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
   }
   found.distance = upper;
   found.doubt = noise + std::max(gap, 0.0);
-  // Short vectors have no good direction; of long ones no axis is better.
+  // A short vector between the closest points has no accurate direction; if it is long, no axis is
+  // better.
   const bool is_long = upper > 1e-4 * problem.size;
   found.axis = is_long || search.axis() == Vec::Zero() ? unit(between) : search.axis();
   if (found.axis == Vec::Zero()) found.axis = problem.tie_axes.col(0);
   return found;
 }
 
-/// The segment or disc within a cylinder from which it is at most so far, as rounding, to the
-/// outside of a body that the cylinder holds. Of other cores themselves.
+/// Returns a segment or disc whose rounded body lies inside the cylinder, with the largest rounding
+/// that fits. Other cores are returned with rounding 0.
 Core inscribed(const Core& core) noexcept {
   Core inner = core;
   inner.rounding = 0.0;
@@ -296,7 +303,7 @@ Core inscribed(const Core& core) noexcept {
   return inner;
 }
 
-/// No less than this: the depth of what is inscribed in both.
+/// Returns a lower bound of the depth: the depth of the bodies inscribed in both cores.
 double inscribed_depth(const Problem& problem) noexcept {
   const Core a = inscribed(problem.a);
   const Core b = inscribed(problem.b);
@@ -306,8 +313,9 @@ double inscribed_depth(const Problem& problem) noexcept {
   return a.rounding + b.rounding - (met.contact ? 0.0 : met.upper);
 }
 
-/// What may be missing of the depth of round cores that no polytope of the expansion comes near:
-/// those whose axes are nearly parallel and meet, where many directions are nearly alike.
+/// For cores of revolution whose axes cross and are nearly parallel, so that many directions are
+/// nearly equally good and the expanding polytope does not converge. Returns by how much the depth
+/// along the best axis may exceed the true depth.
 double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch& search) noexcept {
   constexpr double kNearlyParallel = 1e-6;
   const double depth = -search.separation();
@@ -318,7 +326,8 @@ double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch&
   return std::min(gap, -search.separation() - inscribed_depth(problem));
 }
 
-/// Looks at axes that a growing polytope gives; what may be missing of the depth.
+/// Tests the axis that the expanding polytope gives, and if needed the features. Returns by how
+/// much the depth along the best axis may exceed the true depth.
 double look_by_expansion(const Problem& problem, const GjkResult& start, double turn,
                          AxisSearch& search, SolverCounts& counts) noexcept {
   const double noise = problem.noise();
@@ -338,15 +347,15 @@ double look_by_expansion(const Problem& problem, const GjkResult& start, double 
   return gap;
 }
 
-/// Of cores that are not apart: true if one of few normals is an axis along which they do not
-/// overlap, either, as double can tell. No axis is better.
+/// For cores that are not separate: returns true if along one of few face normals they do not
+/// overlap either, up to rounding. No axis is better.
 bool touch_along_normal(const Problem& problem, AxisSearch& search) noexcept {
   if (normal_count(problem.a) + normal_count(problem.b) > kFewProducts) return false;
   look_at_normals(problem, search);
   return search.separation() >= -kHardly * problem.noise();
 }
 
-/// Depth along the best axis of all, or the distance if that axis separates.
+/// The depth along the best axis, or the distance if that axis separates the cores.
 CoreDistance penetration(const Problem& problem, const GjkResult& start, ContactLevel level,
                          SolverCounts& counts) noexcept {
   const Core& a = problem.a;
@@ -379,7 +388,7 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   return found;
 }
 
-/// That the cores overlap, shown by a simplex with the origin well inside or by their roundings.
+/// True if a simplex with the origin well inside, or the roundings, prove that the shapes overlap.
 bool surely_overlap(const Problem& problem, const GjkResult& start) noexcept {
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double noise = problem.noise();
@@ -391,7 +400,7 @@ bool surely_overlap(const Problem& problem, const GjkResult& start) noexcept {
     const Vec e = point[j].w - point[i].w;
     const Vec f = point[k].w - point[i].w;
     const Vec n = perpendicular(unit(e), unit(f));
-    // Slivers have no good normal.
+    // Slivers have no accurate normal.
     if (unit(e).cross(unit(f)).squaredNorm() < 1e-4) return false;
     if (!(std::abs(n.dot(point[i].w)) > noise * 100.0)) return false;
   }
@@ -409,7 +418,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   const Core& b = problem.b;
   const double noise = problem.noise();
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
-  // A verdict needs no more than that roundings overlap.
+  // Level boolean needs no more than that the rounded cores overlap.
   const double near = level == ContactLevel::boolean ? a.rounding + b.rounding - 2.0 * noise : 0.0;
   GjkResult found = gjk(a, b, start, kEnough * noise, enough, 0.0, 0.0, near);
   if (found.bounded) ++counts.bounded;
@@ -436,8 +445,8 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
     const bool all = look_at_features(problem, search);
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
     if (search.separation() <= 0.0 && (all || !polytopes)) {
-      // No axis separates polytopes: they overlap, whatever the simplices said. So do others if
-      // they are deeper than the polytope that grew may be from the origin.
+      // If no axis separates polytopes, they overlap, whatever GJK found. Other cores overlap if
+      // their proved depth is larger than GJK's upper bound of the distance.
       const CoreDistance inside = penetration(problem, found, level, counts);
       const bool proved = inside.distance + inside.doubt < -found.upper;
       if (polytopes || found.upper <= noise || proved) return inside;

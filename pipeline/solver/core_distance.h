@@ -5,24 +5,24 @@
 
 namespace winnow::solver {
 
-/// The signed distance of two cores, and how sure it is.
+/// The signed distance of two cores and its error bound.
 struct CoreDistance {
-  /// Negative by the depth. The true one is within `doubt` of it.
+  /// Negative by the depth. The true distance is within `doubt` of it.
   double distance = 0.0;
   double doubt = 0.0;
   /// Unit, from a to b.
   Vec axis = Vec::UnitX();
-  /// That of b is distance * axis farther.
+  /// The closest point on a; the closest point on b is on_a + distance * axis.
   Vec on_a = Vec::Zero();
-  /// `distance` is but a lower bound, above what was asked for.
+  /// `distance` is only a lower bound, and above the caller's `enough`.
   bool far = false;
-  /// Level boolean only: that they overlap is sure, the distance is not known.
+  /// Level boolean only: the shapes certainly overlap, and the distance was not computed.
   bool overlaps = false;
 };
 
-/// Distance or depth of the cores of a pair, half-spaces included. Only as far as `level` needs
-/// it: boolean ends where the sign of the distance of the rounded shapes is sure. `enough`: a
-/// larger distance of the cores need not be known.
+/// Computes the distance or depth of the cores of a pair, which may be half-spaces, only as exactly
+/// as `level` needs: boolean ends when the sign of the distance of the rounded shapes is certain.
+/// The search stops early, with `far`, if the cores are farther apart than `enough`.
 [[nodiscard]] CoreDistance core_distance(const Problem& problem, ContactLevel level, double enough,
                                          SolverCounts& counts) noexcept;
 

@@ -1,3 +1,7 @@
+// The expanding polytope algorithm (EPA): InnerPolytope stores the polytope and attaches points to
+// it, Expansion feeds it with support points of b - a. Called by core_distance.cpp for cores that
+// overlap.
+
 #include "pipeline/solver/expanding_polytope.h"
 
 #include <algorithm>
@@ -10,58 +14,60 @@
 namespace winnow::solver {
 namespace {
 
-/// Of the origin.
+/// Distance of a segment from the origin.
 [[nodiscard]] double segment_distance(const Vec& a, const Vec& b) noexcept {
   const Vec along = unit(b - a);
   const double at = std::clamp(-along.dot(a), 0.0, (b - a).norm());
   return (a + along * at).norm();
 }
 
-/// A polytope of triangles that grows by points outside of it, its faces in the order of their
-/// distance from the origin, which is inside. Of fixed size: some 130 KB, for the stack.
+/// A polytope of triangles that contains the origin and grows by points outside of it. Faces are
+/// kept in a heap by their distance from the origin. The size is fixed, about 130 KB, for the
+/// stack.
 class InnerPolytope {
  public:
   struct Face {
     std::array<std::uint16_t, 3> point;
-    /// The face across the side from point i to the next.
+    /// across[i] is the face on the other side of the edge from point i to the next.
     std::array<std::uint16_t, 3> across;
     bool alive;
-    /// Looked at, and can grow no more.
+    /// On the surface of the Minkowski difference: cannot grow any more.
     bool settled;
-    /// Outward, and a lower bound of the distance of the face's plane.
+    /// Unit and outward; `low` is a lower bound of the distance of the face's plane.
     Vec normal;
     double low;
   };
 
-  /// `noise`: lengths that cannot be told from zero.
+  /// `noise`: lengths up to this cannot be distinguished from zero.
   explicit InnerPolytope(double noise) noexcept : noise_(noise) {}
 
   [[nodiscard]] std::uint32_t point_count() const noexcept { return point_count_; }
   [[nodiscard]] const Vec& point(std::uint32_t i) const noexcept { return points_[i]; }
-  /// For the first four points.
+  /// Adds one of the first four points.
   void add(const Vec& w) noexcept { points_[point_count_++] = w; }
-  /// Of the first four points; false if they are in a plane.
+  /// Makes the faces of the first four points; returns false if these are in a plane.
   bool make_tetrahedron() noexcept;
 
-  /// Takes the nearest face that was not taken yet; false if there is none.
+  /// Removes the nearest face from the heap; returns false if the heap is empty.
   bool take_nearest(std::uint16_t& face) noexcept;
   [[nodiscard]] const Face& face(std::uint16_t f) const noexcept { return faces_[f]; }
-  /// How far a point is above the face.
+  /// The height of a point above the face's plane.
   [[nodiscard]] double height(const Face& face, const Vec& w) const noexcept {
     return face.normal.dot(w - points_[face.point[0]]);
   }
-  /// The face is on the surface of whatever the points are taken from.
+  /// Marks a face as part of the surface of the Minkowski difference.
   void settle(std::uint16_t f) noexcept { faces_[f].settled = true; }
 
-  /// Replaces the faces that see w, of which `seen` is one, by a fan from w. False if there is no
-  /// room or rounding has made the horizon something else than one loop: the end of it then.
+  /// Replaces the faces visible from w, of which `seen` is one, by a fan from w. Returns false if
+  /// there is no room or if rounding has made the horizon anything but a single loop; the polytope
+  /// must not be used after that.
   bool attach(const Vec& w, std::uint16_t seen) noexcept;
 
  private:
   static constexpr std::uint32_t kPoints = 384;
   static constexpr std::uint32_t kFaces = 6 * kPoints;
 
-  /// A side that stays when the faces that see a new point are taken away.
+  /// An edge of the horizon: it stays when the faces visible from a new point are removed.
   struct Side {
     std::uint16_t from;
     std::uint16_t to;
@@ -109,7 +115,7 @@ bool InnerPolytope::make_tetrahedron() noexcept {
 }
 
 bool InnerPolytope::take_nearest(std::uint16_t& face) noexcept {
-  // No more faces than twice the points are alive, and no more can be added at once.
+  // At most 2 * point_count_ faces are alive, and one step adds no more than that.
   if (face_count_ + 2 * point_count_ > kFaces) compact();
   while (heap_count_ > 0) {
     face = pop();
@@ -141,8 +147,9 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   face.normal = unit(cross);
   const double offset = std::max(
       {face.normal.dot(points_[p]), face.normal.dot(points_[q]), face.normal.dot(points_[r])});
-  // What rounding of the points makes of the distance of their plane. That of slivers is of little
-  // worth; their own distance is not less than it, unless they are on the wrong side of the origin.
+  // Rounding error of the plane's distance. It is large for slivers; for these the distance of the
+  // triangle itself is a better lower bound, unless the triangle is on the wrong side of the
+  // origin.
   const double doubt = kEnough * noise_ / area * std::max({le, lf, lg});
   face.low = offset - std::max(doubt, noise_);
   if (doubt > noise_ && offset >= -doubt)
@@ -151,8 +158,9 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   return true;
 }
 
-/// To a few roundings, of slivers as well: in terms of the longest side and of what of the third
-/// point is across it. (By Gram's determinants the foot in a sliver may seem to be on a side.)
+/// Distance of a triangle from the origin, right to a few roundings for slivers too: computed from
+/// the longest side and the third point's component perpendicular to it. (With Gram determinants
+/// the foot of the origin on a sliver may appear to be on a side.)
 double InnerPolytope::triangle_distance(std::uint16_t p, std::uint16_t q,
                                         std::uint16_t r) const noexcept {
   const Vec* a = &points_[p];
@@ -191,7 +199,7 @@ std::uint16_t InnerPolytope::pop() noexcept {
   return heap_[--heap_count_];
 }
 
-/// Makes room: takes out the faces that are no more.
+/// Removes dead faces to make room.
 void InnerPolytope::compact() noexcept {
   std::uint32_t kept = 0;
   for (std::uint32_t f = 0; f < face_count_; ++f) {
@@ -232,7 +240,7 @@ bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
 }
 
 /// True if w is above the face, or in its plane and on the line of the side between `from` and
-/// `to`: there, a new face over that side would have no area.
+/// `to`: a new face over that side would have no area.
 bool InnerPolytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
                             std::uint16_t to) const noexcept {
   const double above = height(face, w);
@@ -243,8 +251,8 @@ bool InnerPolytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
   return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
 }
 
-/// Collects the horizon in order: depth first over the faces that see w, each entered by a side and
-/// left by the ones after it.
+/// Collects the edges of the horizon in order, by a depth-first search over the faces visible from
+/// w. Each face is entered by one side; its other sides follow in order.
 bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
   horizon_count_ = 0;
   struct Visit {
@@ -288,13 +296,14 @@ bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
   return true;
 }
 
-/// Grows a polytope inside of the difference b - a.
+/// Grows a polytope inside the Minkowski difference b - a.
 class Expansion {
  public:
   Expansion(const Core& a, const Core& b, double noise) noexcept
       : a_(a), b_(b), noise_(noise), inner_(noise) {}
 
-  /// Completes the simplex to a tetrahedron; false if the difference is flat: see bounds().
+  /// Completes the simplex to a tetrahedron. Returns false if the difference is flat; bounds() then
+  /// holds its normal and depth 0.
   bool begin(const Simplex& simplex) noexcept;
   void grow(double tolerance) noexcept;
   [[nodiscard]] const DepthBounds& bounds() const noexcept { return bounds_; }
@@ -314,8 +323,8 @@ class Expansion {
   InnerPolytope inner_;
 };
 
-/// Adds the support along the direction if it is farther than the points so far, in a direction in
-/// which they are all alike.
+/// Adds the support point along the direction if it is farther than the points so far. These all
+/// have the same coordinate along that direction.
 bool Expansion::add_farther(const Vec& direction) noexcept {
   if (direction == Vec::Zero()) return false;
   const Vec w = support_along(direction);
@@ -354,7 +363,7 @@ bool Expansion::begin(const Simplex& simplex) noexcept {
   }
   const Vec n = perpendicular(line, unit(inner_.point(2) - inner_.point(0)));
   if (n == Vec::Zero()) return flat_along(side);
-  // The side on which there is more, so that thin differences get their better tetrahedron.
+  // Take the side with the larger height, so that thin differences get a better tetrahedron.
   const double above = n.dot(support_along(n) - inner_.point(0));
   const double below = n.dot(inner_.point(0) - support_along(-n));
   const Vec better = above >= below ? n : Vec(-n);
@@ -365,7 +374,7 @@ bool Expansion::begin(const Simplex& simplex) noexcept {
 void Expansion::grow(double tolerance) noexcept {
   // The depth along the best axis so far.
   double upper = std::numeric_limits<double>::infinity();
-  // Of faces that were looked at and can grow no more.
+  // The smallest `low` of the settled faces.
   double settled = std::numeric_limits<double>::infinity();
   std::uint16_t nearest = 0;
   while (inner_.take_nearest(nearest)) {
@@ -376,7 +385,7 @@ void Expansion::grow(double tolerance) noexcept {
     const double high = face.normal.dot(w);
     if (high < upper) {
       upper = high;
-      // The difference is b - a: its outward normals run from b to a.
+      // Outward normals of b - a run from b to a.
       bounds_.axis = -face.normal;
     }
     if (upper - bounds_.lower <= tolerance) break;

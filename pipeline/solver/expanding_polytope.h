@@ -5,22 +5,21 @@
 
 namespace winnow::solver {
 
-/// What is known of the depth of two cores that overlap.
 struct DepthBounds {
-  /// No less; that along `axis` (unit, from a to b) is no less than the depth.
+  /// A lower bound of the depth. The depth along `axis` (unit, from a to b) is an upper bound.
   double lower = 0.0;
   Vec axis = Vec::Zero();
 };
 
-/// Penetration depth by a polytope inside the Minkowski difference that is grown where it is
-/// nearest to the origin (van den Bergen, "Proximity queries and penetration depth computation on
-/// 3D game objects", 2001). The nearest face of the inner polytope bounds the depth from below, the
-/// support along a face's normal from above: the result is proved as far as the gap between them.
-/// Ends when the gap is at most `tolerance`, when faces can grow no more, or when there is no room
-/// for more (some two thousand faces, on the stack).
+/// Computes bounds of the penetration depth by the expanding polytope algorithm: a polytope inside
+/// the Minkowski difference grows at its face nearest to the origin (van den Bergen, "Proximity
+/// queries and penetration depth computation on 3D game objects", 2001). The nearest face bounds
+/// the depth from below, the support along a face's normal from above. Ends when the gap between
+/// the bounds is at most `tolerance`, when no face can grow, or when the fixed arrays are full
+/// (about two thousand faces, on the stack).
 ///
-/// `simplex` contains the origin, up to rounding; it is completed to a tetrahedron. Cores whose
-/// difference is flat have depth 0 along its normal. `noise`: as in gjk.
+/// `simplex` contains the origin, up to rounding; it is completed to a tetrahedron. If the
+/// difference of the cores is flat, the depth is 0 along its normal. `noise`: as in gjk.
 [[nodiscard]] DepthBounds expand(const Core& a, const Core& b, const Simplex& simplex, double noise,
                                  double tolerance) noexcept;
 

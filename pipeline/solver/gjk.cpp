@@ -1,3 +1,7 @@
+// GJK for two cores: `reduce` finds the point of a simplex that is closest to the origin, `iterate`
+// is the loop. Called by core_distance.cpp, and by the motion code with the simplex of the step
+// before.
+
 #include "pipeline/solver/gjk.h"
 
 #include <algorithm>
@@ -7,7 +11,7 @@
 namespace winnow::solver {
 namespace {
 
-/// A closest point as weights of the corners of the whole simplex.
+/// A point of the simplex as weights of its corners, and the squared distance from the origin.
 struct Candidate {
   std::array<double, 4> weight{};
   double square = std::numeric_limits<double>::infinity();
@@ -36,7 +40,7 @@ void try_segment(const Simplex& s, std::size_t i, std::size_t j, Candidate& best
   } else if (from_q <= 0.0) {
     weight[j] = 1.0;
   } else if (from_p < from_q) {
-    // From the nearer end, whose share is the one with the smaller error.
+    // Compute the weight of the farther end: it is the smaller one and has the smaller error.
     weight[j] = from_p / length;
     weight[i] = 1.0 - weight[j];
   } else {
@@ -65,7 +69,7 @@ void try_triangle(const Simplex& s, std::size_t i, std::size_t j, std::size_t k,
     weight[k] = ar / total;
     offer(s, weight, best);
   }
-  // A sliver's areas have no sure signs: then its sides are tried as well.
+  // The areas of a sliver have no certain signs: try its sides as well.
   const double scale = std::max({(q - p).squaredNorm(), (r - p).squaredNorm()});
   const bool sliver = !(area > 1e-16 * scale * scale);
   if (ap <= 0.0 || sliver) try_segment(s, j, k, best);
@@ -179,7 +183,7 @@ bool holds(const Simplex& simplex, const Vec& w) noexcept {
   return false;
 }
 
-/// From the point of the simplex in the result that is closest to the origin.
+/// Runs GJK from the closest point of the simplex in `result`.
 void iterate(const Core& a, const Core& b, double noise, double enough, double share,
              double roundings, double near, GjkResult& result) noexcept {
   Simplex& simplex = result.simplex;

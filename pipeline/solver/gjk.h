@@ -6,7 +6,7 @@
 
 namespace winnow::solver {
 
-/// A point of the Minkowski difference b - a and the points that make it.
+/// A point w of the Minkowski difference b - a, and the points of a and b that make it.
 struct DifferencePoint {
   Vec w;
   Vec a;
@@ -18,7 +18,7 @@ struct Simplex {
   std::array<DifferencePoint, 4> point;
   std::array<double, 4> weight{};
   int count = 0;
-  /// The tetrahedron contains the origin.
+  /// The simplex is a tetrahedron that contains the origin.
   bool inside = false;
 
   [[nodiscard]] Vec closest() const noexcept;
@@ -26,42 +26,44 @@ struct Simplex {
   [[nodiscard]] Vec on_b() const noexcept;
 };
 
-/// Sets the weights to those of the point of the simplex that is closest to the origin, and drops
-/// the points that it does not need. Regions are told apart by signed volumes, areas and lengths
-/// (Montanari, Petrinic, Barbieri, "Improving the GJK algorithm", 2017); where one is too small to
-/// have a sure sign, all sides are tried and the closest wins.
+/// Sets the weights to the point of the simplex that is closest to the origin, and drops the points
+/// that it does not need. The region is chosen by signed volumes, areas and lengths (Montanari,
+/// Petrinic, Barbieri, "Improving the GJK algorithm", 2017); if one of these is too small to have a
+/// certain sign, all sides are tried and the closest wins.
 void reduce(Simplex& simplex) noexcept;
 
 struct GjkResult {
   Simplex simplex;
-  /// From a to b between the closest points found; zero length where `contact`.
+  /// The vector from a to b between the closest points found; zero if `contact`.
   Vec between = Vec::Zero();
-  /// Length of `between`, and the best separation along any direction that was tried: the distance
-  /// of the cores lies between the two, roundings aside.
+  /// The length of `between`, and the best separation along any direction tested: the distance of
+  /// the cores is between the two, up to rounding.
   double upper = 0.0;
   double lower = 0.0;
   /// The unit direction of `lower`.
   Vec axis = Vec::Zero();
-  /// The cores share a point, as far as double can tell.
+  /// The cores share a point, up to rounding.
   bool contact = false;
   /// Stopped early: `lower` is above `enough`.
   bool far = false;
-  /// Ended by the bound on iterations.
+  /// Stopped by the bound on iterations.
   bool bounded = false;
 };
 
-/// Distance of two bounded cores (Gilbert, Johnson, Keerthi, 1988) with simplices reduced by signed
-/// volumes. Ends when the gap between the distance and its supporting plane is relatively as small
-/// as doubles can make it, or no progress is made; in at most 64 iterations for polytopes of any
-/// size that are not degenerate, and never in more than 256. `start`: where to look first, from a
-/// to b. `noise`: lengths that cannot be told from zero. With a `share` it
-/// ends as soon as the distance, less `roundings`, is known to that share of it; and as soon as it
-/// is surely below `near`, without a bound from below then.
+/// Computes the distance of two bounded cores by GJK (Gilbert, Johnson, Keerthi 1988), with
+/// simplices reduced by signed volumes. Ends when the gap between the distance and its supporting
+/// plane is, relatively, as small as doubles allow, or when there is no progress: in at most 64
+/// iterations for polytopes of any size that are not degenerate, never in more than 256.
+///
+/// `start`: the first search direction, from a to b. `noise`: lengths up to this cannot be
+/// distinguished from zero. `enough`: stops if the cores are farther apart. `share`: if positive,
+/// stops as soon as the distance less `roundings` is exact to this relative error. `near`: stops as
+/// soon as the distance is below it; the lower bound is then not tight.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
                             double enough, double share = 0.0, double roundings = 0.0,
                             double near = 0.0) noexcept;
-/// The same from a simplex of points of both cores instead of a direction, such as what was found
-/// before the cores moved by little.
+/// As above, but starts from a simplex of points of both cores, such as the result before the cores
+/// moved a little.
 [[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise,
                             double enough, double share, double roundings) noexcept;
 

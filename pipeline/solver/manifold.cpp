@@ -1,3 +1,6 @@
+// Supporting features of cores, and contact manifolds of single pairs; see manifold.h. Called by
+// the solver and by composites/smooth.cpp and reduce.cpp.
+
 #include "pipeline/solver/manifold.h"
 
 #include <winnow/core/rounding.h>
@@ -17,7 +20,7 @@ bool is_on_top(const HullShape& hull, std::uint32_t i, const Vec& d, double leas
   return d.dot(Vec(hull.vertex[0][i], hull.vertex[1][i], hull.vertex[2][i])) >= least;
 }
 
-/// How many of a hull's vertices lie at `least` or higher along d; those of a face.
+/// Number of vertices of a hull, or of a face of it, at height `least` or more along d.
 std::uint32_t count_on_top(const HullShape& hull, const Vec& d, double least) noexcept {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < hull.vertex_count; ++i) count += is_on_top(hull, i, d, least);
@@ -93,7 +96,7 @@ void SupportingPatch::add(const Vec& v, std::uint32_t vertex_feature,
 
 void SupportingPatch::add_face(const Core& core, std::uint32_t face) noexcept {
   const std::uint32_t size = face_size(core, face);
-  // Of faces with more corners than there is room for, every second (third, ...) is taken.
+  // If the face has too many corners, take every second (third, ...) one.
   const std::uint32_t stride = (size + kRoom - 1) / kRoom;
   for (std::uint32_t i = 0; i < size; i += stride) {
     const std::uint32_t corner = face_vertex(core, face, i);
@@ -113,7 +116,7 @@ void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
   const Vec d = core.rotation.transpose() * outward;
   double height = 0.0;
   const std::uint32_t corner = farthest_vertex(hull, d, height);
-  // Of a supporting edge only the faces beside it count, not those that have but one of its ends.
+  // If an edge supports, only the two faces that share it count, not the faces at one of its ends.
   const double least = height - kSamePlace * hull.radius;
   double best = kFaceCosine;
   std::uint32_t most = std::min(count_on_top(hull, d, least), 2U);
@@ -158,11 +161,11 @@ void SupportingPatch::add_round(const Core& core, const Vec& outward) noexcept {
   const double r = core.half.x();
   const double h = core.half.z();
   const double radial = hypotenuse(d.x(), d.y());
-  // A direction along the axis has no side.
+  // A direction along the axis has no radial part: use +x.
   const Vec out = radial > kAlongAxis ? Vec(d.x() / radial, d.y() / radial, 0.0) : Vec::UnitX();
   const bool cone = core.kind == CoreKind::cone;
   const bool on_tip = cone && h * d.z() >= r * radial - h * d.z();
-  // A cone has but the lower cap.
+  // A cone has only the lower cap.
   const double over_cap = cone ? -d.z() : std::abs(d.z());
   if (over_cap > kCapCosine) return add_cap(core, d.z() > 0.0 ? h : -h);
   const Vec top = cone ? Vec(0.0, 0.0, h) : Vec(out * r + Vec(0.0, 0.0, h));
@@ -179,15 +182,15 @@ void SupportingPatch::add_taper(const Core& core, const Vec& outward) noexcept {
   const double more = scaled(std::max(taper.radius[0] - taper.radius[1], 0.0));
   const double less = scaled(std::max(taper.radius[1] - taper.radius[0], 0.0));
   const Vec axis = core.rotation.col(2) * half;
-  // A ball within the other has no part in the surface.
+  // A ball inside the other one is not part of the surface.
   if (more == 0.0 || more < 2.0 * half) add(core.center + axis + outward * less, 0, 0);
   if (more > 0.0 || less < 2.0 * half) add(core.center - axis + outward * more, 1, 0);
 }
 
 namespace {
 
-/// Of points that are not in one plane: three that span most, and those in their plane. Returns how
-/// many.
+/// Keeps the points that are in the plane of the three points that span the most. Returns their
+/// number.
 std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
   if (count < 4) return count;
   const Vec far = *std::max_element(x + 1, x + count, [&](const Vec& p, const Vec& q) {
@@ -207,8 +210,8 @@ std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
 
 }  // namespace
 
-// Directions a little off, as bodies rock: corners of what is flat stay far from each other; the
-// points of what is round come together, and count as the one of them that is farthest out.
+// Uses directions that are slightly off, because bodies rock. The corners of a flat face stay far
+// apart; the points of a round surface are close together, and the farthest of them is kept.
 void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept {
   constexpr std::uint32_t kSamples = 8;
   const Vec d = core.rotation.transpose() * outward;
@@ -241,7 +244,7 @@ void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept
 
 namespace {
 
-/// What a single point of contact is called: as in the kernels of round shapes.
+/// Feature number of a single contact point, as in the kernels of round shapes.
 std::uint32_t point_feature(const Core& core, const Vec& at) noexcept {
   const Vec x = core.rotation.transpose() * (at - core.center);
   const auto side = [&](int i) {
@@ -253,12 +256,12 @@ std::uint32_t point_feature(const Core& core, const Vec& at) noexcept {
   return static_cast<std::uint32_t>(13 + side(0) + 3 * side(1) + 9 * side(2));
 }
 
-/// In the caller's units, at most the largest float.
+/// Converts to the caller's units, limited to the largest float.
 float as_float(const Problem& problem, double length) noexcept {
   return finite_float(unscaled(problem, length));
 }
 
-/// The one point that the answer itself tells.
+/// The contact point that follows from the distance result only.
 ContactPoint own_point(const Problem& problem, const Vec& point, const Vec& normal,
                        double distance) noexcept {
   const Vec middle = point + normal * (0.5 * distance);
@@ -272,9 +275,9 @@ ContactPoint own_point(const Problem& problem, const Vec& point, const Vec& norm
   return contact;
 }
 
-/// Contacts of two segments at both ends of the stretch along which they lie side by side, the
-/// deeper one first, as far as they are within the margin: as the lanes have it. None if they do
-/// not.
+/// Contacts of two segments at both ends of the range in which they lie side by side, if they are
+/// within the margin, the deeper one first; as in the kernels. Returns 0 if they are not side by
+/// side.
 std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double distance,
                            double margin, ContactPoint* out) noexcept {
   const Core& a = problem.a;
@@ -313,7 +316,7 @@ std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double dis
   return count;
 }
 
-/// What `contacts` (of two patches, as contact_patch) finds of the supporting features.
+/// Calls `contacts` with the two supporting features, and returns its result.
 template <typename Contacts>
 std::uint32_t meet_features(const Problem& problem, const Vec& normal, Contacts&& contacts) {
   const SupportingPatch a(problem.a, normal);
@@ -349,15 +352,16 @@ bool touches_in_a_point(const Core& core) noexcept {
 void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
                    PairAnswer& answer) noexcept {
   const Vec normal = Vec::Map(answer.normal);
-  // Lengths are about 1: only the endless depth of two half-spaces is more than 8.
+  // Lengths are about 1: only the depth of two half-spaces, which is unbounded, exceeds 8.
   const ContactPoint own = own_point(problem, point, normal, std::max(distance, -8.0));
   const bool alone = touches_in_a_point(problem.a) || touches_in_a_point(problem.b) ||
                      problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
-  // If the features miss the point of least distance, as caps with 16 corners do by a little, meet
-  // nowhere within the margin or in one point alone, it takes the place of their deepest; if they
-  // miss it by much, it is put in front of them. None is deeper, and the first is as deep.
+  // The closest point replaces the deepest point of the features if they miss it by a little (as
+  // caps with 16 corners do), are farther than the margin, or touch in only one point. If they miss
+  // it by much, it is inserted before them. No point becomes deeper than it, and the first has its
+  // depth.
   const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
   if (near && count > 1 && miss > 1e-2 * problem.size) {

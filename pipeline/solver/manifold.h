@@ -1,5 +1,8 @@
 #pragma once
 
+// Contact manifolds of the solver: computes the supporting features of two cores and passes them to
+// manifold/contact_patch.h.
+
 #include "pipeline/manifold/contact_patch.h"
 #include "pipeline/solver/core.h"
 #include "pipeline/solver/problem.h"
@@ -10,23 +13,23 @@
 
 namespace winnow::solver {
 
-/// A feature of a core with its numbers, in units of the problem: what contact_patch takes.
+/// The supporting feature of a core with its feature numbers, in units of the problem.
 class SupportingPatch {
  public:
-  /// No patch has more vertices.
+  /// Maximal number of vertices.
   static constexpr std::uint32_t kRoom = kPatchRoom;
 
-  /// The feature that lies farthest along `outward`: a box's face, a triangle, a segment, a hull's
-  /// face, edge or vertex, a cylinder's or cone's cap as a polygon of 16 or a line of its side, the
-  /// line between a tapered capsule's balls, what is farthest along eight directions around of a
-  /// support function.
-  /// Features some degrees off count as well, since bodies rock over them; all of them hold the
-  /// supporting point. Corners of boxes are numbered by the bits x > 0, y > 0, z > 0, edges by
-  /// 4 x their axis and the bits of the others, faces by 2 x their axis and the sign. Caps begin
-  /// at +x and go round.
+  /// Finds the feature farthest along `outward`: a face of a box, a triangle, a segment, a face,
+  /// edge or vertex of a hull, a cap of a cylinder or cone as a polygon of 16 corners or a line of
+  /// its side, the line between the balls of a tapered capsule, or, for a support function, the
+  /// support points of eight directions around `outward`. Features that are some degrees off also
+  /// count, because bodies rock over them; each of them contains the supporting point. Corners of
+  /// boxes are numbered by the bits x > 0, y > 0, z > 0; edges by 4 x their axis plus the bits of
+  /// the other axes; faces by 2 x their axis plus the sign. Caps begin at +x and are numbered
+  /// around the rim.
   SupportingPatch(const Core& core, const Vec& outward) noexcept;
 
-  /// A square on the face of a half-space around the foot of `middle`, to `reach` on all sides.
+  /// A square on the face of a half-space around the projection of `middle`, `reach` to each side.
   static SupportingPatch of_half_space(const Core& core, const Vec& middle, double reach) noexcept;
 
   [[nodiscard]] Patch view() const noexcept {
@@ -52,14 +55,14 @@ class SupportingPatch {
   double rounding_ = 0.0;
 };
 
-/// Fills in the contacts of an answer whose normal is known: the supporting features of both cores
-/// along it, met by contact_patch. `point`: on the surface of a; `distance`: both in units of the
-/// problem. At least one point, and the deepest one is as deep as the distance says.
+/// Sets the contacts of an answer whose normal is already set: calls contact_patch for the
+/// supporting features of both cores. `point` is on the surface of a; `point` and `distance` are in
+/// units of the problem. Writes at least one point. The depth of the deepest point is -distance.
 void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
                    PairAnswer& answer) noexcept;
 
-/// All corners of what the supporting features along `normal` share, of which a manifold has four
-/// at most; in units of the problem. Room for kSharedCorners.
+/// Finds all corners of the intersection of the supporting features along `normal`; a manifold
+/// keeps at most four of them. In units of the problem. `out` has room for kSharedCorners.
 std::uint32_t shared_corners(const Problem& problem, const Vec& normal, double margin,
                              ContactPoint* out) noexcept;
 

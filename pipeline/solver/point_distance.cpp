@@ -7,7 +7,7 @@
 namespace winnow::solver {
 namespace {
 
-/// Of an ellipsoid, in its frame, relative to its least radius.
+/// The radii of an ellipsoid and their differences from the smallest one.
 struct Ellipsoid {
   explicit Ellipsoid(const Vec& lengths) noexcept : radius(lengths) {
     radius.minCoeff(&least);
@@ -17,12 +17,12 @@ struct Ellipsoid {
   Vec radius;
   int least = 0;
   double thin = 0.0;
-  /// Squares of the radii less that of the least.
+  /// The squared radii minus the square of the smallest.
   Vec excess;
 };
 
-/// Outward for a point q that no equation has a root for: the way out is along the thin axes.
-/// `left`: what the sum of squares is short of 1.
+/// Returns the outward normal for a point q for which the equation has no root: the shortest way
+/// out is along the axes of the smallest radius. `left`: 1 minus the sum of squares.
 Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexcept {
   Vec normal = Vec::Zero();
   if (shape.thin == 0.0) {
@@ -38,15 +38,15 @@ Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexce
   return unit(normal);
 }
 
-/// Outward where the surface of an ellipsoid is nearest to a point q in its frame. The normal there
-/// is q_i / (s + excess_i), for the largest s at which the squares of weight_i / (s + excess_i) add
-/// up to 1.
+/// Returns the outward normal at the point of an ellipsoid's surface that is nearest to q, a point
+/// in its frame. Up to a factor its components are q_i / (s + excess_i), for the largest s at which
+/// the squares of weight_i / (s + excess_i) add up to 1.
 Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
   const Ellipsoid shape(radius);
   const Vec weight = radius.cwiseProduct(q.cwiseAbs());
   double s = 0.0;
   for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : hypotenuse(s, weight[i]);
-  // The sum falls and is convex: from the left no step passes the root.
+  // The sum is convex and falls with s: Newton's method from the left never passes the root.
   constexpr int kMostSteps = 200;
   for (int step = 0; step < kMostSteps; ++step) {
     double sum = -1.0;
@@ -62,7 +62,7 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
     if (!(next > s)) break;
     s = next;
   }
-  // Relative to the largest factor, that of the least radius, which may be beyond double.
+  // Multiply by s: the factor 1 / s of the smallest radius may overflow.
   Vec normal = Vec::Zero();
   for (int i = 0; i < 3; ++i) {
     normal[i] = shape.excess[i] > 0.0 ? q[i] * (s / (s + shape.excess[i])) : q[i];
@@ -70,7 +70,7 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
   return unit(normal == Vec::Zero() ? q : normal);
 }
 
-/// The same of the hull of balls of radii `low` at z = -half and `high` at z = half.
+/// As above, for the convex hull of balls of radii `low` at z = -half and `high` at z = half.
 Vec outward_of_taper(double low, double high, double half, const Vec& q) noexcept {
   const double rho = hypotenuse(q.x(), q.y());
   const Vec out = rho > 0.0 ? Vec(q.x() / rho, q.y() / rho, 0.0) : Vec(Vec::UnitX());

@@ -4,13 +4,14 @@
 
 namespace winnow::solver {
 
-/// Of a problem of a point and an ellipsoid or tapered capsule: the unit axis, from the point to
-/// the other, along which they are farthest apart or overlap least. Zero for all others.
+/// For a point and an ellipsoid or tapered capsule: returns the unit axis, from the point to the
+/// other core, along which the two are farthest apart or overlap least. Returns zero for all other
+/// pairs.
 ///
-/// Where a point is nearest to the surface of an ellipsoid is a root of one equation (Eberly,
-/// "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013), by Newton's
-/// method; of the least radius's square only differences are taken, so that points near the middle
-/// are no worse than others.
+/// The nearest point of an ellipsoid is the root of one equation (Eberly, "Distance from a point to
+/// an ellipse, an ellipsoid, or a hyperellipsoid", 2013), found by Newton's method. The squared
+/// radii enter only as differences from the smallest, so that points near the middle are as
+/// accurate as others.
 [[nodiscard]] Vec axis_from_point(const Problem& problem) noexcept;
 
 }  // namespace winnow::solver

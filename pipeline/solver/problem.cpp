@@ -1,3 +1,6 @@
+// Prepares a pair for the solver: chooses the scale, places both cores in one frame, and scales
+// results back to the caller's units.
+
 #include "pipeline/solver/problem.h"
 #include <winnow/core/rotation.h>
 
@@ -7,7 +10,7 @@
 namespace winnow::solver {
 namespace {
 
-/// The lengths of a shape, unscaled; at most 7.
+/// The lengths of a shape in the caller's units.
 struct Lengths {
   CoreKind kind = CoreKind::point;
   Vec half = Vec::Zero();
@@ -23,7 +26,8 @@ Lengths triangle_lengths(const TriangleShape& triangle) noexcept {
   return lengths;
 }
 
-/// No vertex is farther from the position; finite even if the hull's numbers are not.
+/// Upper bound of the distance of the vertices from the position; finite even if the hull's numbers
+/// are not.
 double reach(const HullShape& hull) noexcept {
   const double sum = Eigen::Map<const Vec>(hull.center).cwiseAbs().sum() + hull.radius;
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::max();
@@ -131,7 +135,7 @@ void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Length
 
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
              const Pose& pose_b, bool mirrored, Problem& problem) noexcept {
-  // Positions far apart on both ends of the range of doubles have no finite difference: halve.
+  // Positions at opposite ends of the range of doubles have no finite difference: halve it.
   const Eigen::Map<const Vec> at_a(pose_a.position);
   const Eigen::Map<const Vec> at_b(pose_b.position);
   Vec c = at_b - at_a;

@@ -25,7 +25,8 @@ struct Question {
   const Pose& pose_b;
 };
 
-/// The same pair asked in either order is solved in one, so that answers mirror.
+/// A pair is solved in the same order whichever way it is given, so that the two answers mirror
+/// each other.
 bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
   if (a.kind() != b.kind()) return solver::is_prepared_mirrored(a.kind(), b.kind());
   for (int i = 0; i < 3; ++i) {
@@ -34,7 +35,7 @@ bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& po
   return false;
 }
 
-/// Lets exact arithmetic tell the sign of a distance that double cannot.
+/// Decides the sign of a distance by exact arithmetic if double cannot.
 void settle_sign(const Question& ask, const Problem& problem, const Vec& axis, double& distance,
                  SolverCounts& counts) noexcept {
   ++counts.exact;
@@ -88,7 +89,7 @@ PairAnswer solve(const Question& ask, bool mirrored, ContactLevel level, double 
   const Vec point = found.on_a + found.axis * problem.a.rounding;
   put(problem, point, answer.point);
   if (level == ContactLevel::manifold && answer.distance <= margin) {
-    // Lengths are about 1 here: a margin beyond 8 is as good as 8.
+    // Lengths are about 1 here: a margin above 8 has the effect of 8.
     const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
     make_manifold(problem, point, scaled, reach, answer);
   }

@@ -8,12 +8,11 @@
 
 namespace winnow {
 
-/// What the solver did, for statistics.
 struct SolverCounts {
   std::uint64_t pairs = 0;
-  /// Pairs whose sign double could not tell: decided in exact arithmetic.
+  /// Pairs whose sign double could not decide: decided by exact arithmetic.
   std::uint64_t exact = 0;
-  /// Iterations that met their bound and fell back to enumeration.
+  /// Iterations that reached their bound and fell back to enumeration.
   std::uint64_t bounded = 0;
 
   SolverCounts& operator+=(const SolverCounts& other) noexcept {
@@ -24,20 +23,21 @@ struct SolverCounts {
   }
 };
 
-/// Any pair of valid shapes at valid poses, one at a time, in double and, where that cannot tell
-/// the sign, in exact arithmetic: the tier `reference`, and where the lanes of the tier `robust`
-/// send what they cannot certify. Never NaN, always ends.
+/// Solves any pair of valid shapes at valid poses, one pair at a time, in double; exact arithmetic
+/// decides the sign if double cannot. This is tier `reference`; tier `robust` calls it for the
+/// pairs that the SIMD kernels cannot certify. Always terminates and never returns NaN.
 ///
-/// The distance is that of the cores less the roundings; where the shapes overlap it is minus the
-/// penetration depth: the length of the shortest translation of b that leaves them touching. Shapes
-/// whose closest direction is not unique (coincident centres) take the first of +x, +y, +z and
-/// their opposites, in the frame of a, that is one of the closest. Two half-spaces that do not face
-/// each other overlap without end: the distance is minus the largest double, the bound infinite.
+/// The distance is the distance of the cores minus the roundings. If the shapes overlap, it is
+/// minus the penetration depth: the length of the shortest translation of b that leaves the shapes
+/// touching. If the closest direction is not unique (coincident centres), the first of +x, -x, +y,
+/// -y, +z, -z of the frame of a that is a closest one is taken. Two half-spaces that do not face
+/// each other overlap without bound: the distance is minus the largest double, the error bound
+/// infinite.
 [[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                     ShapeId b, const Pose& pose_b, ContactLevel level,
                                     double margin, SolverCounts& counts) noexcept;
 
-/// The answer about (b, a) becomes that about (a, b).
+/// Turns the answer about (b, a) into the answer about (a, b).
 void mirror(const Pose& pose_a, const Pose& pose_b, PairAnswer& answer) noexcept;
 
 }  // namespace winnow

@@ -1,11 +1,11 @@
 #pragma once
 
-// How a kernel file reaches its callers. A `*.kernel.cpp` is compiled once per instruction set and
-// defines one constant table of function pointers, whose name ends in the instruction set. The
-// header beside it declares the table's type and, by WINNOW_KERNELS, the tables and the function
-// that picks the active one. Kernel files include only <cstdint>, <cstddef>, this file, simd/lanes/
-// and headers of plain structs: an inline function of the standard library compiled for a wide
-// instruction set would be merged by the linker into code that runs everywhere.
+// Dispatch of kernels. A `*.kernel.cpp` is compiled once per instruction set and defines one
+// constant table of function pointers, whose name ends in the instruction set. The header beside it
+// declares the table's type and, by WINNOW_KERNELS, the tables and the function that returns the
+// table of the active instruction set. Kernel files include only <cstdint>, <cstddef>, this file,
+// simd/lanes/ and headers of plain structs: an inline function of the standard library that is
+// compiled for a wide instruction set could be merged by the linker into code that runs everywhere.
 
 #include <cstdint>
 
@@ -17,10 +17,10 @@ enum class Isa : std::uint8_t;
 #define WINNOW_CONCAT_2(a, b) a##_##b
 #define WINNOW_CONCAT(a, b) WINNOW_CONCAT_2(a, b)
 
-/// In a kernel file: the name of this instruction set's table.
+/// In a kernel file: the name of the table of its instruction set.
 #define WINNOW_KERNEL_TABLE(name) WINNOW_CONCAT(name, WINNOW_ISA_NAME)
 
-/// In a kernel header: declares the tables and the function `name()` that picks one.
+/// In a kernel header: declares the tables and the function `name()` that returns the active one.
 #define WINNOW_KERNELS(Type, name) \
   extern const Type name##_sse42;  \
   extern const Type name##_avx2;   \
@@ -48,7 +48,7 @@ enum class Isa : std::uint8_t;
 #define WINNOW_PICK_BASE(name) return name##_sse42
 #endif
 
-/// In the one ordinary source file of the algorithm: defines `name()`.
+/// In one ordinary source file per kernel table: defines `name()`.
 #define WINNOW_DEFINE_KERNELS(Type, name)          \
   const Type& name() noexcept {                    \
     switch (static_cast<unsigned>(active_isa())) { \

@@ -1,13 +1,13 @@
 #pragma once
 
-// One double as lanes: a kernel of doubles computes one pair of it with the same operations, and so
-// to the same bits, without filling registers for it.
+// A scalar double with the interface of Lanes. A kernel template of doubles uses it to compute a
+// single pair with the same operations, and so with the same bits, without filling registers.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// A double that stands alone, as the type of number of its lanes.
+/// A scalar double, as the number type of Lanes.
 struct Alone {
   double value;
 
@@ -20,7 +20,7 @@ struct Alone {
 template <>
 inline constexpr int kPartsOf<Alone> = 1;
 
-/// What a number of lanes is in memory.
+/// The type of a lane in memory.
 template <typename T>
 struct RealOf {
   using Type = T;
@@ -30,9 +30,9 @@ struct RealOf<Alone> {
   using Type = double;
 };
 
-/// A number of which the compiler does not know how it came about. g++ 12 is wrong where it puts
-/// such numbers side by side in registers: it makes one fused operation of a sum of products beside
-/// a difference of them, though it is told not to fuse, and chooses by the masks of others.
+/// Hides from the compiler how a number was computed. g++ 12 compiles wrongly when it puts such
+/// numbers side by side in registers: it fuses a sum of products beside a difference of products
+/// although contraction is off, and selects by the masks of other numbers.
 [[gnu::always_inline]] inline double opaque(double v) {
 #if defined(WINNOW_ISA_IS_neon64)
   asm("" : "+w"(v));
@@ -115,7 +115,7 @@ struct Lanes<Alone, 1> {
   }
 };
 
-/// Without a branch, which would be as often wrong as not. Of -0 it is 1, too.
+/// Branchless, because the sign is unpredictable. Returns 1 for -0.
 [[gnu::always_inline]] inline Lanes<Alone> sign_or_one(const Lanes<Alone>& a) {
   return Lanes<Alone>(opaque(__builtin_copysign(1.0, opaque(a.part[0] + 0.0))));
 }

@@ -1,13 +1,13 @@
 #pragma once
 
-// Sixteen boxes, or volumes of more slabs, in lanes: loaded from columns or from where each lies by
-// itself, and tested for overlap with one other.
+// Sixteen boxes, or volumes of more slabs, in lanes: loads them from columns or from separate
+// addresses, and tests them for overlap with one other volume.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Sixteen boxes, or sixteen volumes of `Slabs` slabs: the lower ends, then the upper ends.
+/// Sixteen volumes of `Slabs` slabs, 3 for boxes: the lower ends, then the upper ends.
 template <int Slabs>
 struct Slabs16 {
   Floats low[Slabs];
@@ -15,8 +15,9 @@ struct Slabs16 {
 };
 using Box16 = Slabs16<3>;
 
-/// Rows [row, row + 16) of columns; `row` is a multiple of 16. A call would pass the boxes through
-/// memory, and compilers stop inlining in files that instantiate a kernel many times.
+/// Loads rows [row, row + 16) of columns; `row` is a multiple of 16. Always inline, because a call
+/// would pass the boxes through memory, and compilers stop inlining in files that instantiate a
+/// kernel many times.
 template <int Slabs>
 [[gnu::always_inline]] inline Slabs16<Slabs> load_slabs(const float* const* columns,
                                                         std::size_t row) {
@@ -38,13 +39,13 @@ template <int Slabs>
   return r;
 }
 
-/// Which of 16 volumes overlap the one whose ends are low[s], high[s]; closed.
+/// Returns the lanes whose volumes overlap the volume with ends low[s], high[s]; closed.
 template <int Slabs>
 [[gnu::always_inline]] inline Mask16 overlap(const Slabs16<Slabs>& v, const float* low,
                                              const float* high) {
 #if defined(WINNOW_ISA_IS_avx512)
-  // The compares of a slab mask each other, which saves an `and` of masks. One chain of all would
-  // save more of them, and take longer than loops can do something else.
+  // The second compare of a slab is masked by the first, which saves an `and` of masks. One chain
+  // of all compares would save more of them, but its latency is more than loops can hide.
   const auto slab = [&](int s) {
     const __mmask16 begins =
         _mm512_cmp_ps_mask(v.low[s].part[0], _mm512_set1_ps(high[s]), _CMP_LE_OQ);
@@ -70,9 +71,9 @@ template <int Slabs>
 
 #if !defined(WINNOW_ISA_IS_neon64)
 
-/// Four floats of each box of a register's lanes on their way to being transposed: each 128 bits of
-/// row i hold a box of lane i, i + 4, i + 8 and i + 12, so that shuffles within 128 bits leave the
-/// lanes in order.
+/// Four floats of each box, partly transposed, for the lanes of a register. Each 128 bits of row i
+/// hold a box of lane i, i + 4, i + 8 and i + 12, so that shuffles within 128 bits leave the lanes
+/// in order.
 struct BoxQuads {
 #if defined(WINNOW_ISA_IS_avx512)
   using Row = __m512;
@@ -148,9 +149,9 @@ struct BoxQuads {
 
 #endif
 
-/// Boxes that lie one after another in memory, each at an address of its own: lane l of the result
-/// is the box of six floats (min xyz, max xyz) at box(l). They are loaded whole and
-/// transposed in registers, which takes a quarter of the instructions that floats one by one take.
+/// Loads boxes that are contiguous in memory, each at its own address: lane l of the result is the
+/// box of six floats (min xyz, max xyz) at box(l). Boxes are loaded whole and transposed in
+/// registers, which takes fewer instructions than loading single floats.
 template <typename Box>
 [[gnu::always_inline]] inline Box16 load_boxes(Box&& box) {
   Box16 r;
@@ -165,7 +166,7 @@ template <typename Box>
     r.high[s] = Floats::load(stage[3 + s]);
   }
 #else
-  // Floats 0..3 and 2..5 of a box: nothing behind the last box is read.
+  // Loads floats 0..3 and 2..5 of each box, and so nothing behind the last box.
   for (int part = 0; part < Floats::kParts; ++part) {
     const BoxQuads head(box, part * Floats::kPartLanes, 0);
     const BoxQuads rest(box, part * Floats::kPartLanes, 2);

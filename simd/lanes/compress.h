@@ -1,8 +1,8 @@
 #pragma once
 
-// Indices from masks, and lanes of two interleaved. The set lanes are packed to the front. Every
-// store writes whole registers, so the destination needs room for 16 elements from where it starts,
-// whatever the mask.
+// Compaction of lanes by a mask, and interleaving of two lane values. The set lanes are packed to
+// the front. Every store writes whole registers: the destination needs room for 16 elements from
+// where it starts, whatever the mask. Queries and pair searches write their results with it.
 
 #include "simd/lanes/lanes.h"
 
@@ -10,7 +10,7 @@ namespace winnow::WINNOW_ISA_NAME {
 
 #if defined(WINNOW_ISA_IS_avx2)
 
-/// For each mask of 8 lanes the source lane of each packed lane: 2 KB.
+/// Source lane of each packed lane, for each mask of 8 lanes: 2 KB.
 struct Permutations8 {
   std::uint8_t lane[256][8];
   constexpr Permutations8() : lane() {
@@ -31,7 +31,7 @@ inline __m256i pack8(__m256i v, unsigned m) {
 
 #elif !defined(WINNOW_ISA_IS_avx512)
 
-/// For each mask of 4 lanes the byte shuffle that packs them.
+/// Byte shuffle that packs the set lanes, for each mask of 4 lanes.
 struct Shuffles4 {
   alignas(16) std::uint8_t byte[16][16];
   constexpr Shuffles4() : byte() {
@@ -70,9 +70,9 @@ inline void interleave4(Uints::Part a, Uints::Part b, std::uint32_t* out) {
 
 #if defined(WINNOW_ISA_IS_avx512)
 
-/// The set lanes of `v` in front, zeros behind them. They are merged with a zero that compilers
-/// must make anew each time: on AMD's cores the form that writes zeros itself waits for what its
-/// target held, and loops run at its latency.
+/// Returns the set lanes of `v` in front, zeros behind them. The lanes are merged into a zero that
+/// the compiler must create anew each time: on AMD's cores the zeroing form of the instruction
+/// depends on the old value of its target, and loops would run at its latency.
 inline __m512i pack16(Mask16 mask, __m512i v) {
   __m512i zero = _mm512_setzero_si512();
   asm("" : "+v"(zero));
@@ -81,7 +81,7 @@ inline __m512i pack16(Mask16 mask, __m512i v) {
 
 #endif
 
-/// Writes the set lanes of `v` to `out`, in order; returns how many. Room for 16 is needed.
+/// Writes the set lanes of `v` to `out`, in order, and returns their number. Needs room for 16.
 inline unsigned compress_store(Mask16 mask, const Uints& v, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
   _mm512_storeu_si512(out, pack16(mask, v.part[0]));
@@ -100,7 +100,7 @@ inline unsigned compress_store(Mask16 mask, const Uints& v, std::uint32_t* out) 
   return count(mask);
 }
 
-/// The same for floats.
+/// As above, for floats.
 inline unsigned compress_store(Mask16 mask, const Floats& v, float* out) {
 #if defined(WINNOW_ISA_IS_avx512)
   _mm512_storeu_si512(out, pack16(mask, _mm512_castps_si512(v.part[0])));
@@ -125,8 +125,8 @@ inline unsigned compress_store(Mask16 mask, const Floats& v, float* out) {
   return count(mask);
 }
 
-/// Writes (q, lane) for the set lanes of `v` as consecutive pairs, returns how many. `Sorted` puts
-/// the smaller of the two first; otherwise q comes first. Room for 16 pairs is needed.
+/// Writes (q, lane) for the set lanes of `v` as consecutive pairs, and returns their number.
+/// `Sorted` puts the smaller of the two first; otherwise q comes first. Needs room for 16 pairs.
 template <bool Sorted>
 inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -136,7 +136,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
   const __m512i b = Sorted ? _mm512_max_epu32(query, packed) : packed;
   const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   _mm512_storeu_si512(out, _mm512_permutex2var_epi32(a, low, b));
-  // Hits are mostly few: a store that is left out is worth the rare wrong guess.
+  // Usually few lanes are set: leaving out a store outweighs a rare misprediction.
   if (__builtin_expect(count(mask) > 8, 0) != 0) {
     const __m512i high =
         _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
@@ -172,8 +172,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
   return count(mask);
 }
 
-/// Writes low + 2^32 high for the set lanes, whose numbers are whole and below 2^24; room for 16 is
-/// needed.
+/// Writes low + 2^32 high for the set lanes, which must be integers below 2^24. Needs room for 16.
 [[gnu::always_inline]] inline void compress_words(Mask16 mask, const Floats& low,
                                                   const Floats& high, std::uint64_t* out) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -197,7 +196,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
 #endif
 }
 
-/// a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
+/// Returns a0 b0 a1 b1 ... of eight lanes, from lane 0 or from lane 8.
 template <int From>
 [[gnu::always_inline]] inline Floats interleave(const Floats& a, const Floats& b) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -216,7 +215,7 @@ template <int From>
   return Floats::load(to);
 #endif
 }
-/// The same of the bits of two masks of eight lanes.
+/// As above, for the bits of two masks of eight lanes.
 [[gnu::always_inline]] inline Mask16 interleave_bits(Mask16 a, Mask16 b) {
   const auto spread = [](Mask16 m) {
     m = (m | m << 4U) & 0x0F0FU;

@@ -1,16 +1,16 @@
 #pragma once
 
-// One triangle in lanes: a number of each corner, in their order, and the first one's again.
+// One triangle in lanes: one number per corner, in order, and the number of the first corner again.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Lanes 0 to 3 are of corners 0, 1, 2 and 0; others are zero.
+/// Lanes 0 to 3 belong to corners 0, 1, 2 and 0; other lanes are zero.
 using CornerDoubles = Lanes<double, (4 + OneDouble::kPartLanes - 1) / OneDouble::kPartLanes>;
 inline constexpr Mask16 kThreeCorners = 7U;
 
-/// The same in double of x, y and z of three points; one float behind each is read.
+/// Loads x, y and z of three points as doubles. Also reads one float behind each point.
 [[gnu::always_inline]] inline void load_points(const float* a, const float* b, const float* c,
                                                CornerDoubles (&point)[3]) {
 #if defined(WINNOW_ISA_IS_neon64)
@@ -42,13 +42,13 @@ inline constexpr Mask16 kThreeCorners = 7U;
 #endif
 }
 
-/// Of the three corners by themselves.
+/// Returns three numbers, one per corner, as lanes.
 [[gnu::always_inline]] inline CornerDoubles join_corners(double a, double b, double c) {
   alignas(64) const double corner[CornerDoubles::kCount] = {a, b, c, a};
   return CornerDoubles::load(corner);
 }
 
-/// Each lane's number goes to the corner before.
+/// Moves the number of each corner to the corner before it.
 [[gnu::always_inline]] inline CornerDoubles of_next(const CornerDoubles& v) {
   CornerDoubles r;
 #if defined(WINNOW_ISA_IS_avx512)

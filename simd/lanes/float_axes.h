@@ -1,13 +1,13 @@
 #pragma once
 
-// One vector of three dimensions in four floats of one register, on any instruction set: for a
-// vector that stands alone, which wider registers would only make wait longer.
+// One three-dimensional vector in four floats of a 128-bit register, on any instruction set. It is
+// for single vectors, for which a wider register would only add latency.
 
 #include <cstdint>
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Lanes 0 to 2 are the axes; operators are those of lanes.
+/// Lanes 0 to 2 are x, y and z; operators work lane by lane.
 using FloatAxes = float __attribute__((vector_size(16)));
 using FloatAxesBits = std::int32_t __attribute__((vector_size(16)));
 
@@ -17,7 +17,7 @@ using FloatAxesBits = std::int32_t __attribute__((vector_size(16)));
 [[gnu::always_inline]] inline FloatAxes spread_axes(float value) {
   return FloatAxes{value, value, value, value};
 }
-/// Four numbers are read, or written.
+/// Reads or writes four floats.
 [[gnu::always_inline]] inline FloatAxes load_axes(const float* p) {
   FloatAxes v;
   __builtin_memcpy(&v, p, sizeof v);
@@ -35,16 +35,16 @@ using FloatAxesBits = std::int32_t __attribute__((vector_size(16)));
 [[gnu::always_inline]] inline FloatAxes absolute(FloatAxes v) {
   return from_bits(bits_of(v) & ~bits_of(spread_axes(-0.0F)));
 }
-/// With the signs of others; none of its own is set.
+/// Returns `size` with the signs of `of`; the signs of `size` must be clear.
 [[gnu::always_inline]] inline FloatAxes signed_as(FloatAxes size, FloatAxes of) {
   return from_bits(bits_of(size) | (bits_of(of) & bits_of(spread_axes(-0.0F))));
 }
-/// The lesser of both, b where a is NaN.
+/// Lane-wise minimum; b if either is NaN.
 [[gnu::always_inline]] inline FloatAxes lesser_axes(FloatAxes a, FloatAxes b) {
   const FloatAxesBits mask = a < b;
   return from_bits((mask & bits_of(a)) | (~mask & bits_of(b)));
 }
-/// Whether the axes are all at most the limit.
+/// Returns true if x, y and z are at most the limit.
 [[gnu::always_inline]] inline bool are_all_below(FloatAxes v, float limit) {
   return v[0] <= limit && v[1] <= limit && v[2] <= limit;
 }

@@ -1,15 +1,15 @@
 #pragma once
 
-// Sixty-four bytes of one type of number as one value with operators: 16 floats, 16 unsigned or 8
-// doubles on any instruction set, for kernel files only. One register on AVX-512, two on AVX2, four
-// on SSE4.2 and NEON: since a block is 16 rows everywhere, kernels visit and report in the same
-// order on every instruction set, and one template of a kernel serves both precisions. Every
-// operation is rounded as IEEE 754 says and none is fused (but for multiply_add), so results are
-// the same on every instruction set.
+// Lanes<T>: sixty-four bytes of one number type as one value with operators: 16 floats, 16 unsigned
+// or 8 doubles on any instruction set. For kernel files only. It is one register on AVX-512, two on
+// AVX2, four on SSE4.2 and NEON. A block is 16 rows everywhere, so kernels visit rows and write
+// results in the same order on every instruction set, and one template of a kernel serves both
+// precisions. Every operation is rounded by IEEE 754 and none is fused (except multiply_add), so
+// results are the same on every instruction set.
 //
-// The headers of this folder are the only ones that spell xsimd (8.1 to 14) and intrinsics. xsimd
-// 8.1 has no bit mask of a batch_bool, no compress and no reduction by min or max: those are
-// spelled here per instruction set.
+// Only the headers of this folder use xsimd (8.1 to 14) and intrinsics. xsimd 8.1 has no bit mask
+// of a batch_bool, no compress and no reduction by min or max: they are written here per
+// instruction set.
 
 #ifndef WINNOW_ISA_NAME
 #error "lanes.h is for *.kernel.cpp files, which the build compiles once per instruction set"
@@ -27,27 +27,28 @@ inline constexpr int kLanes = 16;
 /// One bit per lane; lane 0 is bit 0.
 using Mask16 = std::uint32_t;
 
-/// The lanes of a whole block.
+/// All lanes of a block.
 inline constexpr Mask16 kAllRows = 0xFFFFU;
 
-/// Number of set bits.
+/// Returns the number of set bits.
 inline unsigned count(Mask16 mask) {
   return static_cast<unsigned>(__builtin_popcount(mask));
 }
-/// Index of the lowest set bit; `mask` is not 0.
+/// Returns the index of the lowest set bit; `mask` must not be 0.
 inline unsigned first(Mask16 mask) {
   return static_cast<unsigned>(__builtin_ctz(mask));
 }
-/// The lowest n lanes, n <= 16.
+/// Returns the lowest n lanes, n <= 16.
 inline constexpr Mask16 lanes_below(unsigned n) {
   return (1U << n) - 1U;
 }
 
-/// Registers of sixty-four bytes of T.
+/// Number of registers for sixty-four bytes of T.
 template <typename T>
 inline constexpr int kPartsOf = static_cast<int>(64 / sizeof(T) / xsimd::batch<T>::size);
 
-/// A truth value per lane of Lanes<T>, as registers hold them; `bits` makes a mask of it.
+/// A truth value per lane of Lanes<T>, in the representation of the registers; `bits` converts it
+/// to a mask.
 template <typename T, int Parts = kPartsOf<T>>
 struct LaneMask {
   using Part = xsimd::batch_bool<T>;
@@ -72,8 +73,8 @@ struct LaneMask {
   }
 };
 
-// Of floats xsimd 8.1 has on NEON alone what Newton's method finds: it is not rounded as IEEE 754
-// says, and the root of infinity is NaN.
+// For floats on NEON, xsimd 8.1 divides and takes roots by Newton's method, which is not rounded by
+// IEEE 754 and makes the root of infinity NaN. Hence these use the instructions.
 template <typename Part>
 [[gnu::always_inline]] inline Part quotient(const Part& a, const Part& b) {
 #if defined(WINNOW_ISA_IS_neon64)
@@ -89,7 +90,8 @@ template <typename Part>
   return xsimd::sqrt(a);
 }
 
-/// With one part, it is a register of any instruction set: for numbers that stand alone.
+/// `Parts` registers of T. With one part it is a single register, for computations that do not fill
+/// 64 bytes.
 template <typename T, int Parts = kPartsOf<T>>
 struct Lanes {
   using Part = xsimd::batch<T>;
@@ -101,12 +103,11 @@ struct Lanes {
   Part part[kParts];
 
   Lanes() = default;
-  /// The same number in every lane.
   [[gnu::always_inline]] Lanes(T value) {  // NOLINT(google-explicit-constructor)
     for (int i = 0; i < kParts; ++i) part[i] = Part(value);
   }
 
-  /// `p` is 64-byte aligned.
+  /// `p` must be 64-byte aligned.
   [[gnu::always_inline]] static Lanes load(const T* p) {
     Lanes r;
     for (int i = 0; i < kParts; ++i) r.part[i] = Part::load_aligned(p + i * kPartLanes);
@@ -117,7 +118,7 @@ struct Lanes {
     for (int i = 0; i < kParts; ++i) r.part[i] = Part::load_unaligned(p + i * kPartLanes);
     return r;
   }
-  /// `p` is 64-byte aligned.
+  /// `p` must be 64-byte aligned.
   [[gnu::always_inline]] void store(T* p) const {
     for (int i = 0; i < kParts; ++i) part[i].store_aligned(p + i * kPartLanes);
   }
@@ -137,7 +138,7 @@ struct Lanes {
   WINNOW_LANES_OPERATOR(+)
   WINNOW_LANES_OPERATOR(-)
   WINNOW_LANES_OPERATOR(*)
-  // Of the bits that numbers are made of.
+  // Bitwise.
   WINNOW_LANES_OPERATOR(&)
   WINNOW_LANES_OPERATOR(|)
 #undef WINNOW_LANES_OPERATOR
@@ -151,12 +152,12 @@ struct Lanes {
   }
   [[gnu::always_inline]] friend Lanes operator-(const Lanes& a) {
     Lanes r;
-    // What xsimd makes of -0.0 depends on the instruction set.
+    // xsimd's own negation of 0 depends on the instruction set.
     for (int i = 0; i < kParts; ++i) r.part[i] = Part(T(-0.0)) - a.part[i];
     return r;
   }
 
-// False where either is NaN.
+// False if either lane is NaN.
 #define WINNOW_LANES_COMPARE(op)                                                   \
   [[gnu::always_inline]] friend Mask operator op(const Lanes& a, const Lanes& b) { \
     Mask r;                                                                        \
@@ -170,7 +171,7 @@ struct Lanes {
   WINNOW_LANES_COMPARE(==)
 #undef WINNOW_LANES_COMPARE
 
-  /// a where the mask holds, b elsewhere.
+  /// Returns a in the lanes of the mask, b in the others.
   [[gnu::always_inline]] friend Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) {
     Lanes r;
     for (int i = 0; i < kParts; ++i) {
@@ -178,7 +179,7 @@ struct Lanes {
     }
     return r;
   }
-  /// Lane-wise smaller and larger; no lane may be NaN.
+  /// Lane-wise minimum and maximum; no lane may be NaN.
   [[gnu::always_inline]] friend Lanes min(const Lanes& a, const Lanes& b) {
     Lanes r;
     for (int i = 0; i < kParts; ++i) r.part[i] = xsimd::min(a.part[i], b.part[i]);
@@ -254,7 +255,7 @@ inline Mask16 bits(xsimd::batch_bool<double> b) {
 #endif
 }
 
-/// A mask of the lanes that hold.
+/// Converts to a mask, one bit per lane.
 template <typename T, int Parts>
 [[gnu::always_inline]] inline Mask16 bits(const LaneMask<T, Parts>& mask) {
   Mask16 r = 0;
@@ -264,19 +265,19 @@ template <typename T, int Parts>
   return r;
 }
 
-/// v where the mask holds, infinity elsewhere.
+/// Returns v in the lanes of the mask, infinity in the others.
 [[gnu::always_inline]] inline Floats or_infinity(const LaneMask<float>& mask, const Floats& v) {
   return select(mask, v, Floats(__builtin_inff()));
 }
 
-/// -1 where a is below zero, 1 elsewhere.
+/// Returns -1 in lanes below zero, 1 in the others.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> sign_or_one(const Lanes<T>& a) {
   return select(a < T(0), Lanes<T>(T(-1)), Lanes<T>(T(1)));
 }
 
-/// a * b + c, rounded once or twice as the instruction set has it: for bounds alone, whose callers
-/// allow for either.
+/// Computes a * b + c, rounded once or twice depending on the instruction set: only for bounds
+/// whose callers allow for either.
 inline Floats multiply_add(const Floats& a, const Floats& b, const Floats& c) {
   Floats r;
   for (int i = 0; i < Floats::kParts; ++i) {
@@ -293,7 +294,7 @@ inline Floats multiply_add(const Floats& a, const Floats& b, const Floats& c) {
   return r;
 }
 
-/// base, base + 1, ..., base + 15.
+/// Returns base, base + 1, ..., base + 15.
 inline Uints count_from(std::uint32_t base) {
   alignas(64) static constexpr std::uint32_t kSteps[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                8, 9, 10, 11, 12, 13, 14, 15};
@@ -303,7 +304,7 @@ inline Uints count_from(std::uint32_t base) {
   }
   return r;
 }
-/// Smallest lane; no NaN.
+/// Returns the smallest lane; no lane may be NaN.
 inline float reduce_min(const Floats& v) {
   Floats::Part m = v.part[0];
   for (int i = 1; i < Floats::kParts; ++i) m = xsimd::min(m, v.part[i]);
@@ -324,7 +325,7 @@ inline float reduce_min(const Floats& v) {
 #endif
 }
 
-/// Largest lane; no NaN.
+/// Returns the largest lane; no lane may be NaN.
 inline float reduce_max(const Floats& v) {
   Floats::Part m = v.part[0];
   for (int i = 1; i < Floats::kParts; ++i) m = xsimd::max(m, v.part[i]);
@@ -345,7 +346,7 @@ inline float reduce_max(const Floats& v) {
 #endif
 }
 
-/// Eight lanes rounded to the nearest float, in the first parts of Floats.
+/// Rounds eight lanes to the nearest floats, and writes them to the first parts of a Floats.
 [[gnu::always_inline]] inline void round_to_single(const Doubles& v, Floats::Part* part) {
 #if defined(WINNOW_ISA_IS_avx512)
   part[0] = _mm512_castps256_ps512(_mm512_cvtpd_ps(v.part[0]));
@@ -360,7 +361,7 @@ inline float reduce_max(const Floats& v) {
 #endif
 }
 
-/// Lanes rounded to the nearest float: `low` becomes lanes 0 to 7.
+/// Rounds lanes to the nearest floats; `low` becomes lanes 0 to 7.
 [[gnu::always_inline]] inline Floats to_single(const Doubles& low, const Doubles& high) {
   Floats r;
 #if defined(WINNOW_ISA_IS_avx512)
@@ -375,7 +376,7 @@ inline float reduce_max(const Floats& v) {
   return r;
 }
 
-/// The same of eight lanes; lanes 8 to 15 are unspecified.
+/// As above, for eight lanes; lanes 8 to 15 are unspecified.
 [[gnu::always_inline]] inline Floats to_single(const Doubles& v) {
 #if defined(WINNOW_ISA_IS_avx512)
   Floats r;
@@ -386,7 +387,7 @@ inline float reduce_max(const Floats& v) {
 #endif
 }
 #if !defined(WINNOW_ISA_IS_avx512)
-/// The same of one register.
+/// As above, for one register.
 [[gnu::always_inline]] inline Lanes<float, 1> to_single(const OneDouble& v) {
   Lanes<float, 1> r;
 #if defined(WINNOW_ISA_IS_avx2)
@@ -400,7 +401,7 @@ inline float reduce_max(const Floats& v) {
 }
 #endif
 
-/// Lanes 0 to 7, or 8 to 15, in double.
+/// Converts lanes 0 to 7 (Half = 0) or 8 to 15 (Half = 1) to double.
 template <int Half>
 [[gnu::always_inline]] inline Doubles to_double(const Floats& v) {
   Doubles r;

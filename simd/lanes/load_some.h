@@ -6,8 +6,8 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Sixteen numbers, of which `left` are there: what lies behind them may be another thread's. The
-/// others are zero.
+/// Loads sixteen numbers, of which the first `left` exist; the others are zero. Memory behind them
+/// is not read, because other threads may write to it.
 template <typename T>
 [[nodiscard]] Lanes<T> load_some(const T* p, std::size_t left) {
   if (left >= static_cast<std::size_t>(kLanes)) return Lanes<T>::load_unaligned(p);

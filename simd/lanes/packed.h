@@ -1,12 +1,12 @@
 #pragma once
 
-// Points of which each takes four bytes: ten bits for each coordinate, the first one's the lowest.
+// Points of four bytes each: ten bits per coordinate, x in the lowest.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// That coordinate of sixteen points; `p` is 64-byte aligned.
+/// Returns coordinate `axis` of sixteen points; `p` must be 64-byte aligned.
 [[gnu::always_inline]] inline Floats load_packed(const std::uint32_t* p, std::uint32_t axis) {
   const auto shift = static_cast<int>(10U * axis);
   Floats r;

@@ -1,12 +1,12 @@
 #pragma once
 
-// Lanes chosen from sixteen or 32 others by numbers of a byte each.
+// Permutation of lanes: selects sixteen lanes from 16 or 32 others by indices of a byte each.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Sixteen numbers, each below 16, or 32.
+/// Sixteen lane indices, each below 16, or below 32 for a selection from two blocks.
 class LanePlaces {
  public:
   [[gnu::always_inline]] explicit LanePlaces(const std::uint8_t* p) {
@@ -22,7 +22,7 @@ class LanePlaces {
 #endif
   }
 
-  /// Lane i is lane p[i] of `from`.
+  /// Returns lanes in which lane i is lane p[i] of `from`.
   [[nodiscard, gnu::always_inline]] Floats pick(const Floats (&from)[1]) const {
 #if defined(WINNOW_ISA_IS_avx512)
     Floats r;
@@ -34,7 +34,7 @@ class LanePlaces {
     return pick_staged(from);
 #endif
   }
-  /// Those of from[1] follow those of from[0].
+  /// As above; indices from 16 on select from from[1].
   [[nodiscard, gnu::always_inline]] Floats pick(const Floats (&from)[2]) const {
 #if defined(WINNOW_ISA_IS_avx512)
     Floats r;
@@ -55,13 +55,13 @@ class LanePlaces {
 #if defined(WINNOW_ISA_IS_avx512)
   __m512i place_;
 #elif defined(WINNOW_ISA_IS_avx2)
-  /// `set` where a bit of the number is.
+  /// Returns `set` in lanes whose index has this bit, `clear` in the others.
   template <int Bit>
   [[nodiscard, gnu::always_inline]] __m256 by_bit(int i, __m256 clear, __m256 set) const {
     return _mm256_blendv_ps(clear, set,
                             _mm256_castsi256_ps(_mm256_slli_epi32(place_[i], 31 - Bit)));
   }
-  /// By the lowest four bits of each number.
+  /// Selects by the lowest four bits of each index.
   [[nodiscard, gnu::always_inline]] Floats pick_any(const Floats& from) const {
     Floats r;
     for (int i = 0; i < 2; ++i) {
@@ -86,7 +86,7 @@ class LanePlaces {
 #endif
 };
 
-/// Whether all of 48 numbers are below a power of two.
+/// Returns true if all of 48 numbers are below `Limit`, a power of two.
 template <unsigned Limit>
 [[gnu::always_inline]] inline bool are_below(const std::uint8_t* p) {
 #if defined(WINNOW_ISA_IS_neon64)

@@ -1,13 +1,13 @@
 #pragma once
 
-// Minima and maxima of positive floats by their bits, which as whole numbers have the same order:
-// they take one cycle where those of floats take four.
+// Minima and maxima of positive floats by integer instructions: the bits of positive floats have
+// the order of the floats, and integer instructions have a lower latency.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The larger of two lanes of which one at least is positive; no NaN.
+/// Lane-wise maximum; at least one of two lanes must be positive, none NaN.
 [[gnu::always_inline]] inline Floats larger_positive(const Floats& a, const Floats& b) {
   Floats r;
   for (int i = 0; i < Floats::kParts; ++i) {
@@ -28,7 +28,7 @@ namespace winnow::WINNOW_ISA_NAME {
   return r;
 }
 
-/// The smaller of two lanes if both are positive, else one that is not; no NaN.
+/// Lane-wise minimum if both lanes are positive, otherwise a lane that is not; none may be NaN.
 [[gnu::always_inline]] inline Floats smaller_positive(const Floats& a, const Floats& b) {
   Floats r;
   for (int i = 0; i < Floats::kParts; ++i) {
@@ -49,7 +49,7 @@ namespace winnow::WINNOW_ISA_NAME {
   return r;
 }
 
-/// The bits of the smallest lane of those that are all positive.
+/// Returns the bits of the smallest lane; all lanes must be positive.
 [[gnu::always_inline]] inline std::uint32_t reduce_min_positive(const Floats& v) {
 #if defined(WINNOW_ISA_IS_avx512)
   return static_cast<std::uint32_t>(_mm512_reduce_min_epi32(_mm512_castps_si512(v.part[0])));

@@ -1,15 +1,15 @@
 #pragma once
 
-// Lanes from elsewhere than from neighbours of their type in memory: from 16 bits, from rows of
-// doubles that each lie at an address of their own, and sixteen reductions at once. Rows are loaded
-// whole and transposed in registers: gather instructions take several times as long, and loads of
-// what scalars have just staged wait for the stores.
+// Loads of lanes that are not contiguous numbers of their type in memory: numbers of 16 bits, and
+// rows of doubles at separate addresses; also sixteen reductions at once. Rows are loaded whole and
+// transposed in registers. This avoids gather instructions, and vector loads of numbers that were
+// just stored one by one, which stall on store forwarding.
 
 #include "simd/lanes/lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Sixteen numbers of 16 bits as floats, which hold them exactly.
+/// Loads sixteen numbers of 16 bits as floats, which represent them exactly.
 [[gnu::always_inline]] inline Floats load_short(const std::uint16_t* p) {
   Floats r;
 #if defined(WINNOW_ISA_IS_avx512)
@@ -33,9 +33,9 @@ namespace winnow::WINNOW_ISA_NAME {
 
 #if defined(WINNOW_ISA_IS_avx512)
 
-/// Lane i is the smallest (largest) of the floats [16 i, 16 i + 16) of 256 at p, which is 64-byte
-/// aligned: a transposition that halves by min (max) at every step, a third of the work of sixteen
-/// reductions.
+/// Returns the smallest (largest) of the floats [16 i, 16 i + 16) of 256 in lane i; `p` must be
+/// 64-byte aligned. It is a transposition that halves the data by min (max) at every step, which
+/// takes fewer instructions than sixteen reductions.
 template <typename Pick>
 inline Floats reduce_rows(const float* p, Pick&& pick) {
   __m512 quad[4];
@@ -115,7 +115,7 @@ inline Floats reduce_max_rows(const float* p) {
 [[gnu::always_inline]] inline __m512d two_rows(const double* low, const double* high) {
   return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
 }
-/// From rows 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+/// row[i] holds two of eight rows: 0 and 2, 1 and 3, 4 and 6, 5 and 7.
 [[gnu::always_inline]] inline void transpose_rows(const __m512d (&row)[4], Doubles (&out)[4]) {
   const __m512d even_low = _mm512_unpacklo_pd(row[0], row[1]);
   const __m512d even_high = _mm512_unpacklo_pd(row[2], row[3]);
@@ -144,7 +144,7 @@ inline constexpr int kRowOrder[4] = {0, 1, 4, 5};
 
 #endif
 
-/// Lane l of out[k] is row(l)[k] for k < 4.
+/// Loads row(l)[k] into lane l of out[k], for k < 4.
 template <typename Row>
 [[gnu::always_inline]] inline void load_rows4(Row&& row, Doubles (&out)[4]) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -167,7 +167,7 @@ template <typename Row>
 #endif
 }
 
-/// Lane l of out[k] is row(l)[k] - base(l)[k] for k < 4.
+/// Computes row(l)[k] - base(l)[k] in lane l of out[k], for k < 4.
 template <typename Row, typename Base>
 [[gnu::always_inline]] inline void load_differences4(Row&& row, Base&& base, Doubles (&out)[4]) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -195,7 +195,7 @@ template <typename Row, typename Base>
 #endif
 }
 
-/// Lane l of out[k] is row(l)[k] for k < 2.
+/// Loads row(l)[k] into lane l of out[k], for k < 2.
 template <typename Row>
 [[gnu::always_inline]] inline void load_rows2(Row&& row, Doubles (&out)[2]) {
 #if defined(WINNOW_ISA_IS_avx512)
@@ -218,7 +218,7 @@ template <typename Row>
 #endif
 }
 
-/// Lane l is *row(l).
+/// Returns *row(l) in lane l.
 template <typename Row>
 [[gnu::always_inline]] inline Doubles load_rows1(Row&& row) {
   Doubles r;
@@ -232,7 +232,7 @@ template <typename Row>
   return r;
 }
 
-/// out[i] = byte i of `bytes` + base, for i < 8.
+/// Stores out[i] = byte i of `bytes` + base, for i < 8.
 [[gnu::always_inline]] inline void store_bytes(std::uint64_t bytes, std::uint32_t base,
                                                std::uint32_t* out) {
 #if defined(WINNOW_ISA_IS_avx512) || defined(WINNOW_ISA_IS_avx2)

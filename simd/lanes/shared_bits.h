@@ -4,7 +4,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The lanes that have a bit in common with `bits`.
+/// Returns the lanes that have a bit in common with `bits`.
 [[gnu::always_inline]] inline Mask16 sharing(const Uints& v, std::uint32_t bits) {
 #if defined(WINNOW_ISA_IS_avx512)
   return _mm512_test_epi32_mask(v.part[0], _mm512_set1_epi32(static_cast<int>(bits)));

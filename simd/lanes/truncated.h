@@ -4,7 +4,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Whole parts of lanes within [0, 2^31).
+/// Converts lanes within [0, 2^31) to integers, rounding toward 0.
 [[gnu::always_inline]] inline Uints truncated(const Floats& v) {
   Uints r;
   for (int i = 0; i < Floats::kParts; ++i) {

@@ -6,7 +6,6 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// One vector per lane.
 template <typename T, int Parts = kPartsOf<T>>
 struct Vec3 {
   Lanes<T, Parts> x;
@@ -25,7 +24,7 @@ struct Vec3 {
   }
 };
 
-/// The sum of the magnitudes.
+/// Sum of the absolute coordinates (L1 norm).
 template <typename T, int Parts>
 [[gnu::always_inline]] inline Lanes<T, Parts> taxicab(const Vec3<T, Parts>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);

@@ -1,4 +1,4 @@
-// What `winnow advise` says: a ranking, a reason for each rank, and code that makes the winner.
+// Tests of `winnow advise`: the ranking, the reason for each rank, and the code for the winner.
 
 #include "bench/measure/advice.h"
 #include <winnow/partitions/structures.h>
@@ -16,7 +16,7 @@ namespace {
 
 const std::vector<std::string> kThree{"BoundsNSquared", "AutoPartition", "LinearBvh"};
 
-TEST(Advice, ranks_every_partition_and_says_why) {
+TEST(Advice, ranking_lists_every_partition_with_a_reason) {
   const auto source = make_scene("sleepy", 400, 3);
   const Advice advice = advise(*source, kThree, 12, 1);
   EXPECT_TRUE(advice.same_pairs);
@@ -34,7 +34,7 @@ TEST(Advice, ranks_every_partition_and_says_why) {
   }
 }
 
-TEST(Advice, names_the_fastest_partition_but_the_one_that_chooses) {
+TEST(Advice, best_partition_is_never_the_automatic_one) {
   const auto source = make_scene("uniform", 300, 3);
   const Advice advice = advise(*source, kThree, 4, 1);
   EXPECT_NE(advice.best().partition, "AutoPartition");
@@ -46,12 +46,12 @@ TEST(Advice, names_the_fastest_partition_but_the_one_that_chooses) {
   EXPECT_FALSE(advice.reason.empty());
 }
 
-TEST(Advice, is_not_given_where_there_is_no_choice) {
+TEST(Advice, advice_on_a_single_partition_is_refused) {
   const auto source = make_scene("uniform", 30, 3);
   EXPECT_THROW((void)advise(*source, {"AutoPartition"}, 3, 1), std::invalid_argument);
 }
 
-TEST(Advice, stops_where_the_source_does) {
+TEST(Advice, advice_ends_with_the_frames_of_the_source) {
   const auto source = make_scene("uniform", 30, 3);
   EXPECT_EQ(advise(*source, kThree, 1, 1).frames, 1U);
 }

@@ -1,4 +1,5 @@
-// Fast bodies, a blade and a cloth: nothing passes through anything, and what would is counted.
+// Simulations of fast bodies, a blade and a cloth: swept motion lets nothing pass through a
+// barrier, and without sweeps the passages are counted.
 
 #include "bench/simulation/cloth_drop.h"
 #include "bench/simulation/fast_bodies.h"
@@ -21,7 +22,7 @@ std::uint64_t fingerprint_of(const ClothOptions& options) {
   return cloth.fingerprint();
 }
 
-/// On any instruction set and number of threads.
+/// Expects one fingerprint on all instruction sets and numbers of threads.
 template <typename Options>
 void expect_the_same_everywhere(Options options) {
   const std::uint64_t expected = fingerprint_of(options);
@@ -34,7 +35,7 @@ void expect_the_same_everywhere(Options options) {
   EXPECT_EQ(threads.run([&] { return fingerprint_of(options); }), expected);
 }
 
-TEST(Barriers, stop_fast_bodies) {
+TEST(Barriers, fast_bodies_that_are_swept_do_not_pass) {
   for (const FastScene scene : {FastScene::funnel, FastScene::blade}) {
     FastBodies bodies({.scene = scene, .bodies = 12});
     for (int i = 0; i < 60; ++i) bodies.step();
@@ -45,7 +46,7 @@ TEST(Barriers, stop_fast_bodies) {
   }
 }
 
-TEST(Barriers, stop_nothing_that_is_not_swept) {
+TEST(Barriers, bodies_that_are_not_swept_pass) {
   for (const FastScene scene : {FastScene::funnel, FastScene::blade}) {
     FastBodies bodies({.scene = scene, .bodies = 12, .swept = false});
     for (int i = 0; i < 10; ++i) bodies.step();
@@ -61,19 +62,19 @@ TEST(Barriers, stop_nothing_that_is_not_swept) {
   EXPECT_GT(passed, 0U);
 }
 
-TEST(Barriers, hold_a_cloth_that_drops_on_a_ball) {
+TEST(Barriers, cloth_that_drops_on_a_ball_is_held) {
   ClothDrop cloth({.side = 14});
   for (int i = 0; i < 90; ++i) {
     cloth.step();
     EXPECT_EQ(cloth.passed(), 0U) << i;
   }
-  // It hangs down beside the ball.
+  // The cloth hangs down beside the ball.
   EXPECT_LT(cloth.lowest(), -0.1);
   EXPECT_GT(cloth.lowest(), -1.5);
   EXPECT_LT(cloth.stretch(), 0.5);
 }
 
-TEST(Barriers, are_the_same_on_any_instruction_set_and_number_of_threads) {
+TEST(Barriers, results_are_equal_on_all_isas_and_threads) {
   expect_the_same_everywhere(FastBodiesOptions{.scene = FastScene::funnel, .bodies = 8});
   expect_the_same_everywhere(FastBodiesOptions{.scene = FastScene::blade, .bodies = 8});
   expect_the_same_everywhere(ClothOptions{.side = 10});

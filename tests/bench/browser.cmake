@@ -1,12 +1,12 @@
-# Pages in headless Chromium with a software renderer: included by tests of what the tool writes,
-# which say so and end if there is no browser.
+# Opens pages in headless Chromium with a software renderer. Included by tests of pages that the
+# tool writes; without a browser a test prints "skipped" and ends.
 find_program(browser NAMES chromium-headless-shell chromium chromium-browser google-chrome)
 if(NOT browser)
   message("skipped: no Chromium to open pages in (Debian: chromium-headless-shell)")
 endif()
 
-# look(<path of the page> <variable> [<fragment> [<width> <height>]]): the page as it stands once its
-# scripts have run. Fails if it logs a complaint.
+# look(<path of the page> <variable> [<fragment> [<width> <height>]]): returns the page after its
+# scripts have run. Fails if the page logs an error.
 function(look path result)
   set(fragment check)
   set(size 900,600)
@@ -24,7 +24,7 @@ function(look path result)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "${path}: the browser ended with ${status}: ${log}")
   endif()
-  # Of what the page logs only the driver's word on the speed of reading pixels is no complaint.
+  # Every console message counts as an error, except the driver's warning about slow pixel reads.
   string(REGEX MATCHALL "[^\n]*:CONSOLE:[^\n]*" complaints "${log}")
   list(FILTER complaints EXCLUDE REGEX "GL Driver Message \\(OpenGL, Performance")
   if(complaints)

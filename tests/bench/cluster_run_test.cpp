@@ -1,4 +1,4 @@
-// Scenes on virtual ranks: the fingerprints that a partition has, frame by frame.
+// Scenes on virtual ranks have the same fingerprints, frame by frame, as one partition.
 
 #include "bench/measure/cluster_run.h"
 
@@ -33,7 +33,7 @@ ClusterRun run_on_ranks(const std::string& scene, std::size_t objects, std::uint
   return run_cluster(*source, transport, {kFrames, level}, Execution::serial());
 }
 
-/// Of the contacts of one scene, in every frame.
+/// Returns the digests of the contacts of one scene in every frame.
 std::vector<ClusterDigest> digests_of_scene(const std::string& name, std::size_t objects,
                                             ContactLevel level) {
   const auto source = make_scene(name, objects, 1);
@@ -61,7 +61,7 @@ std::vector<ClusterDigest> digests_of_scene(const std::string& name, std::size_t
   return digests;
 }
 
-TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
+TEST(ClusterRuns, ranks_have_the_fingerprints_of_a_partition) {
   const std::size_t objects = test::scaled(1500);
   for (const SceneInfo& scene : scene_infos()) {
     const std::string name(scene.name);
@@ -77,7 +77,7 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition) {
   }
 }
 
-TEST(ClusterRuns, have_the_fingerprints_of_a_partition_on_thousands_of_ranks) {
+TEST(ClusterRuns, thousands_of_ranks_have_partition_fingerprints) {
   const auto partition = run_partition("mixed", 1000);
   const ClusterRun run = run_on_ranks("mixed", 1000, 4096);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
@@ -85,7 +85,7 @@ TEST(ClusterRuns, have_the_fingerprints_of_a_partition_on_thousands_of_ranks) {
   }
 }
 
-TEST(ClusterRuns, have_the_same_digest_on_any_number_of_ranks) {
+TEST(ClusterRuns, digest_does_not_depend_on_the_rank_count) {
   const ClusterRun one = run_on_ranks("clustered", 500, 1);
   const ClusterRun many = run_on_ranks("clustered", 500, 7);
   for (std::size_t f = 0; f < one.frames.size(); ++f) {
@@ -93,7 +93,7 @@ TEST(ClusterRuns, have_the_same_digest_on_any_number_of_ranks) {
   }
 }
 
-TEST(ClusterRuns, of_bodies_have_the_digests_of_one_scene) {
+TEST(ClusterRuns, bodies_on_ranks_have_the_scene_digests) {
   const std::size_t objects = test::scaled(400);
   for (const SceneInfo& info : scene_infos()) {
     const std::string name(info.name);

@@ -27,7 +27,7 @@ class FiguresCheck : public testing::Test {
   std::filesystem::path path_;
 };
 
-TEST_F(FiguresCheck, sets_the_time_of_what_is_chosen_against_the_least) {
+TEST_F(FiguresCheck, chosen_partition_is_compared_with_the_fastest) {
   write(
       "kind,scene,objects,threads,median_ms\n"
       "LinearBvh,uniform,500,1,0.3\n"
@@ -43,7 +43,7 @@ TEST_F(FiguresCheck, sets_the_time_of_what_is_chosen_against_the_least) {
   EXPECT_DOUBLE_EQ(checks[0].times_best, 3.0);
 }
 
-TEST_F(FiguresCheck, refuses_what_is_no_table_of_figures) {
+TEST_F(FiguresCheck, file_without_a_valid_table_is_refused) {
   EXPECT_THROW((void)check_figures(path() + ".none", 8), ArgumentError);
   write("scene,objects,threads,kind\nuniform,500,1,LinearBvh\n");
   EXPECT_THROW((void)check_figures(path(), 8), ArgumentError);

@@ -1,4 +1,5 @@
-// Rows of median, worst and first frames, and of first frames on touched and untouched memory.
+// Result rows for median, worst and first frames, for first frames on touched and untouched memory,
+// for other libraries, threads and filters.
 
 #include "bench/rows/frame_rows.h"
 #include "bench/common/reused_memory.h"
@@ -27,7 +28,7 @@ NamedScene scene_named(const char* name) {
   return named_scenes({name}).front();
 }
 
-TEST(FrameRows, have_a_worst_frame_once_there_are_frames_after_settling) {
+TEST(FrameRows, worst_frame_is_present_only_after_settling) {
   for (const std::size_t frames : {6U, 12U}) {
     Results results;
     declare_frames(results);
@@ -43,7 +44,7 @@ TEST(FrameRows, have_a_worst_frame_once_there_are_frames_after_settling) {
   }
 }
 
-TEST(FrameRows, stand_beside_the_yardstick_where_it_is_there) {
+TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
   Results results;
   declare_every_scene(results);
   add_every_scene(results, {.scene = scene_named("jumps"), .objects = 300, .frames = 12});
@@ -61,7 +62,7 @@ TEST(FrameRows, stand_beside_the_yardstick_where_it_is_there) {
   EXPECT_EQ(value_of(*yardstick, "over_yardstick"), 1.0);
 }
 
-TEST(FrameRows, leave_the_yardstick_out_if_they_shall) {
+TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
   Results results;
   declare_every_scene(results);
   declare_cold(results);
@@ -86,7 +87,7 @@ std::vector<Json> rows_beside_peers(const char* scene, const TimeBounds& bounds)
   return rows;
 }
 
-TEST(BesidePeers, stands_what_each_library_takes_over_the_best_partition) {
+TEST(BesidePeers, library_time_is_divided_by_the_best_partition) {
   if (!has_peers()) GTEST_SKIP() << "built without them";
   for (const char* scene : {"jumps", "growth"}) {
     const auto rows = rows_beside_peers(scene, {});
@@ -100,7 +101,7 @@ TEST(BesidePeers, stands_what_each_library_takes_over_the_best_partition) {
   }
 }
 
-TEST(BesidePeers, a_library_of_one_thread_stands_once) {
+TEST(BesidePeers, library_with_one_thread_has_one_row) {
   for (const Json& row : rows_beside_peers("uniform", {})) {
     const std::string name = row["partition"];
     const bool is_parallel = name == "Embree" || name == "CGAL boxes";
@@ -108,19 +109,19 @@ TEST(BesidePeers, a_library_of_one_thread_stands_once) {
   }
 }
 
-TEST(BesidePeers, who_takes_too_long_is_judged_by_what_it_finished) {
+TEST(BesidePeers, slow_library_is_judged_by_its_finished_frames) {
   for (const Json& row : rows_beside_peers("uniform", {.run = 1e-12})) {
     EXPECT_EQ(row["of"], "median frame");
     EXPECT_EQ(row["frames"], 3);
   }
   for (const Json& row : rows_beside_peers("uniform", {.frame = 1e-12})) {
-    if (row["partition"] != "Bullet sweep") continue;  // the one that gives up
+    if (row["partition"] != "Bullet sweep") continue;  // this library gives up
     EXPECT_EQ(row["of"], "first frame, given up");
     EXPECT_GT(value_of(row, "ms"), 0.0);
   }
 }
 
-TEST(HostRows, stand_for_each_partition_on_both_kinds_of_threads) {
+TEST(HostRows, each_partition_has_a_row_with_both_times) {
   Results results;
   declare_hosts(results);
   add_hosts(results, scene_named("uniform"), 300, 1, {"LinearBvh", "FlatGrid"}, 2, 4);
@@ -132,7 +133,7 @@ TEST(HostRows, stand_for_each_partition_on_both_kinds_of_threads) {
   }
 }
 
-TEST(FilterRows, stand_for_each_setting_and_question_and_find_nothing_wrong) {
+TEST(FilterRows, each_setting_and_query_has_a_faultless_row) {
   Results results;
   declare_filters(results);
   add_filters(results, scene_named("mixed"), 400, 1, {"LinearBvh", "SweepAndPrune"}, 2);
@@ -146,7 +147,7 @@ TEST(FilterRows, stand_for_each_setting_and_question_and_find_nothing_wrong) {
   }
 }
 
-TEST(ColdFrames, are_measured_as_often_as_asked_in_all_memories) {
+TEST(ColdFrames, cold_frames_are_measured_in_all_memories) {
   const auto scene = make_scene("mixed", 500, 1);
   for (const int threads : {1, 2}) {
     const ColdRace race =
@@ -167,7 +168,7 @@ TEST(ColdFrames, are_measured_as_often_as_asked_in_all_memories) {
   }
 }
 
-TEST(ReusedMemory, hands_out_what_was_written_to_until_it_is_given_back) {
+TEST(ReusedMemory, memory_after_a_rewind_is_handed_out_again) {
   ReusedMemory memory(1U << 16U);
   const auto first = static_cast<char*>(memory.allocate(100, 64));
   const auto second = static_cast<char*>(memory.allocate(5000, 64));

@@ -1,4 +1,5 @@
-// `winnow goals`: what an ask says of rows, and that every ask of the file can be read.
+// Tests of `winnow goals`: how a goal is computed from rows, and that the file of goals can be
+// read.
 
 #include "bench/goals/asks.h"
 #include "bench/goals/evaluate.h"
@@ -13,11 +14,11 @@
 namespace winnow::bench {
 namespace {
 
-/// Two kinds at two levels, and another library on one of them.
+/// Declares two kinds at two levels, and another library for one of them.
 void measure_example(const Json& options, Lab& /*lab*/, Measured& measured) {
   if (options.contains("refuse")) throw std::runtime_error("refused");
   measured.absent = options.contains("absent");
-  measured.machine_ms = 46.0;  // twice as slow as where other libraries were timed
+  measured.machine_ms = 46.0;  // twice as slow as the machine of the other libraries
   measured.results.declare(
       {"times", "s", "t", {"kind", "level", "engine"}, {{"ns", "time", "ns"}}});
   const auto add = [&](const char* kind, const char* level, const char* engine, double ns) {
@@ -39,7 +40,7 @@ std::vector<Goal> goals_of(const std::string& ask) {
   return evaluate(asks.at(0), lab);
 }
 
-TEST(Goals, take_the_least_the_most_and_the_sum_of_rows) {
+TEST(Goals, goal_computes_the_least_most_and_sum) {
   const std::string own = R"("of": "times", "where": {"peer": false}}, "at_most": 10)";
   EXPECT_EQ(goals_of(R"("value": {"least": "ns", )" + own).at(0).measured, 2.0);
   EXPECT_EQ(goals_of(R"("value": {"most": "ns", )" + own).at(0).measured, 40.0);
@@ -48,7 +49,7 @@ TEST(Goals, take_the_least_the_most_and_the_sum_of_rows) {
   EXPECT_FALSE(goals_of(R"("value": {"sum": "ns", )" + own).at(0).holds());
 }
 
-TEST(Goals, are_made_for_each_key_and_take_the_worst_of_others) {
+TEST(Goals, goals_by_key_take_the_worst_of_others) {
   const auto goals = goals_of(
       R"("value": {"the": "ns", "of": "times", "where": {"engine": "own", "level": "high"}},
          "over": {"the": "ns", "of": "times", "where": {"engine": "own", "level": "low"}},
@@ -67,7 +68,7 @@ TEST(Goals, are_made_for_each_key_and_take_the_worst_of_others) {
   EXPECT_FALSE(worst[0].holds());
 }
 
-TEST(Goals, take_the_median_of_what_each_key_measures) {
+TEST(Goals, median_is_taken_over_the_values_by_key) {
   const auto goals = goals_of(
       R"("value": {"the": "ns", "of": "times", "where": {"engine": "own", "kind": "box"}},
          "at_most": 30, "median_by": ["level"])");
@@ -76,7 +77,7 @@ TEST(Goals, take_the_median_of_what_each_key_measures) {
   EXPECT_TRUE(goals[0].holds());
 }
 
-TEST(Goals, scale_times_of_elsewhere_by_the_machine) {
+TEST(Goals, times_of_another_machine_are_scaled) {
   const std::string value = R"("value": {"least": "ns", "of": "times"}, "at_most": )";
   EXPECT_EQ(goals_of(value + R"({"existing": 6, "divided_by": 3})").at(0).asked, 4.0);
   EXPECT_EQ(goals_of(value + R"({"least_of": [{"existing": 30},
@@ -91,7 +92,7 @@ TEST(Goals, scale_times_of_elsewhere_by_the_machine) {
             14.0);
 }
 
-TEST(Goals, that_cannot_be_answered_do_not_hold_unless_they_are_optional) {
+TEST(Goals, goal_without_rows_fails_unless_optional) {
   const std::string nobody =
       R"("value": {"the": "ns", "of": "times", "where": {"engine": "FCL"}}, "at_most": 1)";
   ASSERT_EQ(goals_of(nobody).size(), 1U);
@@ -105,7 +106,7 @@ TEST(Goals, that_cannot_be_answered_do_not_hold_unless_they_are_optional) {
   EXPECT_TRUE(evaluate(ask, lab).empty());
 }
 
-TEST(Asks, stand_for_every_combination) {
+TEST(Asks, asks_with_lists_expand_to_all_combinations) {
   const auto asks = parse_asks(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
     "asks": [{"topic": "engine", "each": ["sizes", [{"threads": 1}, {"threads": 2}]],
               "only": {"objects": [1000]}, "what": "{objects} objects, {threads}", "unit": "",
@@ -115,7 +116,7 @@ TEST(Asks, stand_for_every_combination) {
   EXPECT_EQ(asks[1]["measure"]["example"]["objects"], 1000);
 }
 
-TEST(Asks, of_the_file_can_be_read) {
+TEST(Asks, asks_of_the_goals_file_are_read) {
   EXPECT_GT(parse_asks(kGoalsJson).size(), 300U);
   EXPECT_THROW((void)parse_asks(R"({"lists": {}, "asks": [{"topic": "none"}]})"),
                std::runtime_error);

@@ -1,4 +1,4 @@
-// tests/hard_cases/*.json, asked as `winnow query` asks them.
+// Tests the cases of tests/hard_cases/*.json through the interface of `winnow query`.
 
 #include "bench/questions/hard_cases.h"
 #include <winnow/simd/isa.h>
@@ -62,7 +62,7 @@ int count_faults(const Json& questions, NarrowTier tier, bool report) {
 
 class HardCases : public testing::TestWithParam<Path> {};
 
-TEST_P(HardCases, are_right_in_robust_and_reference) {
+TEST_P(HardCases, robust_and_reference_tiers_have_no_faults) {
   const Json cases = read_cases(GetParam());
   for (const Isa isa : available_isas()) {
     const test::IsaScope scope(isa);
@@ -76,8 +76,8 @@ TEST_P(HardCases, are_right_in_robust_and_reference) {
 }
 
 #if WINNOW_HAVE_ORACLE
-/// What was reasoned is true.
-TEST_P(HardCases, agree_with_the_oracle) {
+/// Checks the expected values of the files, which were derived by hand, against the oracle.
+TEST_P(HardCases, expected_values_agree_with_the_oracle) {
   for (const Json& question : read_cases(GetParam())) {
     if (question["expect"].contains("status") || question.contains("ray")) continue;
     ShapePool pool;
@@ -101,7 +101,7 @@ TEST_P(HardCases, agree_with_the_oracle) {
 }
 #endif
 
-TEST(HardCaseFiles, are_compiled_in) {
+TEST(HardCaseFiles, compiled_cases_equal_the_files) {
   std::vector<Json> compiled;
   for (const HardCaseFile& file : hard_case_files()) compiled.push_back(Json::parse(file.json));
   std::vector<Json> read;
@@ -109,7 +109,7 @@ TEST(HardCaseFiles, are_compiled_in) {
   EXPECT_EQ(compiled, read);
 }
 
-TEST(HardCaseVerdicts, tell_by_how_much) {
+TEST(HardCaseVerdicts, verdict_reports_the_size_of_the_error) {
   const Json question = {{"id", 1},
                          {"a", {{"type", "sphere"}, {"radius", 1.0}}},
                          {"b", {{"type", "sphere"}, {"radius", 1.0}}},

@@ -1,4 +1,4 @@
-// Questions about shapes that move, as `winnow query` asks them.
+// Queries about moving shapes, through the interface of `winnow query`.
 
 #include "bench/questions/questions.h"
 
@@ -15,7 +15,7 @@ Json answer_to_one(const char* question) {
   return answers[0];
 }
 
-TEST(ImpactQuestions, are_answered_with_a_time) {
+TEST(ImpactQuestions, moving_shapes_that_touch_get_a_time) {
   const Json hit = answer_to_one(R"({"id": 7,
     "a": {"type": "box", "half": [1, 1, 1]},
     "b": {"type": "sphere", "radius": 0.5, "pose": {"position": [5.5, 0, 0]},
@@ -39,7 +39,7 @@ TEST(ImpactQuestions, are_answered_with_a_time) {
   EXPECT_FALSE(miss.contains("overlap"));
 }
 
-TEST(ImpactQuestions, are_answered_for_composite_shapes) {
+TEST(ImpactQuestions, composite_shapes_get_a_time) {
   const auto time_with = [](const std::string& shape) {
     const Json got = answer_to_one((R"({"a": )" + shape +
                                     R"(, "b": {"type": "sphere", "radius": 0.5,
@@ -80,7 +80,7 @@ TEST(ImpactQuestions, are_answered_for_composite_shapes) {
   }
 }
 
-TEST(ImpactQuestions, that_are_bad_get_a_status) {
+TEST(ImpactQuestions, bad_queries_get_an_error_status) {
   const auto status_with = [](const std::string& end) {
     const Json got = answer_to_one((R"({"a": {"type": "sphere", "radius": 1, "end_pose": )" + end +
                                     R"(}, "b": {"type": "sphere", "radius": 1}})")

@@ -1,4 +1,5 @@
-// Races of impacts: what is right is found right, and what is wrong is counted as what it is.
+// Races of time-of-impact engines: correct answers have no faults, and each wrong answer is counted
+// under its kind of fault.
 
 #include "bench/measure/impact_race.h"
 #include "bench/contenders/winnow_impacts.h"
@@ -10,7 +11,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Says the same of every pair.
+/// Returns one fixed answer for every pair.
 class Stubborn final : public ImpactEngine {
  public:
   explicit Stubborn(const ImpactAnswer& answer) : answer_(answer) {}
@@ -34,7 +35,7 @@ ImpactTiming judged(const MovingPairSet& set, ImpactEngine& engine) {
   return timing;
 }
 
-TEST(ImpactRace, finds_winnow_right_on_motions_of_all_sorts) {
+TEST(ImpactRace, winnow_has_no_faults_on_any_motion) {
   for (const char* kind :
        {"sphere-box", "box-box", "triangle-triangle", "own-own", "cylinder-half_space"}) {
     for (const PairTurn turn : kPairTurns) {
@@ -48,7 +49,7 @@ TEST(ImpactRace, finds_winnow_right_on_motions_of_all_sorts) {
   }
 }
 
-TEST(ImpactRace, counts_what_is_missed_late_and_early) {
+TEST(ImpactRace, missed_late_and_early_answers_are_counted) {
   const MovingPairSet set =
       make_moving_pairs(*find_pair_kind("box-box"), PairTurn::little, {.pairs = kPairs});
   Stubborn blind({false, 1.0});
@@ -61,7 +62,7 @@ TEST(ImpactRace, counts_what_is_missed_late_and_early) {
   EXPECT_EQ(timing.late + timing.missed, 0U);
 }
 
-TEST(ImpactRace, finds_features_that_touch_and_none_that_pass) {
+TEST(ImpactRace, features_that_touch_hit_and_others_miss) {
   for (const FeaturePair kind : kFeaturePairs) {
     for (const FeatureSteps steps : kFeatureSteps) {
       const FeatureTiming timing = measure_features(kind, steps, 500, 1, 3);
@@ -74,7 +75,7 @@ TEST(ImpactRace, finds_features_that_touch_and_none_that_pass) {
   }
 }
 
-TEST(ImpactRace, sweeps_a_heap) {
+TEST(ImpactRace, sweeps_of_a_heap_are_timed) {
   const SweepTiming timing = measure_sweeps({.bodies = 200, .fast = 20, .frames = 2});
   EXPECT_EQ(timing.collide_ms.size(), 2U);
   EXPECT_EQ(timing.sweep_ms.size(), 2U);

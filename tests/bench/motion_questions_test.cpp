@@ -1,4 +1,4 @@
-// Questions of `winnow query` about features in motion.
+// Queries of `winnow query` about features in motion.
 
 #include "bench/questions/questions.h"
 
@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-/// A vertex that falls from 1 to -1 above a face that rests.
+/// A vertex that falls from height 1 to -1 above a face at rest.
 Json falling_vertex() {
   return Json::parse(R"({"id": "fall", "motion": {"kind": "vertex_face",
     "start": [[0.25, 0.25, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0]],
@@ -20,7 +20,7 @@ Json ask(const Json& question) {
   return answer(Json::array({question}), NarrowTier::robust)[0];
 }
 
-TEST(MotionQuestions, get_the_time_of_the_first_touch) {
+TEST(MotionQuestions, query_returns_the_time_of_first_touch) {
   const Json got = ask(falling_vertex());
   EXPECT_EQ(got["id"], "fall");
   EXPECT_EQ(got["status"], "ok");
@@ -36,7 +36,7 @@ TEST(MotionQuestions, get_the_time_of_the_first_touch) {
   EXPECT_EQ(ask(edges)["time"], "inf");
 }
 
-TEST(MotionQuestions, may_ask_for_a_separation) {
+TEST(MotionQuestions, separation_in_the_query_makes_the_time_earlier) {
   Json question = falling_vertex();
   question["min_separation"] = 0.5;
   EXPECT_NEAR(ask(question)["time"].get<double>(), 0.25, 1e-9);
@@ -46,7 +46,7 @@ TEST(MotionQuestions, may_ask_for_a_separation) {
   EXPECT_EQ(ask(question)["status"], "invalid_argument");
 }
 
-TEST(MotionQuestions, take_numbers_in_hexadecimal) {
+TEST(MotionQuestions, hexadecimal_numbers_are_read) {
   const Json plain = ask(falling_vertex());
   Json question = falling_vertex();
   question["motion"]["start"][0] = {"0x1p-2", "+0X.4P+0", "0x1.0p+0"};
@@ -58,7 +58,7 @@ TEST(MotionQuestions, take_numbers_in_hexadecimal) {
   }
 }
 
-TEST(MotionQuestions, that_cannot_be_answered_get_a_status) {
+TEST(MotionQuestions, invalid_queries_get_an_error_status) {
   for (const char* bad : {"nan", "inf", "-inf"}) {
     Json question = falling_vertex();
     question["motion"]["end"][3][1] = bad;

@@ -1,4 +1,4 @@
-// Pairs that the narrow phase is measured on, and what is counted about answers.
+// Pair sets on which the narrow phase is measured, and the error counts of its answers.
 
 #include "bench/contenders/winnow_narrow.h"
 #include "bench/measure/accuracy.h"
@@ -31,7 +31,7 @@ TEST_P(PairSets, half_of_the_pairs_overlap) {
   EXPECT_EQ(std::count(overlap.begin(), overlap.end(), true), kPairs / 2);
 }
 
-TEST_P(PairSets, are_the_same_for_the_same_seed) {
+TEST_P(PairSets, equal_seeds_make_equal_sets) {
   const auto one = make_pair_set(GetParam(), {.pairs = kPairs, .seed = 5, .scattered = true});
   const auto other = make_pair_set(GetParam(), {.pairs = kPairs, .seed = 5, .scattered = true});
   EXPECT_EQ(one->shapes, other->shapes);
@@ -39,7 +39,7 @@ TEST_P(PairSets, are_the_same_for_the_same_seed) {
   EXPECT_EQ(std::memcmp(one->poses.data(), other->poses.data(), 2 * kPairs * sizeof(Pose)), 0);
 }
 
-TEST_P(PairSets, give_every_pair_bodies_of_its_own) {
+TEST_P(PairSets, every_pair_has_two_bodies_of_its_own) {
   const auto set = make_pair_set(GetParam(), {.pairs = kPairs, .scattered = true});
   std::vector<int> used(set->poses.size());
   for (const BodyPair& pair : set->pairs) {
@@ -51,7 +51,7 @@ TEST_P(PairSets, give_every_pair_bodies_of_its_own) {
   EXPECT_EQ(std::count(used.begin(), used.end(), 1), 2 * kPairs);
 }
 
-TEST(MovedPairs, are_the_same_at_any_offset) {
+TEST(MovedPairs, pairs_at_any_offset_are_equal) {
   const PairKind& kind = *find_pair_kind("box-box");
   const auto here = make_pair_set(kind, {.pairs = kPairs, .offset = 0.0});
   const auto far = make_pair_set(kind, {.pairs = kPairs, .offset = 1e12});
@@ -62,7 +62,7 @@ TEST(MovedPairs, are_the_same_at_any_offset) {
   }
 }
 
-TEST(TurnedPairs, stand_as_each_other_but_for_the_angle) {
+TEST(TurnedPairs, orientations_differ_by_the_given_angle) {
   const auto set = make_pair_set(*find_pair_kind("box-box"), {.pairs = kPairs, .angle = 1e-3});
   for (const BodyPair& pair : set->pairs) {
     const double* a = set->poses[pair.a].orientation;
@@ -73,7 +73,7 @@ TEST(TurnedPairs, stand_as_each_other_but_for_the_angle) {
   }
 }
 
-TEST(ThinTriangles, keep_so_much_of_their_height) {
+TEST(ThinTriangles, triangle_height_is_scaled_by_the_thinness) {
   const PairKind& kind = *find_pair_kind("sphere-triangle");
   const auto area = [&](double thinness) {
     const auto set = make_pair_set(kind, {.pairs = 1, .thinness = thinness});
@@ -98,7 +98,7 @@ std::string name_of(const testing::TestParamInfo<PairKind>& kind) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, PairSets, testing::ValuesIn(kinds()), name_of);
 
-/// Says of every pair what it is told to.
+/// Returns one given answer for every pair.
 class Parrot final : public NarrowEngine {
  public:
   explicit Parrot(NarrowAnswer answer) : answer_(answer) {}
@@ -125,7 +125,7 @@ const PairTruth kApart{.known = true,
                        .normal_unique = true,
                        .size = 3.0};
 
-TEST(Accuracy, errors_are_relative_to_sizes_and_distance) {
+TEST(Accuracy, errors_are_relative_to_size_and_distance) {
   const Accuracy accuracy =
       judged({.distance = 1.5, .error_bound = 0.5, .normal = {1.0, 0.0, 0.0}}, kApart);
   EXPECT_EQ(accuracy.all.worst, 0.125);
@@ -144,18 +144,18 @@ TEST(Accuracy, every_fault_is_counted) {
   EXPECT_EQ(accuracy.normals_off, 1U);
 }
 
-TEST(Accuracy, an_answer_without_a_distance_is_missing) {
+TEST(Accuracy, answer_without_a_distance_is_missing) {
   EXPECT_EQ(judged({}, kApart).missing, 1U);
 }
 
-TEST(Accuracy, an_answer_without_a_normal_is_missing_but_its_distance_counts) {
+TEST(Accuracy, answer_without_a_normal_counts_only_its_distance) {
   const Accuracy accuracy = judged({.distance = 1.5}, kApart);
   EXPECT_EQ(accuracy.missing, 1U);
   EXPECT_EQ(accuracy.apart.count, 1U);
   EXPECT_EQ(accuracy.degrees.count, 0U);
 }
 
-TEST(Accuracy, tells_depths_from_distances) {
+TEST(Accuracy, depths_and_distances_are_counted_apart) {
   std::vector<PairError> errors(4);
   for (std::size_t i = 0; i < 3; ++i) errors[i].error = static_cast<double>(i);
   errors[3].overlap = true;
@@ -167,7 +167,7 @@ TEST(Accuracy, tells_depths_from_distances) {
   EXPECT_EQ(accuracy.all.count, 4U);
 }
 
-TEST(NarrowRace, counts_verdicts_that_differ_from_the_first) {
+TEST(NarrowRace, verdicts_that_differ_from_the_first_are_counted) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = kPairs});
   std::vector<NarrowContender> contenders;
   contenders.push_back({std::make_unique<WinnowNarrow>(NarrowTier::robust, 1), 1});

@@ -1,4 +1,4 @@
-// Other libraries and the yardstick find the pairs that the reference sweep finds, and no others.
+// Other libraries and the yardstick find exactly the pairs of the reference sweep.
 
 #include "bench/peers/peers.h"
 #include "bench/common/random.h"
@@ -19,8 +19,8 @@
 namespace winnow::bench {
 namespace {
 
-/// In a frame a share of the boxes moves by at most `step` along each axis; if it is 1, by whole
-/// numbers, so that what touches exactly goes on doing so.
+/// Boxes of which a share moves in each frame, by at most `step` along each axis. If `step` is 1
+/// the moves are whole numbers, so that boxes with a common face continue to touch exactly.
 class MovingBoxes final : public FrameSource {
  public:
   MovingBoxes(std::vector<Aabb> boxes, double step, double share)
@@ -49,7 +49,7 @@ class MovingBoxes final : public FrameSource {
   Random random_{7};
 };
 
-/// There are half as many boxes again in each frame, until all are there.
+/// Boxes whose number grows by one half in each frame, until all are present.
 class GrowingBoxes final : public FrameSource {
  public:
   explicit GrowingBoxes(std::vector<Aabb> boxes) : all_(std::move(boxes), 0.1, 1.0) {}
@@ -76,8 +76,8 @@ std::vector<Aabb> cubes(std::size_t count, float offset = 0.0F) {
   return boxes;
 }
 
-/// Boxes of this edge at the points of a lattice: with edge 1 they share faces, edges and corners
-/// and nothing else. Several times over if `copies` says so.
+/// Returns boxes with this edge at the points of a lattice, `copies` at each point. With edge 1
+/// neighbours touch in faces, edges and corners and overlap nowhere.
 std::vector<Aabb> lattice(int side, float edge, int copies) {
   std::vector<Aabb> boxes;
   for (int i = 0; i < copies * side * side * side; ++i) {
@@ -118,7 +118,7 @@ void expect_same_pairs(const std::string& source_name, std::vector<Contender> co
 
 class Peers : public testing::TestWithParam<const char*> {};
 
-TEST_P(Peers, find_every_pair_once_and_nothing_else) {
+TEST_P(Peers, each_library_finds_every_pair_once) {
   for (const int threads : {1, 2}) {
     std::vector<Contender> contenders;
     for (auto& peer : make_peers(threads)) contenders.push_back({std::move(peer), threads});
@@ -126,7 +126,7 @@ TEST_P(Peers, find_every_pair_once_and_nothing_else) {
   }
 }
 
-TEST_P(Peers, and_the_yardstick_where_it_is_there) {
+TEST_P(Peers, yardstick_finds_every_pair_once) {
   for (const int threads : {1, 2, 3}) {
     auto yardstick = make_yardstick(threads);
     if (yardstick == nullptr) GTEST_SKIP() << "built without it";

@@ -1,4 +1,4 @@
-// What `winnow queries` rests on: everyone finds the same, and it is noticed if not.
+// The races of `winnow queries`: all engines return equal answers, and a difference is noticed.
 
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/partitions.h"
@@ -31,7 +31,7 @@ std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContend
 
 class Race : public testing::TestWithParam<const char*> {};
 
-TEST_P(Race, every_engine_finds_the_same) {
+TEST_P(Race, every_engine_has_the_same_answers) {
   for (const int threads : {1, 2}) {
     std::vector<QueryContender> contenders;
     const std::vector<QueryRun> runs = race_on(GetParam(), contenders, threads);
@@ -40,14 +40,14 @@ TEST_P(Race, every_engine_finds_the_same) {
       EXPECT_TRUE(run.comparison.agree())
           << run.engine << ": " << run.set << ": " << run.comparison.first;
     }
-    // Each set is put to everyone singly, and rays and boxes to the partitions also as a batch.
+    // Each set is put to every engine singly, and to the partitions rays and boxes also in batches.
     EXPECT_GE(runs.size(), all_partitions().size() * (question_set_names().size() + 7));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Race, testing::Values("uniform", "mixed", "pile"));
 
-TEST(Race, finds_as_much_in_a_round_as_it_compared) {
+TEST(Race, timed_round_has_the_hits_that_were_compared) {
   std::vector<QueryContender> contenders;
   const std::vector<QueryRun> runs = race_on("uniform", contenders, 1);
   for (const QueryRun& run : runs) {
@@ -62,7 +62,7 @@ TEST(Race, finds_as_much_in_a_round_as_it_compared) {
   }
 }
 
-/// Two unit boxes in a row and one ray through both, or past them.
+/// Two unit boxes in a row and one ray, which passes through both or misses both.
 class Comparisons : public testing::Test {
  protected:
   static Answers answers(std::initializer_list<Found> found) {
@@ -93,7 +93,7 @@ class Comparisons : public testing::Test {
   QuestionSet set_;
 };
 
-TEST_F(Comparisons, notice_missing_and_false_and_misplaced_hits) {
+TEST_F(Comparisons, missing_false_and_misplaced_hits_are_noticed) {
   ask(Want::all, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}, {1, 3.0F}}).agree());
   EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
@@ -108,7 +108,7 @@ TEST_F(Comparisons, notice_missing_and_false_and_misplaced_hits) {
   EXPECT_FALSE(in_float({}, {{0, 1.0F}}).agree());
 }
 
-TEST_F(Comparisons, notice_a_hit_that_is_not_the_closest) {
+TEST_F(Comparisons, hit_that_is_not_the_closest_is_noticed) {
   ask(Want::closest, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(by_force({{1, 3.0F}}).agree());
@@ -118,12 +118,12 @@ TEST_F(Comparisons, notice_a_hit_that_is_not_the_closest) {
   EXPECT_FALSE(in_float({{0, 1.0F}}, {}).agree());
 }
 
-TEST_F(Comparisons, allow_float_its_rounding_and_partitions_none) {
+TEST_F(Comparisons, rounding_is_allowed_to_float_engines_only) {
   ask(Want::closest, 0.5F);
   const float later = std::nextafter(1.0F, 2.0F);
   EXPECT_TRUE(in_float({{0, 1.0F}}, {{0, later}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}}, {{0, later}}).agree());
-  ask(Want::closest, 1.0F);  // along an edge: a ray computed in float may well miss
+  ask(Want::closest, 1.0F);  // along an edge: a ray that is computed in float may miss
   boxes_[0].max.y() = boxes_[1].max.y() = std::nextafter(1.0F, 2.0F);
   set_.rays[0].direction = {1.0F, 1e-9F, 0.0F};
   const Comparison grazing = in_float({{0, 1.0F}}, {});
@@ -131,7 +131,7 @@ TEST_F(Comparisons, allow_float_its_rounding_and_partitions_none) {
   EXPECT_EQ(grazing.undecided, 1U);
 }
 
-TEST(RayRace, every_engine_answers_alike_singly_and_in_batches) {
+TEST(RayRace, single_rays_and_batches_hit_the_same) {
   for (const char* const mesh : {"terrain", "soup"}) {
     SCOPED_TRACE(mesh);
     const RayMeasurement measured = measure_rays(
@@ -141,7 +141,7 @@ TEST(RayRace, every_engine_answers_alike_singly_and_in_batches) {
     EXPECT_GT(hits, 0U);
     for (const RayTiming& timing : measured.timings) {
       SCOPED_TRACE(timing.engine);
-      if (timing.engine == "Embree fast") continue;  // which misses edges
+      if (timing.engine == "Embree fast") continue;  // this engine misses edges
       EXPECT_EQ(timing.hits, hits);
       EXPECT_EQ(timing.differ, 0U);
     }

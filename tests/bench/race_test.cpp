@@ -1,4 +1,4 @@
-// Races whose time is bounded: who is too slow stops, and the others go on.
+// Races with time bounds: an engine that is too slow stops, and the other engines continue.
 
 #include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
@@ -12,7 +12,8 @@
 namespace winnow::bench {
 namespace {
 
-/// A reference sweep that never comes to the end of a frame from some frame on, unless it gives up.
+/// A reference sweep that finishes a given number of frames and then runs until the time bound
+/// stops it.
 class EndlessSweep final : public Engine {
  public:
   explicit EndlessSweep(std::size_t endless_frame) : left_(endless_frame) {}
@@ -40,7 +41,7 @@ class EndlessSweep final : public Engine {
   ReferenceSweep sweep_;
 };
 
-/// Of the reference sweep and of a contender.
+/// Returns the runs of the reference sweep and of a contender.
 std::vector<Run> runs_beside(std::unique_ptr<Engine> engine, const TimeBounds& bounds) {
   std::vector<Contender> contenders;
   contenders.push_back({std::make_unique<ReferenceSweep>()});
@@ -49,7 +50,7 @@ std::vector<Run> runs_beside(std::unique_ptr<Engine> engine, const TimeBounds& b
   return race(*scene, contenders, {.frames = 12, .bounds = bounds});
 }
 
-TEST(Race, runs_all_frames_where_nothing_is_bounded) {
+TEST(Race, race_without_bounds_runs_all_frames) {
   const auto runs = runs_beside(std::make_unique<ReferenceSweep>(1), {});
   for (const auto& run : runs) {
     EXPECT_EQ(run.frame_ms.size(), 12U);
@@ -58,7 +59,7 @@ TEST(Race, runs_all_frames_where_nothing_is_bounded) {
   EXPECT_TRUE(all_agree(runs));
 }
 
-TEST(Race, begins_no_frame_once_three_after_the_first_took_too_long) {
+TEST(Race, slow_race_stops_after_four_frames) {
   const auto runs = runs_beside(std::make_unique<ReferenceSweep>(1), {.run = 1e-12});
   for (const auto& run : runs) {
     EXPECT_EQ(run.frame_ms.size(), 4U);
@@ -66,7 +67,7 @@ TEST(Race, begins_no_frame_once_three_after_the_first_took_too_long) {
   }
 }
 
-TEST(Race, goes_on_without_who_gives_up_a_frame) {
+TEST(Race, race_continues_without_an_engine_that_quits) {
   for (const std::size_t endless : {0U, 1U, 7U}) {
     const auto runs = runs_beside(std::make_unique<EndlessSweep>(endless), {.frame = 0.01});
     EXPECT_EQ(runs[0].frame_ms.size(), 12U);

@@ -1,4 +1,4 @@
-// Recordings: what is written is what is read, and whatever is not a recording is refused.
+// Recordings of boxes: a written file reads back unchanged, and invalid files are refused.
 
 #include "bench/recordings/recording.h"
 #include "bench/scenes/scene.h"
@@ -25,7 +25,7 @@ class Recordings : public testing::Test {
   Recordings() { std::filesystem::create_directories(folder_); }
   ~Recordings() override { std::filesystem::remove_all(folder_); }
 
-  // A scene of 20 boxes with 3 steps: 4 frames.
+  // Records a scene of 20 boxes and 3 steps, which makes 4 frames.
   std::vector<char> record(const std::string& scene = "uniform") {
     const auto source = make_scene(scene, 20, 7);
     write_recording(path_, *source, "box", 3);
@@ -55,9 +55,9 @@ class Recordings : public testing::Test {
   std::string path_ = (folder_ / "scene.aabbs").string();
 };
 
-TEST_F(Recordings, come_back_frame_by_frame) {
+TEST_F(Recordings, written_recording_reads_back_frame_by_frame) {
   for (const SceneInfo& info : scene_infos()) {
-    if (info.name == "growth") continue;  // the format takes the same objects in every frame
+    if (info.name == "growth") continue;  // the format stores the same objects in every frame
     record(std::string(info.name));
     const Recording recording = read_recording(path_);
     EXPECT_EQ(recording.scene, info.name);
@@ -75,19 +75,19 @@ TEST_F(Recordings, come_back_frame_by_frame) {
   }
 }
 
-TEST_F(Recordings, of_scenes_that_grow_are_not_written) {
+TEST_F(Recordings, scene_that_grows_is_refused) {
   EXPECT_THROW(write_recording(path_, *make_scene("growth", 20, 7), "box", 3), RecordingError);
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
-TEST_F(Recordings, with_one_frame_less_than_the_format_says_are_read) {
+TEST_F(Recordings, recording_that_lacks_one_frame_is_read) {
   std::vector<char> bytes = record();
-  put(bytes, 260, std::int32_t{4});  // 4 steps would make 5 frames
+  put(bytes, 260, std::int32_t{4});  // 4 steps normally make 5 frames
   write(bytes);
   EXPECT_EQ(read_recording(path_).frames.size(), 4U);
 }
 
-TEST_F(Recordings, of_another_size_are_refused) {
+TEST_F(Recordings, file_of_another_size_is_refused) {
   const std::vector<char> good = record();
   for (const std::size_t size : {std::size_t{0}, std::size_t{100}, kHeader - 1, kHeader,
                                  kHeader + 10, good.size() - kBox, good.size() - 1}) {
@@ -98,7 +98,7 @@ TEST_F(Recordings, of_another_size_are_refused) {
   expect_refused(longer, "one byte more");
 }
 
-TEST_F(Recordings, with_a_false_header_are_refused) {
+TEST_F(Recordings, file_with_a_false_header_is_refused) {
   const std::vector<char> good = record();
   for (const std::int32_t count : {0, -1, 19, 21, 0x7FFFFFFF, -0x7FFFFFFF}) {
     std::vector<char> bad = good;
@@ -115,7 +115,7 @@ TEST_F(Recordings, with_a_false_header_are_refused) {
   expect_refused(bad, "a character that is not printable");
 }
 
-TEST_F(Recordings, with_a_bad_box_are_refused) {
+TEST_F(Recordings, file_with_a_bad_box_is_refused) {
   const std::vector<char> good = record();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   for (const std::size_t at : {std::size_t{272}, kHeader, good.size() - kBox}) {
@@ -127,7 +127,7 @@ TEST_F(Recordings, with_a_bad_box_are_refused) {
   }
 }
 
-TEST_F(Recordings, that_are_not_there_are_refused) {
+TEST_F(Recordings, missing_file_is_refused) {
   EXPECT_THROW((void)read_recording((folder_ / "none.aabbs").string()), RecordingError);
 }
 

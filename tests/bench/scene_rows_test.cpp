@@ -5,7 +5,7 @@
 namespace winnow::bench {
 namespace {
 
-TEST(SceneCosts, tell_the_bytes_of_contacts_and_that_a_margin_finds_more) {
+TEST(SceneCosts, rows_count_bytes_and_contacts_by_margin) {
   Results results;
   declare_scenes(results);
   add_scene_costs(results, {.scene = "balls", .frames = 2, .bodies = 500});
@@ -15,7 +15,7 @@ TEST(SceneCosts, tell_the_bytes_of_contacts_and_that_a_margin_finds_more) {
     EXPECT_EQ(value_of(*rows[i], "over_none"), 1.0);
     EXPECT_GT(value_of(*rows[i], "touching"), 5.0 * 500.0);
     EXPECT_GT(value_of(*rows[i + 1], "touching"), value_of(*rows[i], "touching"));
-    // What is shown of each takes that much.
+    // The output columns of a contact take at least this many bytes.
     EXPECT_GT(value_of(*rows[i], "bytes_per_contact"), 100.0);
   }
 }

@@ -1,4 +1,5 @@
-// Built-in scenes: they are the same whenever they are made, and do what they promise.
+// Built-in scenes of the benchmarks: equal seeds make equal scenes, and each moves as its name
+// says.
 
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
@@ -18,7 +19,7 @@
 namespace winnow::bench {
 namespace {
 
-/// A scene and what became of its boxes in the last frame.
+/// A scene and the boxes of the frame before the last.
 class Watched {
  public:
   Watched(const char* name, std::size_t objects, std::uint64_t seed = 5)
@@ -38,12 +39,12 @@ class Watched {
     }
     return rows;
   }
-  /// How far the low corner of a box went, an axis at a time.
+  /// The displacement of the low corner of a box in the last frame.
   [[nodiscard]] Eigen::Vector3d way(std::size_t i) const {
     return scene_->boxes()[i].min.cast<double>() - before_[i].min.cast<double>();
   }
   [[nodiscard]] std::size_t size() const { return before_.size(); }
-  /// The share of the objects that went further than so far.
+  /// The share of the objects that moved further than `distance`.
   [[nodiscard]] double share_beyond(double distance) const {
     std::size_t far = 0;
     for (std::size_t i = 0; i < size(); ++i) far += way(i).norm() > distance ? 1U : 0U;
@@ -63,7 +64,7 @@ PairSummary pairs_of(const FrameSource& scene) {
   return summarize(sweep.pairs(), scene.boxes());
 }
 
-TEST(Scenes, are_the_same_whenever_they_are_made) {
+TEST(Scenes, scenes_of_equal_seeds_are_equal) {
   for (const SceneInfo& info : scene_infos()) {
     const auto a = make_scene(info.name, 300, 1);
     const auto b = make_scene(info.name, 300, 1);
@@ -78,7 +79,7 @@ TEST(Scenes, are_the_same_whenever_they_are_made) {
   }
 }
 
-TEST(Scenes, stay_valid_and_inside_their_world) {
+TEST(Scenes, boxes_stay_valid_and_inside_the_world) {
   for (const SceneInfo& info : scene_infos()) {
     for (const std::size_t objects : {1U, 2U, 500U}) {
       const auto scene = make_scene(info.name, objects, 3);
@@ -98,7 +99,7 @@ TEST(Scenes, stay_valid_and_inside_their_world) {
   }
 }
 
-TEST(Scenes, move_as_their_names_say) {
+TEST(Scenes, scenes_move_as_their_names_say) {
   const auto moved_share = [](const char* name) {
     Watched watched(name, 4000);
     watched.advance();
@@ -111,7 +112,7 @@ TEST(Scenes, move_as_their_names_say) {
   EXPECT_NEAR(moved_share("jitter"), 0.99, 0.01);
 }
 
-TEST(Scenes, that_teleport_keep_neither_places_nor_lose_their_density) {
+TEST(Scenes, teleport_moves_all_boxes_at_equal_density) {
   for (const char* name : {"teleport", "teleport_mixed"}) {
     Watched watched(name, 4000);
     const auto first = static_cast<double>(pairs_of(watched.scene()).pairs);
@@ -121,7 +122,7 @@ TEST(Scenes, that_teleport_keep_neither_places_nor_lose_their_density) {
   }
 }
 
-TEST(Scenes, that_teleport_keep_the_sizes) {
+TEST(Scenes, teleport_keeps_the_sizes) {
   Watched watched("teleport_mixed", 300);
   const Aabb before = watched.scene().boxes()[7];
   watched.advance();
@@ -130,7 +131,7 @@ TEST(Scenes, that_teleport_keep_the_sizes) {
   EXPECT_TRUE(edges.isApprox(Eigen::Vector3f(after.max - after.min), 1e-4F));
 }
 
-TEST(Scenes, that_respawn_put_another_tenth_elsewhere_in_each_frame) {
+TEST(Scenes, respawn_moves_another_tenth_in_each_frame) {
   Watched watched("respawn", 1000);
   std::vector<int> times(1000);
   for (int frame = 0; frame < 10; ++frame) {
@@ -141,7 +142,7 @@ TEST(Scenes, that_respawn_put_another_tenth_elsewhere_in_each_frame) {
   EXPECT_GT(std::count(times.begin(), times.end(), 1), 990);
 }
 
-TEST(Scenes, that_shear_move_along_x_by_their_height) {
+TEST(Scenes, shear_moves_along_x_by_height) {
   Watched watched("shear", 1000);
   const double width =
       static_cast<double>(watched.scene().world().max.x() - watched.scene().world().min.x() - 1.0F);
@@ -158,7 +159,7 @@ TEST(Scenes, that_shear_move_along_x_by_their_height) {
   }
 }
 
-TEST(Scenes, that_jump_do_so_by_two_edges) {
+TEST(Scenes, jumps_move_boxes_by_two_edges) {
   Watched watched("jumps", 4000);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   watched.advance();
@@ -172,7 +173,7 @@ TEST(Scenes, that_jump_do_so_by_two_edges) {
   EXPECT_LT(sum.norm() / 4000.0, 0.1);
 }
 
-TEST(Scenes, with_few_movers_change_the_same_seven_boxes_in_each_frame) {
+TEST(Scenes, few_movers_change_the_same_seven_boxes) {
   for (const std::size_t objects : {7U, 100U, 20'000U}) {
     Watched watched("few_movers", objects);
     watched.advance();
@@ -185,7 +186,7 @@ TEST(Scenes, with_few_movers_change_the_same_seven_boxes_in_each_frame) {
   }
 }
 
-TEST(Scenes, that_jitter_change_no_pair) {
+TEST(Scenes, jitter_changes_no_pair) {
   for (const std::size_t objects : {300U, 5000U}) {
     Watched watched("jitter", objects);
     const PairSummary first = pairs_of(watched.scene());
@@ -194,13 +195,13 @@ TEST(Scenes, that_jitter_change_no_pair) {
       watched.advance();
       EXPECT_EQ(watched.share_beyond(5e-5), 0.0);
       EXPECT_LE(watched.changed().size(), objects - objects / 100);
-      EXPECT_GE(watched.changed().size(), objects - objects / 90);  // some round to what they were
+      EXPECT_GE(watched.changed().size(), objects - objects / 90);  // some round to zero
       EXPECT_TRUE(pairs_of(watched.scene()).same_pairs(first)) << frame;
     }
   }
 }
 
-TEST(Scenes, that_grow_have_all_objects_after_sixty_frames) {
+TEST(Scenes, growth_has_all_objects_after_sixty_frames) {
   const auto scene = make_scene("growth", 20'000, 1);
   EXPECT_EQ(scene->boxes().size(), 20U);
   for (int frame = 0; frame < 60; ++frame) {
@@ -217,7 +218,7 @@ TEST(Scenes, that_grow_have_all_objects_after_sixty_frames) {
   EXPECT_EQ(scene->boxes().size(), 20'000U);
 }
 
-TEST(Scenes, that_grow_are_raced_and_all_find_the_same_pairs) {
+TEST(Scenes, growth_race_finds_equal_pairs) {
   const auto scene = make_scene("growth", 1500, 1);
   std::vector<Contender> contenders =
       make_contenders({"LinearBvh", "FlatGrid", "AutoPartition"}, 1);
@@ -227,7 +228,7 @@ TEST(Scenes, that_grow_are_raced_and_all_find_the_same_pairs) {
   EXPECT_GT(runs.front().pairs.back().pairs, 1500U);
 }
 
-TEST(Scenes, of_an_unknown_name_are_none) {
+TEST(Scenes, scene_of_an_unknown_name_is_null) {
   EXPECT_EQ(make_scene("no_such", 10, 1), nullptr);
 }
 

@@ -1,5 +1,5 @@
-// The granular flow: the same bits however it is computed, no contact lost, no energy from nowhere,
-// no allocation once it is warm. And mesh files: what is written is what is read.
+// The granular flow simulation: its results are equal on all ISAs and threads, it misses no
+// contact, gains no energy and does not allocate after warm-up. Also mesh files and scene races.
 
 #include "bench/common/counting_resource.h"
 #include "bench/measure/scene_race.h"
@@ -24,7 +24,7 @@ FlowOptions small_flow(FlowShape shape = FlowShape::mixed) {
   FlowOptions options;
   options.objects = 300;
   options.shape = shape;
-  // Bodies meet soon.
+  // The bodies collide soon.
   options.stir = 3.0;
   options.step = 2e-3;
   options.law.frequency = 125.0;
@@ -38,7 +38,7 @@ std::uint64_t fingerprint_after(std::size_t steps, const FlowOptions& options) {
   return flow.fingerprint();
 }
 
-TEST(GranularFlow, is_the_same_on_any_instruction_set_and_number_of_threads) {
+TEST(GranularFlow, flow_is_equal_on_all_isas_and_threads) {
   constexpr std::size_t kSteps = 1000;
   FlowOptions serial = small_flow();
   serial.objects = 120;
@@ -59,7 +59,7 @@ TEST(GranularFlow, is_the_same_on_any_instruction_set_and_number_of_threads) {
   }
 }
 
-TEST(GranularFlow, profiling_changes_nothing) {
+TEST(GranularFlow, profiling_does_not_change_the_flow) {
   GranularFlow plain(small_flow());
   GranularFlow profiled(small_flow());
   for (std::size_t i = 0; i < 100; ++i) {
@@ -69,7 +69,7 @@ TEST(GranularFlow, profiling_changes_nothing) {
   EXPECT_EQ(plain.fingerprint(), profiled.fingerprint());
 }
 
-TEST(GranularFlow, loses_invents_and_doubles_no_contact) {
+TEST(GranularFlow, contacts_are_neither_lost_nor_invented) {
   for (const FlowShape shape : {FlowShape::spheres, FlowShape::boxes}) {
     GranularFlow flow(small_flow(shape));
     flow.keep_contact_poses();
@@ -101,7 +101,7 @@ TEST(GranularFlow, contacts_create_no_energy) {
   }
 }
 
-TEST(GranularFlow, allocates_nothing_once_it_is_warm) {
+TEST(GranularFlow, warm_flow_does_not_allocate) {
   CountingResource memory;
   FlowOptions options = small_flow(FlowShape::spheres);
   options.memory = &memory;
@@ -112,7 +112,7 @@ TEST(GranularFlow, allocates_nothing_once_it_is_warm) {
   EXPECT_EQ(memory.allocations(), before);
 }
 
-TEST(GranularFlow, falls_into_a_mesh_of_the_callers) {
+TEST(GranularFlow, bodies_fall_into_a_mesh_of_the_caller) {
   FlowOptions options = small_flow();
   options.mesh = make_terrain(make_hills(8, 1.0, 1.0, 3));
   GranularFlow flow(options);
@@ -129,7 +129,7 @@ TEST(GranularFlow, falls_into_a_mesh_of_the_callers) {
   EXPECT_LT(low, 0.0);
 }
 
-TEST(GranularFlow, the_check_misses_what_was_not_reported) {
+TEST(GranularFlow, check_reports_contacts_that_are_missing) {
   GranularFlow flow(small_flow());
   flow.keep_contact_poses();
   for (std::size_t i = 0; i < 300; ++i) flow.step();
@@ -138,7 +138,7 @@ TEST(GranularFlow, the_check_misses_what_was_not_reported) {
   EXPECT_EQ(faults.lost, faults.compared);
 }
 
-TEST(MeshFiles, what_is_written_is_read) {
+TEST(MeshFiles, written_mesh_reads_back) {
   if (!reads_mesh_files()) GTEST_SKIP() << "built without assimp";
   const Triangles torus = make_torus(12, 8, 1.0, 0.25);
   const auto folder = std::filesystem::temp_directory_path() / "winnow_mesh_files";
@@ -157,7 +157,7 @@ TEST(MeshFiles, what_is_written_is_read) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(MeshFiles, what_is_no_mesh_is_refused) {
+TEST(MeshFiles, file_that_is_no_mesh_is_refused) {
   EXPECT_THROW(read_mesh("/nowhere/mesh.obj"), MeshFileError);
   const auto path = std::filesystem::temp_directory_path() / "winnow_no_mesh.ply";
   std::ofstream(path) << "this is no mesh";
@@ -165,7 +165,7 @@ TEST(MeshFiles, what_is_no_mesh_is_refused) {
   std::filesystem::remove(path);
 }
 
-TEST(SceneRace, a_heap_is_the_same_whenever_it_is_made_and_lies_close) {
+TEST(SceneRace, heaps_of_equal_seeds_are_equal_and_dense) {
   const auto set = make_heap(400, 7);
   const auto again = make_heap(400, 7);
   for (std::size_t i = 0; i < set->poses.size(); ++i) {
@@ -179,7 +179,7 @@ TEST(SceneRace, a_heap_is_the_same_whenever_it_is_made_and_lies_close) {
   EXPECT_LT(timings.front().finds.touching, 2000U);
 }
 
-TEST(SceneRace, every_engine_finds_as_much_as_the_first) {
+TEST(SceneRace, all_engines_find_equal_contacts) {
   const auto set = make_landscape(60, 24, 5);
   std::array<SceneContender, 2> contenders{
       {{make_winnow_scene(1), 1}, {make_winnow_scene(2, {.carry_over = kCarryOver}), 2}}};

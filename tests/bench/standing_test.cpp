@@ -1,5 +1,6 @@
-// Structures on a solver that starts from the impulses of the last frame: they stand, on raw
-// manifolds and on regions, and are the same however they are computed.
+// Simulations of stacked structures, with a solver that starts from the impulses of the last frame:
+// they stay up with and without contact reduction, and the results are equal on all ISAs and
+// threads.
 
 #include "bench/simulation/standing.h"
 #include "tests/support/config.h"
@@ -11,7 +12,7 @@
 namespace winnow::bench {
 namespace {
 
-TEST(Standing, structures_settle_and_then_stay_where_they_are) {
+TEST(Standing, structures_settle_and_stay_in_place) {
   for (const StandingScene scene : kStandingScenes) {
     for (const bool reduced : {false, true}) {
       SCOPED_TRACE(name_of(scene) + (reduced ? ", regions" : ", raw"));
@@ -35,7 +36,7 @@ TEST(Standing, structures_settle_and_then_stay_where_they_are) {
   }
 }
 
-TEST(Standing, is_the_same_on_any_instruction_set_and_number_of_threads) {
+TEST(Standing, results_are_equal_on_all_isas_and_threads) {
   for (const StandingScene scene : kStandingScenes) {
     const auto fingerprint = [&](Execution execution) {
       StandingOptions options;

@@ -23,7 +23,7 @@ std::map<std::string, VolumeRow> rows_by_name(Solids solids, const std::string& 
   return rows;
 }
 
-TEST(VolumeRace, reports_every_pair_and_tighter_volumes_report_fewer) {
+TEST(VolumeRace, tighter_volumes_report_fewer_pairs_and_miss_none) {
   for (const std::string partition : {"LinearBvh", "SweepAndPrune", "FlatGrid"}) {
     for (const bool rods : {false, true}) {
       const auto rows =
@@ -50,7 +50,7 @@ TEST(VolumeRace, reports_every_pair_and_tighter_volumes_report_fewer) {
   }
 }
 
-TEST(VolumeRace, begins_margins_at_times_of_their_own) {
+TEST(VolumeRace, margins_begin_at_different_times) {
   constexpr float kShare = 0.2F;
   const Solids solids = Solids::rods(200, 1);
   const std::vector<OrientedBox> then = solids.when_margins_were_left(kShare);
@@ -66,13 +66,13 @@ TEST(VolumeRace, begins_margins_at_times_of_their_own) {
   EXPECT_NEAR(sum / static_cast<double>(then.size()), 0.5, 0.1);
 }
 
-TEST(VolumeRace, follows_a_recording) {
+TEST(VolumeRace, race_follows_the_frames_of_a_recording) {
   const auto box = [](float x, float edge) {
     return Aabb{{x, 0.0F, 0.0F}, {x + edge, edge, edge}};
   };
   const float kInfinite = std::numeric_limits<float>::infinity();
   const Aabb ground{{-kInfinite, -kInfinite, -1.0F}, {kInfinite, kInfinite, -0.5F}};
-  // The second box comes to the first, then grows until it meets the third as well.
+  // The second box moves to the first box, then grows until it touches the third box as well.
   const std::vector<std::vector<Aabb>> frames{{ground, box(0, 1), box(1.5F, 1), box(3, 1)},
                                               {ground, box(0, 1), box(0.9F, 1), box(3, 1)},
                                               {ground, box(0, 1), box(0.9F, 2.5F), box(3, 1)}};
@@ -83,7 +83,7 @@ TEST(VolumeRace, follows_a_recording) {
   for (const VolumeRow& row : rows) EXPECT_EQ(row.missed, 0U) << row.volume;
 }
 
-TEST(VolumeRace, refuses_what_is_no_partition) {
+TEST(VolumeRace, unknown_partition_is_refused) {
   EXPECT_THROW((void)race_volumes(Solids::rotated(4, 1), {.partition = "NoPartition"}),
                std::runtime_error);
 }

@@ -1,20 +1,20 @@
 #pragma once
 
-/* What the scenarios in C are written with. */
+/* Helpers of the C scenarios. */
 
 #include "tests/c/trace.h"
 
 #include <stdlib.h>
 #include <winnow/c/winnow.h>
 
-/* Notes what is refused. */
+/* Notes the status of a call that fails. */
 #define OK(call)                                                       \
   do {                                                                 \
     const winnow_status status_ = (call);                              \
     if (status_ != WINNOW_OK) note(t, #call, (uint64_t)status_ << 32); \
   } while (0)
 
-/* Memory that counts what is outstanding. */
+/* Memory that counts the bytes in use. */
 static inline void* counted_allocate(void* context, size_t bytes, size_t alignment) {
   unsigned char* const whole = (unsigned char*)malloc(bytes + alignment + sizeof(void*));
   if (whole == NULL) return NULL;

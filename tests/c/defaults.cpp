@@ -1,6 +1,7 @@
-// Prints the defaults of all structs that calls are asked with, a line "Struct.member = value" for
-// each, as C++ has them. Fails if C has others: by a macro, and for options by zeros and null. This
-// does not compile if a struct of C++ got a member that is not named here.
+// Prints the C++ defaults of all structs that callers pass, one line "Struct.member = value" for
+// each member; test_defaults.py compares them with Python. Fails if C has other defaults, whether
+// they come from a macro or, for options, from zeros or a null pointer. Does not compile if a C++
+// struct gets a member that is not listed here.
 
 #include <winnow/c/winnow.h>
 #include <winnow/core/ray.h>
@@ -24,7 +25,7 @@
 namespace winnow {
 namespace {
 
-// Members as text, as Python writes them.
+// Formats members as Python literals.
 
 std::string text(bool value) {
   return value ? "True" : "False";
@@ -76,7 +77,7 @@ std::string text(Key key) {
 std::string text(std::pmr::memory_resource* const& memory) {
   return memory == default_memory() ? "'default'" : "'another'";
 }
-/// Tells no more of a pointer than whether it is null.
+/// Prints only whether the pointer is null.
 template <typename Pointer>
 requires std::is_pointer_v<Pointer> std::string text(const Pointer& pointer) {
   return pointer == nullptr ? "None" : "'something'";
@@ -108,7 +109,7 @@ std::string text(const Pose& pose) {
 /// Members by name, in order.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
-/// Calls give(member) for each of them; names are those of the list, in their order.
+/// Returns the members with their names from the list, in order.
 template <typename... Given>
 Members list(std::string_view names, const Given&... given) {
   Members members;
@@ -216,7 +217,7 @@ Members members(const HeightSamples& o) {
 
 int differences = 0;
 
-/// Prints a struct as C++ has it, and what C has otherwise.
+/// Prints a struct with its C++ values, and reports the members that differ in C.
 template <typename OfCpp>
 void show(const char* name, const OfCpp& of_cpp,
           std::initializer_list<std::pair<const char*, OfCpp>> of_c = {}) {
@@ -233,7 +234,8 @@ void show(const char* name, const OfCpp& of_cpp,
   }
 }
 
-/// Options of C as its calls read them: read(given, options) says whether they can.
+/// Shows the options that the C calls read from zeros, null and the macro; read(given, options)
+/// returns whether they are valid.
 template <typename Options, typename OfC, typename Read>
 void show_options(const char* name, const OfC& macro, Read&& read) {
   OfC zeroed{};
@@ -280,7 +282,7 @@ void show_all_options() {
   show_options<MeshOptions>("MeshOptions", mesh, typed(plain, mesh));
 }
 
-/// Zeros are no default of these.
+/// Structs whose default is not all zeros.
 void show_definitions() {
   const winnow_object_filter object = WINNOW_OBJECT_FILTER;
   show("ObjectFilter", ObjectFilter{}, {{"macro", *c::twin(&object)}});
@@ -322,7 +324,7 @@ void show_line(const char* name, double of_cpp, double of_c) {
   (void)std::fprintf(stderr, "%s is %g in C++, %g in C\n", name, of_cpp, of_c);
 }
 
-/// C has no struct of these, or one that is not read as a whole.
+/// Structs that C does not have or does not read as a whole.
 void show_others() {
   show("FeatureImpactOptions", FeatureImpactOptions{});
   show("DeformableMeshOptions", DeformableMeshOptions{});

@@ -1,5 +1,5 @@
-// What cannot be meant is answered with a status: pointers that are null, one or all; sizes of
-// other versions; kinds that do not exist; keys of what is gone; memory that is refused.
+// Invalid calls of the C interface return a status: null pointers, one or all; struct sizes of
+// other versions; kinds that do not exist; stale keys; refused memory.
 
 #include "tests/c/hostile_world.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
-/// Calls it with an argument of each type from the world, but for one that is null.
+/// Calls the function with arguments from the world, one of which is null.
 template <typename... Arguments, std::size_t... kIndex>
 winnow_status call_without(std::size_t missing, HostileWorld& world,
                            winnow_status (*function)(Arguments...),
@@ -49,14 +49,14 @@ constexpr std::size_t count_of(winnow_status (*)(Arguments...)) {
   return sizeof...(Arguments);
 }
 
-TEST(CInterface, refuses_calls_with_nothing) {
+TEST(CInterface, calls_with_zeros_are_refused) {
 #define WINNOW_CALL(function) \
   EXPECT_EQ(call_with_zeros(&(function)), WINNOW_INVALID_ARGUMENT) << #function;
 #include <winnow_calls.inc>
 #undef WINNOW_CALL
 }
 
-TEST(CInterface, answers_a_status_whichever_pointer_is_null) {
+TEST(CInterface, calls_with_one_null_pointer_return_a_status) {
   HostileWorld world;
 #define WINNOW_CALL(function)                                                    \
   for (std::size_t missing = 0; missing < count_of(&(function)); ++missing) {    \
@@ -67,7 +67,7 @@ TEST(CInterface, answers_a_status_whichever_pointer_is_null) {
 #undef WINNOW_CALL
 }
 
-TEST(CInterface, refuses_structs_of_another_size) {
+TEST(CInterface, structs_of_another_size_are_refused) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{8}, std::size_t{5000}}) {
     HostileWorld world;
     world.size_of_structs = size;
@@ -80,7 +80,7 @@ TEST(CInterface, refuses_structs_of_another_size) {
   }
 }
 
-TEST(CInterface, takes_a_struct_of_a_later_version_whose_further_members_are_zero) {
+TEST(CInterface, longer_struct_with_zero_tail_is_accepted) {
   struct {
     winnow_pair_options now = WINNOW_PAIR_OPTIONS;
     std::uint64_t later = 0;
@@ -102,7 +102,7 @@ TEST(CInterface, takes_a_struct_of_a_later_version_whose_further_members_are_zer
             WINNOW_INVALID_ARGUMENT);
 }
 
-TEST(CInterface, refuses_kinds_that_do_not_exist) {
+TEST(CInterface, unknown_kinds_are_refused) {
   HostileWorld world;
   for (const std::int32_t none : {-1, 1000, std::numeric_limits<std::int32_t>::max()}) {
     winnow_partition* partition = nullptr;
@@ -138,7 +138,7 @@ TEST(CInterface, refuses_kinds_that_do_not_exist) {
   EXPECT_EQ(winnow_structure_named("Heap", &structure), WINNOW_INVALID_ARGUMENT);
 }
 
-TEST(CInterface, knows_keys_of_what_is_gone) {
+TEST(CInterface, stale_keys_are_refused) {
   HostileWorld world;
   const winnow_aabb box = {{0, 0, 0}, {1, 1, 1}};
   const winnow_box_view boxes = winnow_boxes(&box, 1);
@@ -170,7 +170,7 @@ TEST(CInterface, knows_keys_of_what_is_gone) {
             WINNOW_INVALID_ARGUMENT);
 }
 
-TEST(CInterface, does_not_let_the_partition_of_a_scene_be_changed) {
+TEST(CInterface, partition_of_a_scene_cannot_be_changed) {
   HostileWorld world;
   const winnow_partition* asked = nullptr;
   ASSERT_EQ(winnow_scene_partition(world.scene, WINNOW_MOTION_DYNAMIC, &asked), WINNOW_OK);
@@ -184,7 +184,7 @@ TEST(CInterface, does_not_let_the_partition_of_a_scene_be_changed) {
   EXPECT_EQ(size, 1U);
 }
 
-/// Memory of C that grants so many requests and refuses all others.
+/// Memory for C that grants a number of requests and refuses all later ones.
 struct Refusing {
   [[nodiscard]] winnow_memory memory() noexcept {
     return {[](void* context, std::size_t bytes, std::size_t alignment) -> void* {
@@ -204,7 +204,7 @@ struct Refusing {
   std::size_t outstanding = 0;
 };
 
-/// A partition from its making to its pairs; the first status that is not ok.
+/// Creates a partition and finds its pairs; returns the first status that is not ok.
 [[nodiscard]] winnow_status pairs_in(const winnow_memory& memory) {
   const double low[3] = {0.0, 0.5, 4.0};
   const double high[3] = {1.0, 1.5, 5.0};
@@ -223,7 +223,7 @@ struct Refusing {
   return status;
 }
 
-TEST(CInterface, says_that_memory_is_refused_and_keeps_none) {
+TEST(CInterface, refused_memory_gives_a_status_and_no_leak) {
   winnow_status status = WINNOW_OUT_OF_MEMORY;
   std::size_t granted = 0;
   for (; status != WINNOW_OK; ++granted) {

@@ -1,5 +1,8 @@
 #pragma once
 
+// Arguments for hostile_test.cpp: an object of every kind of the C interface, and a value of every
+// argument type.
+
 #include <winnow/c/winnow.h>
 
 #include <gtest/gtest.h>
@@ -11,8 +14,8 @@
 
 namespace winnow::test {
 
-/// A thing of every kind, and arguments of any type to ask about it: pointers to things lead to
-/// those here, others to zeros that are long enough for an array of one, numbers are 1.
+/// An object of every kind and arguments of any type: pointers to these kinds point to the objects
+/// here, other pointers point to zeros with room for an array of one, numbers are 1.
 class HostileWorld {
  public:
   HostileWorld() {
@@ -64,7 +67,7 @@ class HostileWorld {
     destroy(threads);
   }
 
-  /// The argument of a call at `index`.
+  /// Returns the argument of a call at `index`.
   template <typename T>
   [[nodiscard]] T get(std::size_t index) {
     if constexpr (std::is_pointer_v<T>) {
@@ -81,13 +84,13 @@ class HostileWorld {
     }
   }
 
-  /// Ends what a call has made.
+  /// Destroys the object that a call has created.
   void end_made() {
     if (end_ != nullptr) end_(made_);
     end_ = nullptr;
   }
 
-  /// 0: that of this version.
+  /// Written into the structs as their size; 1 stands for the size of this version.
   std::size_t size_of_structs = 1;
 
   winnow_threads* threads = nullptr;
@@ -159,7 +162,7 @@ class HostileWorld {
   void (*end_)(void*) = nullptr;
 };
 
-/// Whether one of the arguments is a struct that may grow.
+/// Returns whether one of the arguments is a struct with a size member.
 template <typename... Arguments>
 [[nodiscard]] constexpr bool takes_sized(winnow_status (*)(Arguments...)) noexcept {
   return ([] {

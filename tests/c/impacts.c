@@ -1,4 +1,4 @@
-/* Every call about motions, when they meet, and hooks, in C. */
+/* Uses in C every call about motions, times of impact and hooks. */
 
 #include <string.h>
 

@@ -9,7 +9,7 @@
 
 namespace winnow::test {
 
-/// What was noted, in order.
+/// The noted values, in order.
 class Notes {
  public:
   Notes() = default;
@@ -28,7 +28,7 @@ class Notes {
                }};
 };
 
-// The scenarios of the files in C, asked by the interface of C++.
+// The scenarios of the C files, run through the C++ interface.
 void ask_partitions_in_cpp(const trace* t);
 void ask_volumes_in_cpp(const trace* t);
 void ask_shapes_in_cpp(const trace* t);

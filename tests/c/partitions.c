@@ -1,11 +1,11 @@
-/* Every call about partitions and their buffers, in C. */
+/* Uses in C every call about partitions and their buffers. */
 
 #include <math.h>
 
 #include "tests/c/check.h"
 #include "tests/c/world.h"
 
-/* Hosts the tasks of winnow on the thread that calls, the last one first. */
+/* Runs the tasks of winnow on the calling thread, the last one first. */
 static void backwards(void* context, size_t count, void (*task)(void*, size_t), void* tasks) {
   ++*(size_t*)context;
   for (size_t i = count; i-- > 0;) task(tasks, i);
@@ -173,7 +173,7 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   note_key_pairs(t, "all begun", changed, count);
   OK(winnow_partition_self_pairs(partition, NULL, plain, NULL));
   OK(winnow_pair_events_begun_data(plain, &changed_data, &count));
-  note_data_pairs(t, "data unless asked for", changed_data, count);
+  note_data_pairs(t, "data without the option", changed_data, count);
 
   view = winnow_boxes(boxes, kObjects);
   OK(winnow_partition_update(partition, keys, kObjects, &view, NULL));
@@ -405,11 +405,11 @@ void ask_partitions_in_c(const trace* t) {
 
   winnow_footprint bytes = {.size = sizeof bytes};
   OK(winnow_partition_footprint(partition, &bytes));
-  note(t, "the footprint is what was asked for", reserved_of(&bytes) == outstanding);
+  note(t, "the footprint equals the allocated memory", reserved_of(&bytes) == outstanding);
   OK(winnow_partition_clear(partition));
   OK(winnow_partition_release_memory(partition));
   OK(winnow_partition_footprint(partition, &bytes));
-  note(t, "the footprint is what is left", reserved_of(&bytes) == outstanding);
+  note(t, "the footprint equals the remaining memory", reserved_of(&bytes) == outstanding);
   winnow_partition_destroy(partition);
   note(t, "outstanding", outstanding);
 }

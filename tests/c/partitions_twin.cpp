@@ -118,7 +118,7 @@ void ask_pairs(const trace* t, Partition& partition, World& world) {
   events.clear();
   (void)partition.self_pairs(events);
   note_key_pairs(t, "all begun", events.begun());
-  note_data_pairs(t, "data unless asked for", {});
+  note_data_pairs(t, "data without the option", {});
 
   (void)partition.update(world.keys, world.boxes);
   (void)partition.self_pairs(pairs, {Order::canonical, false, {}});
@@ -267,8 +267,8 @@ void ask_partitions_in_cpp(const trace* t) {
   (void)partition.remove(std::span(world.keys).first(10));
   (void)partition.self_pairs(pairs, kCanonical);
   note_pairs(t, "after removal", pairs);
-  note(t, "the footprint is what was asked for", 1);
-  note(t, "the footprint is what is left", 1);
+  note(t, "the footprint equals the allocated memory", 1);
+  note(t, "the footprint equals the remaining memory", 1);
   note(t, "outstanding", 0);
 }
 

@@ -1,4 +1,4 @@
-// Whatever is asked in C has the answers of C++, number by number.
+// The C interface returns the same results as the C++ interface, number by number.
 
 #include "tests/c/notes.h"
 
@@ -30,35 +30,35 @@ void expect_same(Scenario in_c, Scenario in_cpp) {
   EXPECT_EQ(c.all().size(), cpp.all().size());
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_partitions) {
+TEST(CInterface, partitions_give_the_results_of_cpp) {
   expect_same(ask_partitions_in_c, ask_partitions_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_spheres_and_kdops) {
+TEST(CInterface, spheres_and_kdops_give_the_results_of_cpp) {
   expect_same(ask_volumes_in_c, ask_volumes_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_shapes) {
+TEST(CInterface, shapes_give_the_results_of_cpp) {
   expect_same(ask_shapes_in_c, ask_shapes_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_pairs_of_shapes) {
+TEST(CInterface, pairs_of_shapes_give_the_results_of_cpp) {
   expect_same(ask_narrow_phase_in_c, ask_narrow_phase_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_scenes) {
+TEST(CInterface, scenes_give_the_results_of_cpp) {
   expect_same(ask_scenes_in_c, ask_scenes_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_sensors_sweeps_and_groups) {
+TEST(CInterface, sensors_and_sweeps_give_the_results_of_cpp) {
   expect_same(ask_watchers_in_c, ask_watchers_in_cpp);
 }
 
-TEST(CInterface, gives_the_answers_of_cpp_about_motions_and_hooks) {
+TEST(CInterface, motions_and_hooks_give_the_results_of_cpp) {
   expect_same(ask_impacts_in_c, ask_impacts_in_cpp);
 }
 
-/// All pairs of a dense row of boxes.
+/// Returns all pairs of a dense row of boxes.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_on(
     const winnow_execution& execution) {
   std::vector<winnow_aabb> boxes(20000);
@@ -86,7 +86,7 @@ TEST(CInterface, gives_the_answers_of_cpp_about_motions_and_hooks) {
   return pairs;
 }
 
-TEST(CInterface, has_the_pairs_of_one_thread_in_their_order_on_any_number) {
+TEST(CInterface, pair_order_does_not_depend_on_threads) {
   const auto serial = pairs_on({WINNOW_EXECUTION_SERIAL, {}});
   EXPECT_EQ(serial.size(), 20000U * 4 - 10);
   EXPECT_TRUE(pairs_on({WINNOW_EXECUTION_PARALLEL, {}}) == serial);

@@ -1,4 +1,4 @@
-/* Every call about scenes, their contacts and their queries, in C. */
+/* Uses in C every call about scenes, their contacts and their queries. */
 
 #include "tests/c/check.h"
 #include "tests/c/shapes_in_c.h"
@@ -251,7 +251,7 @@ static void note_footprint(const trace* t, const winnow_scene* scene,
   size_t sum = bytes.bodies.reserved + bytes.pairs.reserved + bytes.mid_phase.reserved +
                bytes.narrow_phase.reserved + reserved_of(&more);
   for (int i = 0; i < WINNOW_MOTIONS; ++i) sum += bytes.partitions[i].reserved;
-  note(t, "the footprints are what was asked for", sum == outstanding);
+  note(t, "the footprints equal the allocated memory", sum == outstanding);
 }
 
 static void add_bodies(const trace* t, winnow_scene* scene, const winnow_shape_id* convex,
@@ -259,7 +259,7 @@ static void add_bodies(const trace* t, winnow_scene* scene, const winnow_shape_i
   winnow_body_definition bodies[kBodies];
   for (size_t i = 0; i < kBodies; ++i) {
     winnow_body_definition body = WINNOW_BODY_DEFINITION;
-    /* No half-space among what moves. */
+    /* Moving bodies have no half-space. */
     body.shape = i < kComposite ? composite[i] : convex[i % 6];
     pose_of(i, 0, body.pose.position, body.pose.orientation);
     if (i < 3) body.motion = WINNOW_MOTION_FIXED;
@@ -279,7 +279,7 @@ static winnow_status load_partition(const trace* t, winnow_snapshot* snapshot,
   return winnow_partition_load(into, bytes, count);
 }
 
-/* All that there is is saved, changed, and loaded again. */
+/* Saves all objects, changes them, and loads them again. */
 static void save_and_load(const trace* t, winnow_shape_pool* pool,
                           winnow_composite_pool* composites, winnow_scene* scene,
                           winnow_contacts* contacts) {
@@ -333,7 +333,7 @@ void ask_scenes_in_c(const trace* t) {
   OK(winnow_composite_pool_create(pool, NULL, &composites));
   make_shapes(t, pool, convex);
   make_composites(t, composites, convex, composite);
-  /* Of functions nobody else has any: pools with some are not saved. */
+  /* Pools with user shapes cannot be saved. */
   winnow_snapshot* of_functions = NULL;
   OK(winnow_snapshot_create(NULL, &of_functions));
   note(t, "unsaved", winnow_shape_pool_save(pool, of_functions) == WINNOW_UNSUPPORTED);
@@ -364,7 +364,7 @@ void ask_scenes_in_c(const trace* t) {
   for (size_t i = 0; i < kBodies; ++i) pose_of(i, 1, poses[i].position, poses[i].orientation);
   winnow_pose_view view = winnow_poses(poses + 4, 20);
   OK(winnow_scene_move(scene, keys + 4, 20, &view));
-  /* Positions alone, of float and of double: no body turns. */
+  /* Positions only, in float and in double: no body rotates. */
   float place[3][20];
   for (size_t i = 0; i < 20; ++i) {
     for (size_t k = 0; k < 3; ++k) place[k][i] = (float)poses[4 + i].position[k];

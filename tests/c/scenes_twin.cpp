@@ -259,7 +259,7 @@ void ask_scenes_in_cpp(const trace* t) {
   (void)scene.remove(all.subspan(14, 2));
   (void)scene.collide(ContactLevel::manifold, contacts);
   note_contacts(t, contacts);
-  note(t, "the footprints are what was asked for", 1);
+  note(t, "the footprints equal the allocated memory", 1);
 
   (void)scene.refresh();
   {
@@ -267,7 +267,7 @@ void ask_scenes_in_cpp(const trace* t) {
     ask_rays(t, ask);
     ask_shapes_of(t, ask, convex[0], keys);
   }
-  // Loaded again in C, it goes on as if nothing had been.
+  // In C the scene was loaded from its snapshot, and continues as if it had not been.
   note(t, "loaded objects", scene.size(Motion::dynamic));
   (void)scene.collide(ContactLevel::manifold, contacts);
   note_contacts(t, contacts);

@@ -1,4 +1,4 @@
-/* Every call about shapes and pairs of shapes, in C. */
+/* Uses in C every call about shapes and pairs of shapes. */
 
 #include "tests/c/check.h"
 #include "tests/c/world.h"
@@ -12,7 +12,7 @@ static void note_box(const trace* t, const char* what, const winnow_aabb* box) {
   }
 }
 
-/* A cube of its own, in a function; the same as that of its twin. */
+/* A user shape, given by a support function; equals the cube in shapes_twin.cpp. */
 static void farthest_of_cube(const void* context, const double* direction, double* point) {
   const double half = *(const double*)context;
   for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0 ? -half : half;
@@ -52,7 +52,7 @@ void make_shapes(const trace* t, winnow_shape_pool* pool, winnow_shape_id* ids) 
 
 void make_composites(const trace* t, winnow_composite_pool* pool, const winnow_shape_id* convex,
                      winnow_shape_id* ids) {
-  /* A square of two triangles, in columns of float, and a field of heights. */
+  /* A square of two triangles, in columns of float, and a height field. */
   const float x[4] = {-20, 20, 20, -20};
   const float y[4] = {-20, -20, 20, 20};
   const float z[4] = {0, 0, 0, 0};
@@ -161,7 +161,7 @@ void ask_shapes_in_c(const trace* t) {
   winnow_footprint more = {.size = sizeof more};
   OK(winnow_shape_pool_footprint(pool, &bytes));
   OK(winnow_composite_pool_footprint(composites, &more));
-  note(t, "the footprints are what was asked for",
+  note(t, "the footprints equal the allocated memory",
        reserved_of(&bytes) + reserved_of(&more) == outstanding);
   OK(winnow_composite_pool_remove(composites, many[1]));
   OK(winnow_shape_pool_remove(pool, ids[1]));
@@ -282,7 +282,7 @@ void ask_narrow_phase_in_c(const trace* t) {
   winnow_footprint more = {.size = sizeof more};
   OK(winnow_narrow_phase_footprint(narrow, &bytes));
   OK(winnow_narrow_result_footprint(result, &more));
-  note(t, "the footprints are what was asked for",
+  note(t, "the footprints equal the allocated memory",
        reserved_of(&bytes) + reserved_of(&more) == outstanding);
   place[2][0] = 1e38F * 10.0F;
   note(t, "refused",

@@ -1,6 +1,6 @@
 #pragma once
 
-/* Shapes of every kind, for worlds that are made in C. */
+/* Shapes of every kind, for worlds that are built in C. */
 
 #include "tests/c/trace.h"
 

@@ -173,7 +173,7 @@ void ask_shapes_in_cpp(const trace* t) {
   note(t, "support", 1);
   note_hull(t, pool.tables().hulls[convex[7].index()]);
   note(t, "kind", std::string_view(to_string(ShapeKind::half_space)).size());
-  note(t, "the footprints are what was asked for", 1);
+  note(t, "the footprints equal the allocated memory", 1);
   note(t, "contains", 0);
   note(t, "capsules", 0);
   note(t, "outstanding", 0);
@@ -212,7 +212,7 @@ void ask_narrow_phase_in_cpp(const trace* t) {
   note_answers(t, result);
   note(t, "statistics", narrow.statistics().pairs);
   note(t, "statistics", narrow.statistics().without_lanes);
-  note(t, "the footprints are what was asked for", 1);
+  note(t, "the footprints equal the allocated memory", 1);
   note(t, "refused", 1);
   note(t, "bad body", 2);
   note(t, "outstanding", 0);

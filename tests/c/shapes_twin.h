@@ -7,7 +7,7 @@
 
 namespace winnow::test {
 
-/// What shapes.c makes.
+/// The shapes that shapes.c creates.
 [[nodiscard]] std::array<ShapeId, 12> make_convex(ShapePool& pool);
 [[nodiscard]] std::array<ShapeId, 4> make_composite(CompositePool& pool,
                                                     const std::array<ShapeId, 12>& convex);

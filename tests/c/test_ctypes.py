@@ -1,6 +1,6 @@
-"""The C interface as another language calls it: by Python's ctypes, from the shared library alone.
+"""The C interface as another language calls it: through Python's ctypes, from the shared library only.
 
-Usage: test_ctypes.py LIBRARY INCLUDE [unittest's own]
+Usage: test_ctypes.py LIBRARY INCLUDE [arguments of unittest]
 """
 
 import ctypes
@@ -50,9 +50,9 @@ STRUCTS = {"key": Key, "pair": Pair, "structure_kind": StructureKind, "box_view"
 
 
 def declared_calls(include):
-    """(answer, name, arguments) of each call of the headers."""
+    """Returns (result type, name, arguments) of each call in the headers."""
     text = "".join(path.read_text() for path in sorted((include / "winnow/c").glob("*.h")))
-    # In the tree of a build one line leads to each header.
+    # In a build tree each header includes the real one in one line.
     for path in re.findall(r'^#include "(.*)"$', text, re.M):
         text += pathlib.Path(path).read_text()
     calls = re.findall(r"^WINNOW_C_API ([^;{]*?)\b(winnow_\w+)\(([^;]*)\);", text, re.M)
@@ -67,7 +67,7 @@ class CInterface(unittest.TestCase):
         self.assertEqual(status, OK, self.library.winnow_status_name(status))
 
     def partition(self, count):
-        """A row of boxes each of which touches the next, and their keys."""
+        """Returns a row of boxes, each of which touches the next, and their keys."""
         partition = c_void_p()
         self.ok(self.library.winnow_partition_create(StructureKind(0, 0.0), None, byref(partition)))
         lows = (ctypes.c_double * count)(*[float(i) for i in range(count)])
@@ -95,7 +95,7 @@ class CInterface(unittest.TestCase):
             own.append(ctypes.sizeof(struct))
         self.assertEqual(said, own)
 
-    def test_pairs_and_hits_are_read_where_they_lie(self):
+    def test_pairs_and_hits_are_read_without_a_copy(self):
         partition, keys = self.partition(50)
         pairs = c_void_p()
         self.ok(self.library.winnow_pair_buffer_create(None, byref(pairs)))
@@ -121,7 +121,7 @@ class CInterface(unittest.TestCase):
         self.library.winnow_pair_buffer_destroy(pairs)
         self.library.winnow_partition_destroy(partition)
 
-    def test_every_call_without_arguments_is_refused(self):
+    def test_calls_without_arguments_are_refused(self):
         calls = declared_calls(self.include)
         self.assertGreater(len(calls), 100)
         by_value = {"winnow_key": Key(), "winnow_structure_kind": StructureKind()}
@@ -139,7 +139,7 @@ class CInterface(unittest.TestCase):
                     nothing.append(by_value.get(kind, c_size_t(0)))
             self.assertEqual(getattr(self.library, name)(*nothing), INVALID_ARGUMENT, name)
 
-    def test_versions_are_told(self):
+    def test_versions_match_their_names(self):
         major, minor, patch = self.library.winnow_version_name().decode().split(".")
         self.assertEqual(self.library.winnow_version(),
                          int(major) << 16 | int(minor) << 8 | int(patch))

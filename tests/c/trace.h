@@ -1,6 +1,6 @@
 #pragma once
 
-/* What one language was answered, to be compared with what the other was. */
+/* Records the results of a scenario in one language, to compare them with the other language. */
 
 #include <stdint.h>
 #include <string.h>
@@ -28,7 +28,7 @@ static inline void note_reals(const trace* t, const char* what, const double* va
 extern "C" {
 #endif
 
-/* The scenarios in C. A call that is refused is noted by its own text. */
+/* The scenarios in C. A call that fails is noted by its own text. */
 void ask_partitions_in_c(const trace* t);
 void ask_volumes_in_c(const trace* t);
 void ask_shapes_in_c(const trace* t);

@@ -1,5 +1,4 @@
-/* Every call about sensors, sweeps, groups of contacts and pairs of bodies that are ignored, in C.
- */
+/* Uses in C every call about sensors, sweeps, groups of contacts and ignored pairs of bodies. */
 
 #include "tests/c/check.h"
 #include "tests/c/world.h"
@@ -118,7 +117,7 @@ static void ask_sensors(const trace* t, winnow_scene* scene, winnow_shape_id bal
   OK(winnow_sensors_contains(sensors, goals[0], &contains));
   note(t, "contains", contains);
   OK(winnow_sensors_footprint(sensors, &bytes));
-  note(t, "the footprint is what was asked for", reserved_of(&bytes) == outstanding);
+  note(t, "the footprint equals the allocated memory", reserved_of(&bytes) == outstanding);
   winnow_sensors_destroy(sensors);
   note(t, "outstanding", outstanding);
 }

@@ -89,7 +89,7 @@ void ask_sensors(const trace* t, Scene& scene, ShapeId ball, std::span<const Key
   note_reals(t, "sensor", stands.pose.position, 3);
   note(t, "sensors", sensors.size());
   note(t, "contains", sensors.contains(goals[0]));
-  note(t, "the footprint is what was asked for", 1);
+  note(t, "the footprint equals the allocated memory", 1);
   note(t, "outstanding", 0);
 }
 

@@ -7,7 +7,7 @@
 
 enum { kObjects = 200, kSpheres = 60, kBodies = 40 };
 
-/* Lower corner, then upper corner. */
+/* Writes the lower corner, then the upper corner. */
 static inline void box_of(size_t i, size_t frame, double box[6]) {
   const size_t place[3] = {i * 37 % 31, i * 17 % 29, i * 11 % 23};
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -20,7 +20,7 @@ static inline uint64_t data_of(size_t i) {
   return 1000 + 3 * (uint64_t)i;
 }
 
-/* A height over the ground, and a turn. */
+/* Writes a position above the ground and an orientation. */
 static inline void pose_of(size_t i, size_t frame, double position[3], double orientation[4]) {
   position[0] = 1.1 * (double)(i % 8);
   position[1] = 1.1 * (double)(i / 8);

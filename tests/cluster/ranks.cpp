@@ -1,6 +1,6 @@
 // ranks CASE FOLDER: a rank of a cluster in which rank 1 is late or makes another call. Each rank
-// writes the status that its call answers, and how long that took, to a file of its own, as a
-// program would write what it keeps; then all leave at once.
+// writes the status and the duration of its call to its own file, as a program would save its
+// state; then all ranks exit together. Run by failures.
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
@@ -30,7 +30,7 @@ winnow::Status add(winnow::Cluster& cluster, winnow::BodyName name) {
   return cluster.add({&batch, 1}, {&answer, 1});
 }
 
-/// What all ranks but the strange one do.
+/// The call of all ranks except the strange one.
 winnow::Status common(winnow::Cluster& cluster, const std::string& kind) {
   winnow::ClusterDigest digest;
   if (kind == "late_for_exchange") return add(cluster, 10 + cluster.first_hosted());
@@ -70,7 +70,7 @@ int main(int, char** arguments) {
   std::ofstream(file(rank)) << winnow::to_string(status) << ' '
                             << (took.count() < kLimit + 1.0 || rank == 1 ? "in time" : "late")
                             << std::endl;
-  // Who leaves before the others have written ends them.
+  // A rank that exits before the others have written ends them too.
   for (std::uint32_t other = 0; other < cluster.ranks(); ++other) {
     while (!std::filesystem::exists(file(other))) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -1,3 +1,5 @@
+// Aabb: overlap, validity, conversion from doubles and origins, and the layouts that BoxView reads.
+
 #include <gtest/gtest.h>
 #include <winnow/core/aabb.h>
 #include <winnow/core/box_view.h>
@@ -17,7 +19,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 const Aabb kUnit{{0, 0, 0}, {1, 1, 1}};
 
-TEST(Aabb, that_touches_overlaps) {
+TEST(Aabb, boxes_that_touch_overlap) {
   for (int axis = 0; axis < 3; ++axis) {
     Aabb next = kUnit;
     next.min[axis] = 1.0F;
@@ -30,14 +32,14 @@ TEST(Aabb, that_touches_overlaps) {
   }
 }
 
-TEST(Aabb, of_zero_extent_is_valid_and_overlaps_itself) {
+TEST(Aabb, box_of_zero_extent_overlaps_itself) {
   const Aabb point{{1, 1, 1}, {1, 1, 1}};
   EXPECT_TRUE(point.is_valid());
   EXPECT_TRUE(point.overlaps(point));
   EXPECT_TRUE(point.overlaps(kUnit));
 }
 
-TEST(Aabb, by_default_is_empty_and_overlaps_nothing) {
+TEST(Aabb, default_box_is_empty_and_overlaps_nothing) {
   const Aabb everything{Eigen::Vector3f::Constant(-kInf), Eigen::Vector3f::Constant(kInf)};
   EXPECT_FALSE(Aabb{}.is_valid());
   EXPECT_FALSE(Aabb{}.overlaps(kUnit));
@@ -50,7 +52,7 @@ TEST(Aabb, by_default_is_empty_and_overlaps_nothing) {
   EXPECT_TRUE(everything.is_valid());
 }
 
-TEST(Aabb, is_valid_exactly_if_no_axis_is_nan_inverted_or_wholly_at_infinity) {
+TEST(Aabb, nan_inverted_and_infinite_axes_are_invalid) {
   EXPECT_TRUE(kUnit.is_valid());
   for (int axis = 0; axis < 3; ++axis) {
     const auto with = [axis](float low, float high) {
@@ -74,7 +76,7 @@ TEST(Aabb, is_valid_exactly_if_no_axis_is_nan_inverted_or_wholly_at_infinity) {
   }
 }
 
-TEST(Aabb, with_a_nan_overlaps_nothing) {
+TEST(Aabb, box_with_a_nan_overlaps_nothing) {
   for (int axis = 0; axis < 3; ++axis) {
     Aabb bad = kUnit;
     bad.min[axis] = kNan;
@@ -83,7 +85,7 @@ TEST(Aabb, with_a_nan_overlaps_nothing) {
   }
 }
 
-TEST(Aabb, from_doubles_contains_them) {
+TEST(Aabb, box_from_doubles_contains_them) {
   const Eigen::Vector3d low(0.1, -0.1, 1e-300);
   const Eigen::Vector3d high(0.3, 1e300, 16777217.0);
   const Aabb box = Aabb::outward(low, high);
@@ -93,7 +95,7 @@ TEST(Aabb, from_doubles_contains_them) {
   }
 }
 
-TEST(BoxView, reads_arrays_columns_and_strided_members_alike) {
+TEST(BoxView, arrays_columns_and_strided_members_read_alike) {
   struct Body {
     float low[3];
     double mass;
@@ -124,7 +126,7 @@ TEST(BoxView, reads_arrays_columns_and_strided_members_alike) {
   EXPECT_EQ(BoxView().count, 0U);
 }
 
-TEST(Aabb, measured_from_an_origin_far_away_is_as_tight_as_around_zero) {
+TEST(Aabb, box_relative_to_a_far_origin_is_tight) {
   const Eigen::Vector3d low(0.25, -1.5, 3.0);
   const Eigen::Vector3d high(0.75, 1.5, 3.0);
   const Eigen::Vector3d origin(1e8, -1e9, 1e12);
@@ -132,8 +134,8 @@ TEST(Aabb, measured_from_an_origin_far_away_is_as_tight_as_around_zero) {
   EXPECT_EQ(Aabb::outward(low, high, Eigen::Vector3d::Zero()), Aabb::outward(low, high));
 }
 
-// Whole numbers of 2^-16 below 2^36 are doubles, and their differences are exact in integers.
-TEST(Aabb, measured_from_an_origin_contains_the_exact_difference) {
+// Multiples of 2^-16 below 2^36 are doubles, and their differences are exact in integers.
+TEST(Aabb, box_relative_to_an_origin_contains_exact_differences) {
   std::mt19937_64 random(7);
   const auto draw = [&](int bits) {
     std::uniform_int_distribution<std::int64_t> all(-(std::int64_t{1} << bits),

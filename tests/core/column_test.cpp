@@ -1,3 +1,5 @@
+// Column: alignment, growth, touched pages, refused memory, and sizes that overflow.
+
 #include <gtest/gtest.h>
 #include <winnow/core/column.h>
 
@@ -12,7 +14,7 @@ namespace winnow::test {
 namespace {
 
 struct Odd {
-  std::array<std::uint8_t, 24> bytes;  // does not divide a cache line
+  std::array<std::uint8_t, 24> bytes;  // 24 does not divide a cache line
 };
 
 template <typename T>
@@ -20,7 +22,7 @@ bool is_aligned(const Column<T>& column) {
   return reinterpret_cast<std::uintptr_t>(column.data()) % 64 == 0;
 }
 
-TEST(Column, is_aligned_to_64_bytes_and_holds_whole_lines) {
+TEST(Column, capacity_is_aligned_and_in_whole_lines) {
   CountingMemory memory;
   Column<float> floats(&memory);
   Column<Odd> odds(&memory);
@@ -37,7 +39,7 @@ TEST(Column, is_aligned_to_64_bytes_and_holds_whole_lines) {
   }
 }
 
-TEST(Column, keeps_its_content_when_it_grows) {
+TEST(Column, growth_keeps_the_content) {
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
   for (std::uint32_t i = 0; i < 5000; ++i) ASSERT_TRUE(column.push_back(i));
@@ -47,7 +49,7 @@ TEST(Column, keeps_its_content_when_it_grows) {
   EXPECT_EQ(column.bytes().reserved, memory.outstanding());
 }
 
-TEST(Column, keeps_its_content_when_its_room_is_touched) {
+TEST(Column, reserve_with_touched_pages_keeps_the_content) {
   CountingMemory memory;
   Column<Odd> column(&memory);
   ASSERT_TRUE(column.reserve(0, Pages::touched));
@@ -63,7 +65,7 @@ TEST(Column, keeps_its_content_when_its_room_is_touched) {
   EXPECT_EQ(column.bytes().reserved, memory.outstanding());
 }
 
-TEST(Column, has_every_page_behind_its_content_written_to) {
+TEST(Column, touch_writes_to_every_page_of_the_content) {
   constexpr std::size_t kPage = 4096;
   CountingMemory memory;
   Column<std::uint8_t> column(&memory);
@@ -78,14 +80,14 @@ TEST(Column, has_every_page_behind_its_content_written_to) {
   }
 }
 
-TEST(Column, grows_in_few_steps) {
+TEST(Column, growth_takes_few_steps) {
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
   for (std::uint32_t i = 0; i < 100000; ++i) ASSERT_TRUE(column.push_back(i));
   EXPECT_LT(memory.requests(), 30U);
 }
 
-TEST(Column, is_unchanged_when_memory_is_refused) {
+TEST(Column, refused_memory_leaves_the_column_unchanged) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
@@ -104,7 +106,7 @@ TEST(Column, is_unchanged_when_memory_is_refused) {
   EXPECT_EQ(memory.outstanding(), 64U);
 }
 
-TEST(Column, gets_by_with_less_when_generous_growth_is_refused) {
+TEST(Column, growth_takes_less_if_spare_room_is_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
@@ -114,7 +116,7 @@ TEST(Column, gets_by_with_less_when_generous_growth_is_refused) {
   EXPECT_EQ(column.capacity(), 80U);
 }
 
-TEST(Column, shrinks_to_no_less_than_it_holds) {
+TEST(Column, shrink_keeps_at_least_the_content) {
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
   ASSERT_TRUE(column.reserve(1000));
@@ -130,7 +132,7 @@ TEST(Column, shrinks_to_no_less_than_it_holds) {
   EXPECT_EQ(memory.outstanding(), 128U);
 }
 
-TEST(Column, that_cannot_get_less_keeps_what_it_has) {
+TEST(Column, refused_shrink_keeps_the_capacity) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint32_t> column(&memory);
@@ -142,7 +144,7 @@ TEST(Column, that_cannot_get_less_keeps_what_it_has) {
   EXPECT_EQ(column[0], 7U);
 }
 
-TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
+TEST(Column, reserve_beyond_the_address_space_is_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<Odd> column(&memory);
@@ -150,8 +152,8 @@ TEST(Column, that_asks_for_more_bytes_than_there_are_is_refused) {
   EXPECT_EQ(column.capacity(), 0U);
 }
 
-// Numbers of bytes that no longer can be counted must not begin again at zero.
-TEST(Column, that_asks_for_more_than_can_be_counted_is_refused) {
+// Sizes in bytes that overflow must not wrap around to zero.
+TEST(Column, reserve_whose_bytes_overflow_is_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Column<std::uint64_t> column(&memory);
@@ -169,7 +171,7 @@ TEST(Column, that_asks_for_more_than_can_be_counted_is_refused) {
   EXPECT_EQ(column[0], 7U);
 }
 
-TEST(Column, moves_and_swaps_without_copying) {
+TEST(Column, move_and_swap_do_not_copy) {
   CountingMemory memory;
   Column<float> a(&memory);
   ASSERT_TRUE(a.resize(20));
@@ -184,7 +186,7 @@ TEST(Column, moves_and_swaps_without_copying) {
   EXPECT_EQ(memory.requests(), 1U);
 }
 
-TEST(Column, gives_everything_back) {
+TEST(Column, release_returns_all_memory) {
   CountingMemory memory;
   Column<Odd> column(&memory);
   ASSERT_TRUE(column.resize(1000));

@@ -1,3 +1,6 @@
+// Execution: every index runs once, on which threads, in which floating-point environment, and
+// without other work while a task waits.
+
 #include <gtest/gtest.h>
 #include <winnow/core/execution.h>
 
@@ -23,7 +26,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(Execution, runs_every_index_exactly_once) {
+TEST(Execution, every_index_runs_exactly_once) {
   for (const Workers& workers : all_workers()) {
     Threads arena(workers.threads);
     for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U}) {
@@ -36,7 +39,7 @@ TEST(Execution, runs_every_index_exactly_once) {
 }
 
 #if WINNOW_TEST_THREADS
-TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
+TEST(Execution, serial_execution_stays_on_the_calling_thread) {
   Threads arena(8);
   std::vector<std::size_t> order;
   arena.run([&] {
@@ -51,7 +54,7 @@ TEST(Execution, that_is_serial_stays_on_the_calling_thread_in_order) {
 }
 #endif
 
-TEST(Execution, on_a_host_says_how_many_threads_that_has) {
+TEST(Execution, host_execution_has_the_threads_of_the_host) {
   JobSystem jobs = jobs_of("reversed", 5);
   EXPECT_EQ(Execution::on(jobs).concurrency(), 5U);
   EXPECT_FALSE(Execution::on(jobs) == Execution::parallel());
@@ -63,7 +66,7 @@ TEST(Execution, on_a_host_says_how_many_threads_that_has) {
   EXPECT_TRUE(Execution::on({}) == Execution::serial());
 }
 
-TEST(Execution, on_a_host_runs_in_tasks_of_that_host) {
+TEST(Execution, nested_loops_on_a_host_run_every_index) {
   for (const std::string_view host : kHosts) {
     const Execution execution = Execution::on(jobs_of(host, 4));
     std::vector<std::atomic<int>> runs(20 * 30 * 5);
@@ -76,8 +79,8 @@ TEST(Execution, on_a_host_runs_in_tasks_of_that_host) {
   }
 }
 
-// Neighbours stay with one thread, and those of a thread that comes late are done by others.
-TEST(Execution, on_a_host_gives_each_thread_a_stretch_and_then_what_others_have_left) {
+// Each thread runs a range of neighbouring indices; other threads run the range of a late thread.
+TEST(Execution, host_threads_get_ranges_and_then_the_rest) {
   struct Host {
     std::size_t given = 0;
     std::vector<std::size_t> order;
@@ -94,7 +97,7 @@ TEST(Execution, on_a_host_gives_each_thread_a_stretch_and_then_what_others_have_
 }
 
 #if !WINNOW_HAVE_TBB
-TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
+TEST(Execution, parallel_without_arenas_runs_serially) {
   EXPECT_EQ(Execution::parallel().concurrency(), 1U);
   std::vector<std::size_t> order;
   Execution::parallel().for_each(100, [&](std::size_t i) { order.push_back(i); });
@@ -105,7 +108,7 @@ TEST(Execution, without_arenas_is_serial_unless_a_host_has_threads) {
 #ifdef FE_UPWARD
 constexpr FloatMode kOtherMode{FE_UPWARD, true, true};
 
-/// What a denormal number and a rounded sum are here.
+/// A denormal number and a rounded sum as this thread computes them.
 std::pair<float, float> arithmetic_here() {
   const volatile float tiny = 1e-40F;
   const volatile float one = 1.0F;
@@ -113,8 +116,8 @@ std::pair<float, float> arithmetic_here() {
   return {tiny * one, one + less};
 }
 
-// The host may set it after the workers were started.
-TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
+// The host may change the environment after the workers have started.
+TEST(Execution, tasks_have_the_float_environment_of_the_caller) {
   const auto is_everywhere_as_here = [](const Execution& execution) {
     std::array<std::pair<float, float>, 2> seen;
     std::atomic<int> met{0};
@@ -144,8 +147,8 @@ TEST(Execution, runs_tasks_in_the_floating_point_environment_of_the_caller) {
 #endif
 }
 
-// A host's threads may have been left in any environment.
-TEST(Execution, leaves_a_thread_of_the_host_in_the_environment_that_it_had) {
+// The threads of a host may have any floating-point environment.
+TEST(Execution, host_thread_keeps_its_own_float_environment) {
   const auto backwards = jobs_of("reversed", 2);
   const auto in_another = [](void* context, std::size_t count, JobSystem::Task task, void* tasks) {
     const FloatModeScope scope(kOtherMode);
@@ -160,7 +163,7 @@ TEST(Execution, leaves_a_thread_of_the_host_in_the_environment_that_it_had) {
 #endif
 
 #if WINNOW_HAVE_TBB
-TEST(Execution, stays_inside_the_arena_of_the_caller) {
+TEST(Execution, parallel_execution_stays_inside_the_arena) {
   for (const int threads : {1, 2, 8}) {
     tbb::task_arena arena(threads);
     arena.execute([&] {
@@ -175,8 +178,8 @@ TEST(Execution, stays_inside_the_arena_of_the_caller) {
   }
 }
 
-// Two tasks that wait for each other can only both end if two threads run them.
-TEST(Execution, uses_the_threads_of_the_arena) {
+// Two tasks that wait for each other can end only if two threads run them.
+TEST(Execution, threads_of_the_arena_are_used) {
   tbb::task_arena arena(2);
   std::atomic<int> met{0};
   arena.execute([&] {
@@ -188,8 +191,8 @@ TEST(Execution, uses_the_threads_of_the_arena) {
   EXPECT_EQ(met, 2);
 }
 
-// Else a call would return with part of its work done, and say that all is well.
-TEST(Execution, runs_every_task_though_the_group_of_the_caller_is_cancelled) {
+// A call must not skip tasks and then return ok.
+TEST(Execution, all_tasks_run_in_a_cancelled_group) {
   tbb::task_arena arena(2);
   std::atomic<int> runs{0};
   arena.execute([&] {
@@ -202,9 +205,9 @@ TEST(Execution, runs_every_task_though_the_group_of_the_caller_is_cancelled) {
   EXPECT_EQ(runs, 100);
 }
 
-// A task that waits must not pick up other work of the arena, or a caller that holds a lock could
-// meet itself.
-TEST(Execution, runs_nothing_else_while_a_task_waits) {
+// A waiting task must not start other work of the arena: a caller that holds a lock could block
+// itself.
+TEST(Execution, waiting_task_runs_no_other_work) {
   tbb::task_arena arena(2);
   std::atomic<int> mixed{0};
   arena.execute([&] {

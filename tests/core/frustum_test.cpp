@@ -1,3 +1,6 @@
+// Frustum: planes and bounds from a camera and from a matrix, compared with projected points;
+// invalid cameras, matrices and planes.
+
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
 #include <winnow/core/frustum.h>
@@ -66,7 +69,7 @@ struct Camera {
     return clip * view;
   }
 
-  // A point by its place on the screen, in [-1, 1], and its depth.
+  // Returns the point at a screen position in [-1, 1] and a depth.
   [[nodiscard]] Vector3d at(double x, double y, double depth) const {
     const double half = std::tan(0.5 * static_cast<double>(fov));
     const Vector3d local(x * half * static_cast<double>(aspect) * depth, y * half * depth, -depth);
@@ -95,7 +98,7 @@ std::vector<Camera> cameras() {
   return all;
 }
 
-// Signed distance of a point to a plane, in parts of the sizes it comes from.
+// The signed distance of a point to a plane, relative to the sizes that it is computed from.
 double side(const Plane& plane, const Vector3d& p) {
   const Vector3d n = plane.normal.cast<double>();
   const auto offset = static_cast<double>(plane.offset);
@@ -116,7 +119,7 @@ void expect_sees_what_the_camera_sees(const Frustum& frustum, const Camera& came
       }
     }
   }
-  // Each plane cuts off what lies beyond it.
+  // Each plane cuts off the points beyond it.
   const double middle = 0.5 * (n + f);
   const std::array<Vector3d, 6> beyond{camera.at(-1.1, 0, middle), camera.at(1.1, 0, middle),
                                        camera.at(0, -1.1, middle), camera.at(0, 1.1, middle),
@@ -129,10 +132,10 @@ void expect_sees_what_the_camera_sees(const Frustum& frustum, const Camera& came
   }
 }
 
-TEST(Frustum, holds_what_the_camera_sees_and_cuts_off_the_rest) {
+TEST(Frustum, frustum_holds_exactly_the_view_of_the_camera) {
   for (const Camera& camera : cameras()) {
     expect_sees_what_the_camera_sees(camera.frustum(), camera, false);
-    // The bounds are not much larger than what they hold.
+    // The bounds are not much larger than the frustum.
     const Aabb bounds = camera.frustum().bounds;
     const auto reach =
         static_cast<double>(camera.far_t) * (1.0 + std::tan(0.5 * static_cast<double>(camera.fov)) *
@@ -142,7 +145,7 @@ TEST(Frustum, holds_what_the_camera_sees_and_cuts_off_the_rest) {
   }
 }
 
-TEST(Frustum, from_a_matrix_is_that_of_the_same_camera) {
+TEST(Frustum, frustum_from_a_matrix_equals_the_camera) {
   for (const Camera& camera : cameras()) {
     const Frustum expected = camera.frustum();
     for (const auto depth : {Frustum::NearDepth::zero, Frustum::NearDepth::minus_one}) {
@@ -155,9 +158,9 @@ TEST(Frustum, from_a_matrix_is_that_of_the_same_camera) {
   }
 }
 
-TEST(Frustum, without_a_far_plane_sees_to_infinity) {
+TEST(Frustum, frustum_without_a_far_plane_is_unbounded) {
   std::vector<Camera> all = cameras();
-  // Far from the origin, where the matrix itself is rough.
+  // Far from the origin, where the matrix itself is inaccurate.
   all.push_back({{1e6F, -2e6F, 3e5F}, {1, 2, 3}});
   all.push_back(
       {{1e6F, 1e6F, 1e6F}, {-1, 0.3F, 0.1F}, Vector3f::UnitZ(), 1.0F, 1.0F, 0.01F, 90.0F});
@@ -174,7 +177,7 @@ TEST(Frustum, without_a_far_plane_sees_to_infinity) {
   }
 }
 
-TEST(Frustum, of_a_bad_camera_is_invalid) {
+TEST(Frustum, bad_camera_gives_an_invalid_frustum) {
   EXPECT_TRUE(Camera{}.frustum().is_valid());
   std::vector<Camera> bad;
   const auto add = [&](const auto& spoil) {
@@ -204,7 +207,7 @@ TEST(Frustum, of_a_bad_camera_is_invalid) {
   for (std::size_t i = 0; i < bad.size(); ++i) EXPECT_FALSE(bad[i].frustum().is_valid()) << i;
 }
 
-TEST(Frustum, of_a_bad_matrix_or_plane_is_invalid) {
+TEST(Frustum, bad_matrix_or_plane_is_invalid) {
   EXPECT_FALSE(Frustum{}.is_valid() && Frustum{}.planes[0].normal.is_zero());
   EXPECT_FALSE(Frustum::from_matrix(Matrix4d::Zero()).is_valid());
   for (const double value : {std::nan(""), static_cast<double>(kInf)}) {

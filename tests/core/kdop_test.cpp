@@ -1,3 +1,5 @@
+// Kdop for 14, 18 and 26 faces: bounds of points, boxes and rotated boxes, overlap and validity.
+
 #include <gtest/gtest.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/kdop_around.h>
@@ -29,7 +31,7 @@ Eigen::Vector3f random_point(Random& random, double scale) {
       .cast<float>();
 }
 
-// The extent of one slab direction at a point, exact in long double for floats of similar size.
+// The extent of a point along one slab direction, exact in long double for floats of similar size.
 long double along(const std::array<int, 3>& direction, const Eigen::Vector3f& p) {
   return static_cast<long double>(direction[0]) * static_cast<long double>(p.x()) +
          static_cast<long double>(direction[1]) * static_cast<long double>(p.y()) +
@@ -49,7 +51,7 @@ bool contains(const Volume& volume, const Eigen::Vector3f& p) {
   return true;
 }
 
-TYPED_TEST(KdopTest, has_distinct_directions_none_opposite_to_another) {
+TYPED_TEST(KdopTest, directions_are_distinct_and_not_opposite) {
   const auto d = kdop_directions<faces(TypeParam{})>();
   ASSERT_EQ(d.size(), TypeParam::kSlabs);
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -60,13 +62,13 @@ TYPED_TEST(KdopTest, has_distinct_directions_none_opposite_to_another) {
   }
 }
 
-TYPED_TEST(KdopTest, around_points_contains_them) {
+TYPED_TEST(KdopTest, volume_around_points_contains_them) {
   Random random(1);
   for (int i = 0; i < 3000; ++i) {
     const double scale = random.log_uniform(1e-35, 1e35);
     std::vector<Eigen::Vector3f> points;
     for (int n = 0; n < 6; ++n) points.push_back(random_point(random, scale));
-    // One far smaller than the rest, where a sum of coordinates loses digits.
+    // One point is far smaller than the rest, so that a sum of coordinates loses digits.
     points.push_back(random_point(random, scale * 1e-6));
     const TypeParam volume = TypeParam::around(points);
     ASSERT_TRUE(volume.is_valid());
@@ -74,7 +76,7 @@ TYPED_TEST(KdopTest, around_points_contains_them) {
   }
 }
 
-TYPED_TEST(KdopTest, around_a_rotated_box_beyond_all_floats_is_valid) {
+TYPED_TEST(KdopTest, box_near_the_largest_float_gives_valid_volume) {
   OrientedBox box;
   box.center = {2e38F, 2e38F, 2e38F};
   box.half = {1e38F, 1e38F, 1e38F};
@@ -86,7 +88,7 @@ TYPED_TEST(KdopTest, around_a_rotated_box_beyond_all_floats_is_valid) {
   }
 }
 
-TYPED_TEST(KdopTest, around_a_rotated_box_contains_it_and_is_tight) {
+TYPED_TEST(KdopTest, volume_of_a_rotated_box_is_tight) {
   Random random(4);
   for (int i = 0; i < 1000; ++i) {
     const double scale = random.log_uniform(1e-30, 1e30);
@@ -127,7 +129,7 @@ TYPED_TEST(KdopTest, around_a_rotated_box_contains_it_and_is_tight) {
   }
 }
 
-TYPED_TEST(KdopTest, around_points_of_mixed_magnitude_contains_them) {
+TYPED_TEST(KdopTest, points_of_mixed_magnitude_are_contained) {
   Random random(2);
   for (int i = 0; i < 20000; ++i) {
     Eigen::Vector3f p;
@@ -139,7 +141,7 @@ TYPED_TEST(KdopTest, around_points_of_mixed_magnitude_contains_them) {
   }
 }
 
-TYPED_TEST(KdopTest, around_a_box_contains_its_corners_and_has_its_bounds) {
+TYPED_TEST(KdopTest, volume_of_a_box_contains_its_corners) {
   Random random(3);
   for (int i = 0; i < 3000; ++i) {
     const double scale = random.log_uniform(1e-35, 1e35);
@@ -158,8 +160,8 @@ TYPED_TEST(KdopTest, around_a_box_contains_its_corners_and_has_its_bounds) {
   }
 }
 
-// What it is for: points sets that a box cannot tell apart.
-TYPED_TEST(KdopTest, separates_what_boxes_do_not) {
+// A k-DOP separates point sets whose boxes overlap.
+TYPED_TEST(KdopTest, volumes_separate_sets_with_overlapping_boxes) {
   const std::vector<Eigen::Vector3f> low{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
   const std::vector<Eigen::Vector3f> high{{4, 4, 4}, {4, 3.5F, 3.5F}, {3.5F, 4, 3.5F}};
   const TypeParam a = TypeParam::around(low);
@@ -170,7 +172,7 @@ TYPED_TEST(KdopTest, separates_what_boxes_do_not) {
   EXPECT_TRUE(a.overlaps(a));
 }
 
-TYPED_TEST(KdopTest, overlap_is_never_denied_to_sets_that_share_a_point) {
+TYPED_TEST(KdopTest, sets_that_share_a_point_always_overlap) {
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3f shared = random_point(random, 1.0);
@@ -184,21 +186,21 @@ TYPED_TEST(KdopTest, overlap_is_never_denied_to_sets_that_share_a_point) {
   }
 }
 
-TYPED_TEST(KdopTest, touching_in_every_slab_overlaps) {
+TYPED_TEST(KdopTest, volumes_that_touch_in_every_slab_overlap) {
   const TypeParam a = TypeParam::around(Aabb{{0, 0, 0}, {1, 1, 1}});
   const TypeParam b = TypeParam::around(Aabb{{1, 1, 1}, {2, 2, 2}});
   EXPECT_TRUE(a.overlaps(b));
   EXPECT_FALSE(a.overlaps(TypeParam::around(Aabb{{1.5F, 1, 1}, {2, 2, 2}})));
 }
 
-TYPED_TEST(KdopTest, by_default_is_empty) {
+TYPED_TEST(KdopTest, default_volume_is_empty) {
   const TypeParam full = TypeParam::around(Aabb{{-1, -1, -1}, {1, 1, 1}});
   EXPECT_FALSE(TypeParam{}.is_valid());
   EXPECT_FALSE(TypeParam{}.overlaps(full));
   EXPECT_EQ(TypeParam::around(std::vector<Eigen::Vector3f>{}).min, TypeParam{}.min);
 }
 
-TYPED_TEST(KdopTest, with_a_nan_an_inverted_slab_or_one_at_infinity_is_invalid) {
+TYPED_TEST(KdopTest, nan_inverted_and_infinite_slabs_are_invalid) {
   const TypeParam good = TypeParam::around(Aabb{{-1, -1, -1}, {1, 1, 1}});
   constexpr float inf = std::numeric_limits<float>::infinity();
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -214,7 +216,7 @@ TYPED_TEST(KdopTest, with_a_nan_an_inverted_slab_or_one_at_infinity_is_invalid) 
   }
 }
 
-TYPED_TEST(KdopTest, around_an_unbounded_box_is_valid_and_unbounded) {
+TYPED_TEST(KdopTest, volume_of_an_unbounded_box_is_valid) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   const Aabb ground{{-inf, -inf, -1}, {inf, inf, 0}};
   const Aabb corner{{0, 0, 0}, {inf, inf, inf}};

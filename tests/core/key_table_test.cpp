@@ -1,3 +1,6 @@
+// KeyTable and KeyTags: keys are never given twice, by reuse, clear or restore; stale and foreign
+// keys are invalid; refused memory changes nothing.
+
 #include "core/memory/key_table.h"
 #include <gtest/gtest.h>
 
@@ -27,7 +30,7 @@ std::vector<Key> fill(KeyTable& table, std::uint32_t count) {
   return keys;
 }
 
-TEST(KeyTable, gives_a_fresh_tables_objects_consecutive_ids) {
+TEST(KeyTable, fresh_table_gives_consecutive_ids) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> keys = fill(table, 50);
@@ -42,7 +45,7 @@ TEST(KeyTable, gives_a_fresh_tables_objects_consecutive_ids) {
   EXPECT_EQ(table.size(), 50U);
 }
 
-TEST(KeyTable, gives_many_objects_the_keys_that_it_gives_one_after_another) {
+TEST(KeyTable, batch_of_keys_equals_single_keys) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> old = fill(table, 5);
@@ -53,7 +56,7 @@ TEST(KeyTable, gives_many_objects_the_keys_that_it_gives_one_after_another) {
   const std::vector<ClientData> data{10, 11, 12, 13};
   table.acquire(20, data, keys, Execution::parallel());
   EXPECT_EQ(table.size(), 7U);
-  EXPECT_EQ(keys[0].id, 3U);  // freed ids first, the last one before the others
+  EXPECT_EQ(keys[0].id, 3U);  // freed ids first, the last freed id first
   EXPECT_EQ(keys[1].id, 1U);
   EXPECT_EQ(keys[2].id, 5U);
   EXPECT_EQ(keys[3].id, 6U);
@@ -64,7 +67,7 @@ TEST(KeyTable, gives_many_objects_the_keys_that_it_gives_one_after_another) {
   }
 }
 
-TEST(KeyTable, tells_of_many_keys_whether_all_are_valid_and_ascend) {
+TEST(KeyTable, batch_check_finds_invalid_and_unordered_keys) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> keys = fill(table, 40);
@@ -85,7 +88,7 @@ TEST(KeyTable, tells_of_many_keys_whether_all_are_valid_and_ascend) {
   EXPECT_TRUE(look_at({keys.begin(), keys.begin() + 20}).first);
 }
 
-TEST(KeyTable, tells_of_many_keys_what_it_tells_of_each) {
+TEST(KeyTable, batch_check_equals_the_check_of_each) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> keys = fill(table, 300);
@@ -94,7 +97,7 @@ TEST(KeyTable, tells_of_many_keys_what_it_tells_of_each) {
   }
   std::mt19937 random(3);
   for (int round = 0; round < 2000; ++round) {
-    // All but a few of a stretch, of which some may be stale, foreign or out of order.
+    // Takes most keys of a range; some may be stale, foreign or out of order.
     const std::size_t gaps = 2 + random() % 20;
     std::vector<Key> some;
     for (std::size_t i = random() % 290; i < keys.size() && some.size() < 40; ++i) {
@@ -114,7 +117,7 @@ TEST(KeyTable, tells_of_many_keys_what_it_tells_of_each) {
   }
 }
 
-TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {
+TEST(KeyTable, stale_foreign_and_forged_keys_are_invalid) {
   CountingMemory memory;
   KeyTable table(&memory);
   KeyTable other(&memory);
@@ -126,7 +129,7 @@ TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {
   EXPECT_FALSE(table.is_valid(keys[3]));
   EXPECT_FALSE(table.is_live(3));
   EXPECT_EQ(table.key_of(3), Key{});
-  // A free slot answers to no stamp at all.
+  // A free slot accepts no stamp at all.
   for (std::uint32_t stamp = keys[3].stamp - 3; stamp != keys[3].stamp + 4; ++stamp) {
     EXPECT_FALSE(table.is_valid({3, stamp}));
   }
@@ -136,7 +139,7 @@ TEST(KeyTable, does_not_know_stale_foreign_default_or_forged_keys) {
   EXPECT_EQ(table.size(), 9U);
 }
 
-TEST(KeyTable, uses_freed_ids_again_before_new_ones) {
+TEST(KeyTable, freed_ids_are_reused_first) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> keys = fill(table, 20);
@@ -152,7 +155,7 @@ TEST(KeyTable, uses_freed_ids_again_before_new_ones) {
   EXPECT_EQ(fill(table, 1)[0].id, 20U);
 }
 
-TEST(KeyTable, gives_no_key_twice_however_often_a_slot_is_used) {
+TEST(KeyTable, reused_slot_gives_no_key_twice) {
   CountingMemory memory;
   KeyTable table(&memory);
   std::set<std::uint32_t> stamps;
@@ -167,7 +170,7 @@ TEST(KeyTable, gives_no_key_twice_however_often_a_slot_is_used) {
   EXPECT_EQ(table.slot_count(), 1U);
 }
 
-TEST(KeyTable, gives_no_key_twice_where_slots_wear_unevenly) {
+TEST(KeyTable, uneven_use_of_slots_gives_no_key_twice) {
   CountingMemory memory;
   KeyTable table(&memory);
   std::set<std::pair<ObjectId, std::uint32_t>> seen;
@@ -185,7 +188,7 @@ TEST(KeyTable, gives_no_key_twice_where_slots_wear_unevenly) {
   EXPECT_EQ(table.slot_count(), 3U);
 }
 
-TEST(KeyTable, retires_a_slot_whose_generations_are_used_up_when_no_tag_is_left) {
+TEST(KeyTable, worn_slot_is_retired_without_free_tags) {
   CountingMemory memory;
   std::vector<std::unique_ptr<KeyTags>> all;
   for (std::uint32_t i = 0; i < KeyTags::kMost; ++i) all.push_back(std::make_unique<KeyTags>());
@@ -205,7 +208,7 @@ TEST(KeyTable, retires_a_slot_whose_generations_are_used_up_when_no_tag_is_left)
   EXPECT_FALSE(table.is_valid(first));
   EXPECT_FALSE(table.is_valid(last));
   EXPECT_FALSE(table.is_live(0));
-  // The retired slot never returns, not even after a clear, and room is made for another.
+  // The retired slot never returns, not even after a clear, and another slot takes its place.
   EXPECT_EQ(table.size(), 1U);
   EXPECT_EQ(table.slot_count(), 2U);
   table.clear();
@@ -215,7 +218,7 @@ TEST(KeyTable, retires_a_slot_whose_generations_are_used_up_when_no_tag_is_left)
   }
 }
 
-TEST(KeyTags, are_those_of_one_table_as_long_as_it_lives) {
+TEST(KeyTags, live_tags_are_unique) {
   std::vector<std::unique_ptr<KeyTags>> alive;
   std::set<std::uint32_t> taken;
   std::mt19937 random(5);
@@ -232,7 +235,7 @@ TEST(KeyTags, are_those_of_one_table_as_long_as_it_lives) {
   EXPECT_GT(alive.size(), 90'000U);
 }
 
-TEST(KeyTags, come_back_late) {
+TEST(KeyTags, freed_tag_is_reused_late) {
   std::uint32_t gone = 0;
   {
     const KeyTags tags;
@@ -245,7 +248,7 @@ TEST(KeyTags, come_back_late) {
 }
 
 #if WINNOW_TEST_THREADS
-TEST(KeyTags, are_given_to_one_of_several_threads) {
+TEST(KeyTags, threads_get_different_tags) {
   constexpr std::size_t kThreads = 4;
   std::vector<std::vector<std::unique_ptr<KeyTags>>> made(kThreads);
   std::vector<std::thread> threads;
@@ -268,7 +271,7 @@ TEST(KeyTags, are_given_to_one_of_several_threads) {
 }
 #endif
 
-TEST(KeyTable, makes_every_key_stale_on_clear) {
+TEST(KeyTable, clear_makes_every_key_stale) {
   CountingMemory memory;
   KeyTable table(&memory);
   std::vector<Key> keys = fill(table, 100);
@@ -281,7 +284,7 @@ TEST(KeyTable, makes_every_key_stale_on_clear) {
   EXPECT_EQ(table.slot_count(), 100U);
 }
 
-TEST(KeyTable, takes_no_key_of_a_hundred_thousand_others) {
+TEST(KeyTable, many_tables_give_no_key_twice) {
   CountingMemory memory;
   std::vector<std::unique_ptr<KeyTable>> tables;
   std::set<std::pair<ObjectId, std::uint32_t>> keys;
@@ -292,7 +295,7 @@ TEST(KeyTable, takes_no_key_of_a_hundred_thousand_others) {
   }
 }
 
-// What a snapshot keeps of a table.
+// The data of a table that a snapshot stores.
 struct SavedTable {
   explicit SavedTable(const KeyTable& table)
       : stamps(table.stamps().begin(), table.stamps().end()),
@@ -313,8 +316,8 @@ struct SavedTable {
   std::uint32_t stamp;
 };
 
-// Calls of all kinds on a table that is saved and restored, in place or into another one: each key
-// that it gives is new, and each live one that was saved is valid again.
+// Random calls on a table that is saved and restored, in place or into another table: each key that
+// it gives is new, and each live key of a snapshot is valid again after the restore.
 class RestoredTable {
  public:
   explicit RestoredTable(std::uint32_t seed) : random_(seed) { save(); }
@@ -380,7 +383,7 @@ class RestoredTable {
   std::vector<Kept> kept_;
 };
 
-TEST(KeyTable, gives_no_key_twice_after_any_restore) {
+TEST(KeyTable, restored_tables_give_no_key_twice) {
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     RestoredTable table(seed);
     for (int step = 0; step < 2000; ++step) {
@@ -391,7 +394,7 @@ TEST(KeyTable, gives_no_key_twice_after_any_restore) {
   }
 }
 
-TEST(KeyTable, restored_elsewhere_gives_no_key_that_was_saved) {
+TEST(KeyTable, table_restored_elsewhere_gives_no_saved_key) {
   CountingMemory memory;
   KeyTable saved(&memory);
   std::set<std::pair<ObjectId, std::uint32_t>> given;
@@ -408,7 +411,7 @@ TEST(KeyTable, restored_elsewhere_gives_no_key_that_was_saved) {
   for (int i = 0; i < 5; ++i) use(other);
 }
 
-TEST(KeyTable, is_unchanged_when_memory_is_refused) {
+TEST(KeyTable, refused_memory_leaves_the_table_unchanged) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t granted = 0; granted < 3; ++granted) {
     CountingMemory memory;

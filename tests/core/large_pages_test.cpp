@@ -1,3 +1,6 @@
+// LargePages: blocks that do not overlap, slabs that return to the system, refused memory and
+// concurrent threads; and the default memory resource.
+
 #include <gtest/gtest.h>
 #include <winnow/core/large_pages.h>
 
@@ -29,7 +32,7 @@ constexpr bool kHasSlabs = true;
 constexpr bool kHasSlabs = false;
 #endif
 
-/// Blocks at random sizes and alignments, each full of a byte of its own.
+/// Blocks of random sizes and alignments, each filled with its own byte.
 class Blocks {
  public:
   Blocks(LargePages& memory, unsigned seed) : memory_(memory), random_(seed) {}
@@ -80,7 +83,7 @@ class Blocks {
   std::uint8_t next_ = 0;
 };
 
-TEST(LargePages, blocks_of_all_sizes_and_alignments_keep_apart) {
+TEST(LargePages, blocks_do_not_overlap) {
   CountingMemory small;
   {
     LargePages memory(&small);
@@ -103,7 +106,7 @@ TEST(LargePages, blocks_of_all_sizes_and_alignments_keep_apart) {
   EXPECT_EQ(small.outstanding(), 0U);
 }
 
-TEST(LargePages, large_blocks_follow_each_other_by_lines_and_small_ones_lie_elsewhere) {
+TEST(LargePages, large_blocks_share_slabs_small_ones_do_not) {
   if (!kHasSlabs) GTEST_SKIP() << "there are no slabs on this system";
   CountingMemory small;
   LargePages memory(&small);
@@ -117,7 +120,7 @@ TEST(LargePages, large_blocks_follow_each_other_by_lines_and_small_ones_lie_else
   EXPECT_EQ(small.outstanding(), own + LargePages::kLargeBlock - 1);
   memory.deallocate(little, LargePages::kLargeBlock - 1, 64);
   EXPECT_EQ(small.outstanding(), own);
-  // What is given back is handed out again.
+  // A freed block is handed out again.
   memory.deallocate(first, kBytes, 4);
   EXPECT_EQ(memory.allocate(kBytes, 64), first);
   memory.deallocate(first, kBytes, 64);
@@ -125,7 +128,7 @@ TEST(LargePages, large_blocks_follow_each_other_by_lines_and_small_ones_lie_else
   EXPECT_EQ(memory.held_bytes(), LargePages::kPage);
 }
 
-TEST(LargePages, empty_slabs_go_back_to_the_system_but_some) {
+TEST(LargePages, most_empty_slabs_return_to_the_system) {
   if (!kHasSlabs) GTEST_SKIP() << "there are no slabs on this system";
   LargePages memory;
   std::array<void*, 40> blocks{};
@@ -135,11 +138,11 @@ TEST(LargePages, empty_slabs_go_back_to_the_system_but_some) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     memory.deallocate(blocks[i], 3 * kMega, 64);
     const std::size_t free = memory.held_bytes() - memory.used_bytes();
-    // A slab that still holds a block stays.
+    // A slab stays as long as it holds a block.
     EXPECT_LE(free, std::max(memory.used_bytes(), kKept) + 64 * kMega) << "after " << i;
   }
   EXPECT_LE(memory.held_bytes(), kKept);
-  // What comes and goes each frame is not asked for each time.
+  // A block that is allocated and freed each frame makes no system call.
   void* block = memory.allocate(6 * kMega, 64);
   const std::size_t held = memory.held_bytes();
   memory.deallocate(block, 6 * kMega, 64);
@@ -147,16 +150,16 @@ TEST(LargePages, empty_slabs_go_back_to_the_system_but_some) {
 }
 
 #if WINNOW_TEST_EXCEPTIONS
-TEST(LargePages, what_cannot_be_had_is_refused_and_changes_nothing) {
+TEST(LargePages, refused_allocation_changes_nothing) {
   CountingMemory small;
   LargePages memory(&small);
   EXPECT_THROW((void)memory.allocate(std::numeric_limits<std::size_t>::max() - 64, 64),
                std::bad_alloc);
-  // More than there are addresses.
+  // More than the address space.
   EXPECT_THROW((void)memory.allocate(std::size_t{1} << 60U, 64), std::bad_alloc);
   EXPECT_EQ(memory.held_bytes(), 0U);
   if (!kHasSlabs) return;
-  // Without a place to note that it is in use, no block is handed out.
+  // Without memory for its own records, no block is handed out.
   LargePages other(&small);
   small.refuse_after(0);
   EXPECT_THROW((void)other.allocate(kMega, 64), std::bad_alloc);
@@ -167,7 +170,7 @@ TEST(LargePages, what_cannot_be_had_is_refused_and_changes_nothing) {
   other.deallocate(block, kMega, 64);
 }
 
-TEST(LargePages, without_memory_for_itself_all_blocks_come_from_the_other_resource) {
+TEST(LargePages, without_own_memory_blocks_come_from_upstream) {
   CountingMemory small;
   small.refuse_after(0);
   LargePages memory(&small);
@@ -180,7 +183,7 @@ TEST(LargePages, without_memory_for_itself_all_blocks_come_from_the_other_resour
 #endif
 
 #if WINNOW_TEST_THREADS
-TEST(LargePages, threads_use_it_at_once) {
+TEST(LargePages, concurrent_threads_keep_blocks_apart) {
   LargePages memory;
   const auto work = [&](unsigned seed) {
     Blocks blocks(memory, seed);
@@ -200,7 +203,7 @@ TEST(LargePages, threads_use_it_at_once) {
 }
 #endif
 
-TEST(DefaultMemory, is_what_the_program_has_set_and_one_resource_else) {
+TEST(DefaultMemory, default_memory_is_the_resource_of_the_program) {
   EXPECT_EQ(default_memory(), default_memory());
   CountingMemory own;
   std::pmr::memory_resource* const before = std::pmr::set_default_resource(&own);

@@ -20,7 +20,7 @@ using Squares = LookedUp<Square>;
 static_assert(std::random_access_iterator<Squares::iterator>);
 static_assert(std::is_same_v<Squares::value_type, int>);
 
-TEST(LookedUp, is_read_like_a_span) {
+TEST(LookedUp, view_reads_like_a_span) {
   const Squares squares(Square{2}, 5);
   EXPECT_EQ(squares.size(), 5U);
   EXPECT_FALSE(squares.empty());
@@ -33,7 +33,7 @@ TEST(LookedUp, is_read_like_a_span) {
   EXPECT_EQ(Squares(Square{2}, 0).begin(), Squares(Square{2}, 0).end());
 }
 
-TEST(LookedUp, has_iterators_that_go_both_ways) {
+TEST(LookedUp, iterators_move_in_both_directions) {
   const Squares squares(Square{1}, 9);
   Squares::iterator at = squares.begin() + 4;
   EXPECT_EQ(*at, 16);

@@ -9,13 +9,13 @@
 namespace winnow::test {
 namespace {
 
-TEST(Pair, is_ordered_by_first_then_second) {
+TEST(Pair, pairs_are_ordered_by_first_then_second) {
   EXPECT_LT((Pair{1, 9}), (Pair{2, 0}));
   EXPECT_LT((Pair{1, 2}), (Pair{1, 3}));
   EXPECT_EQ((Pair{1, 2}), (Pair{1, 2}));
 }
 
-TEST(PairBuffer, keeps_its_memory_when_cleared) {
+TEST(PairBuffer, cleared_buffer_keeps_its_memory) {
   CountingMemory memory;
   PairBuffer buffer(&memory);
   EXPECT_TRUE(buffer.empty());
@@ -32,7 +32,7 @@ TEST(PairBuffer, keeps_its_memory_when_cleared) {
   EXPECT_EQ(buffer.footprint().results.used, 0U);
 }
 
-TEST(PairBuffer, gives_room_back_and_keeps_its_pairs) {
+TEST(PairBuffer, shrink_keeps_the_pairs) {
   PairBuffer buffer;
   ASSERT_TRUE(buffer.reserve(1000));
   for (ObjectId i = 0; i < 10; ++i) ASSERT_TRUE(buffer.edit().push_back({i, i + 1}));
@@ -42,7 +42,7 @@ TEST(PairBuffer, gives_room_back_and_keeps_its_pairs) {
   EXPECT_EQ(buffer[9], (Pair{9, 10}));
 }
 
-TEST(PairBuffer, puts_the_pairs_first_that_are_asked_for_and_loses_none) {
+TEST(PairBuffer, partition_by_predicate_loses_no_pair) {
   for (const std::size_t count : {0U, 1U, 2U, 100U}) {
     for (const ObjectId step : {1U, 2U, 7U, 1000U}) {
       PairBuffer buffer;
@@ -64,7 +64,7 @@ TEST(PairBuffer, puts_the_pairs_first_that_are_asked_for_and_loses_none) {
   }
 }
 
-TEST(PairBuffer, takes_over_the_pairs_of_another) {
+TEST(PairBuffer, assign_copies_the_pairs_of_another_buffer) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   PairBuffer one(&memory);
@@ -86,7 +86,7 @@ TEST(PairBuffer, takes_over_the_pairs_of_another) {
   EXPECT_EQ(other[0], (Pair{1, 2}));
 }
 
-TEST(PairBuffer, is_unchanged_when_memory_is_refused) {
+TEST(PairBuffer, refused_memory_leaves_the_buffer_unchanged) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   PairBuffer buffer(&memory);

@@ -1,5 +1,4 @@
-// Shapes that queries are asked with: their bounds, what is valid, and rays where the caller keeps
-// them.
+// Query shapes: their bounds, their validity, and rays in arrays of the caller.
 
 #include <gtest/gtest.h>
 #include <winnow/core/cast.h>
@@ -28,7 +27,7 @@ Vector3f some_vector(Random& random, double size) {
       .cast<float>();
 }
 
-TEST(OrientedBox, bounds_hold_every_corner_and_little_more) {
+TEST(OrientedBox, oriented_box_bounds_hold_every_corner_tightly) {
   Random random(81);
   for (int n = 0; n < 2000; ++n) {
     OrientedBox box;
@@ -42,7 +41,7 @@ TEST(OrientedBox, bounds_hold_every_corner_and_little_more) {
     ASSERT_TRUE(box.is_valid());
     const Aabb bounds = box.bounds();
     for (int k = 0; k < 3; ++k) {
-      // In long double the sums of products of floats are as good as exact here.
+      // In long double the sums of products of floats are practically exact here.
       long double reach = 0.0L;
       for (int i = 0; i < 3; ++i) {
         reach += std::abs(static_cast<long double>(box.axes(k, i))) *
@@ -61,7 +60,7 @@ TEST(OrientedBox, bounds_hold_every_corner_and_little_more) {
   }
 }
 
-TEST(OrientedBox, is_invalid_with_any_bad_number) {
+TEST(OrientedBox, oriented_box_with_a_bad_number_is_invalid) {
   EXPECT_TRUE(OrientedBox{}.is_valid());
   for (int k = 0; k < 3; ++k) {
     for (const float value : {kNan, kInf, -kInf}) {
@@ -83,7 +82,7 @@ TEST(OrientedBox, is_invalid_with_any_bad_number) {
   }
 }
 
-TEST(Capsule, bounds_are_the_smallest_around_both_ends) {
+TEST(Capsule, capsule_bounds_hold_both_ends_tightly) {
   Random random(82);
   for (int n = 0; n < 2000; ++n) {
     const double size = random.log_uniform(1e-30, 1e30);
@@ -104,7 +103,7 @@ TEST(Capsule, bounds_are_the_smallest_around_both_ends) {
   }
 }
 
-TEST(Capsule, is_invalid_with_any_bad_number) {
+TEST(Capsule, capsule_with_a_bad_number_is_invalid) {
   EXPECT_TRUE(Capsule{}.is_valid());
   for (const float value : {kNan, kInf, -kInf}) {
     EXPECT_FALSE((Capsule{{0, value, 0}, {1, 1, 1}, 1.0F}).is_valid());
@@ -114,7 +113,7 @@ TEST(Capsule, is_invalid_with_any_bad_number) {
   EXPECT_FALSE((Capsule{{1, 1, 1}, {0, 0, 0}, -1e-45F}).is_valid());
 }
 
-TEST(Ray, is_valid_only_with_a_direction_and_a_range) {
+TEST(Ray, ray_without_direction_or_range_is_invalid) {
   EXPECT_TRUE(Ray{}.is_valid());
   EXPECT_TRUE((Ray{{0, 0, 0}, {0, -0.0F, std::numeric_limits<float>::denorm_min()}}.is_valid()));
   EXPECT_TRUE((Ray{{0, 0, 0}, {1, 0, 0}, 2.0F, 2.0F}.is_valid()));
@@ -129,7 +128,7 @@ TEST(Ray, is_valid_only_with_a_direction_and_a_range) {
   EXPECT_FALSE((Ray{{0, 0, 0}, {1, 0, 0}, 0.0F, kNan}.is_valid()));
 }
 
-TEST(RayBatch, reads_rays_from_any_stride) {
+TEST(RayBatch, rays_at_any_stride_are_read) {
   struct Shot {
     int weapon = 0;
     Ray ray;

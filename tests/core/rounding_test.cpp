@@ -1,3 +1,6 @@
+// Outward rounding of doubles to floats and of sums: tight, on the right side, and equal in every
+// floating-point mode.
+
 #include <gtest/gtest.h>
 #include <winnow/core/rounding.h>
 
@@ -20,7 +23,8 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr float kInfF = std::numeric_limits<float>::infinity();
 constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 
-// The definition: on the right side of the value, and the next float inward is on the other side.
+// Tests the definition: the result is on the right side of the value, and the next float inward is
+// on the other side.
 void expect_tight(double value) {
   const float down = round_down(value);
   const float up = round_up(value);
@@ -32,7 +36,7 @@ void expect_tight(double value) {
   }
 }
 
-TEST(Rounding, leaves_floats_as_they_are) {
+TEST(Rounding, floats_are_returned_unchanged) {
   for (const float f :
        {0.0F, 1.0F, -1.5F, FLT_MAX, -FLT_MAX, FLT_MIN, kDenormal, -kDenormal, kInfF, -kInfF}) {
     EXPECT_EQ(round_down(static_cast<double>(f)), f);
@@ -42,7 +46,7 @@ TEST(Rounding, leaves_floats_as_they_are) {
   EXPECT_TRUE(std::signbit(round_up(-0.0)));
 }
 
-TEST(Rounding, is_outward_and_tight_near_every_power_of_two) {
+TEST(Rounding, rounding_is_tight_near_powers_of_two) {
   for (int exponent = -160; exponent <= 127; ++exponent) {
     for (const double sign : {-1.0, 1.0}) {
       const double power = sign * std::exp2(exponent);
@@ -53,7 +57,7 @@ TEST(Rounding, is_outward_and_tight_near_every_power_of_two) {
   }
 }
 
-TEST(Rounding, is_outward_and_tight_for_random_doubles) {
+TEST(Rounding, rounding_is_tight_for_random_doubles) {
   Random random(1);
   for (int i = 0; i < 200000; ++i) {
     const double magnitude = random.log_uniform(1e-46, 3.4e38);
@@ -61,14 +65,14 @@ TEST(Rounding, is_outward_and_tight_for_random_doubles) {
   }
 }
 
-TEST(Rounding, of_sums_is_to_the_double_beside_the_nearest_one_where_that_is_on_the_wrong_side) {
+TEST(Rounding, sums_round_to_the_nearest_double_outward) {
   Random random(2);
   std::size_t inexact = 0;
   for (int i = 0; i < 200000; ++i) {
     const double a = random.log_uniform(1e-9, 1e9) * (random.chance(0.5) ? 1.0 : -1.0);
     const double b = random.log_uniform(1e-9, 1e9) * (random.chance(0.5) ? 1.0 : -1.0);
     const double sum = a + b;
-    // Exact: the greater one first.
+    // Exact, because the operand of greater magnitude comes first.
     const double first = std::abs(a) > std::abs(b) ? a : b;
     const double second = std::abs(a) > std::abs(b) ? b : a;
     const double rest = (first - sum) + second;
@@ -81,7 +85,7 @@ TEST(Rounding, of_sums_is_to_the_double_beside_the_nearest_one_where_that_is_on_
   EXPECT_EQ(add_up(-0.5, 0.5), 0.0);
 }
 
-TEST(Rounding, of_less_than_the_smallest_denormal_is_zero_or_that_denormal) {
+TEST(Rounding, values_below_the_denormals_round_outward) {
   EXPECT_EQ(round_down(1e-300), 0.0F);
   EXPECT_EQ(round_up(1e-300), kDenormal);
   EXPECT_EQ(round_down(-1e-300), -kDenormal);
@@ -89,7 +93,7 @@ TEST(Rounding, of_less_than_the_smallest_denormal_is_zero_or_that_denormal) {
   EXPECT_EQ(round_up(std::numeric_limits<double>::denorm_min()), kDenormal);
 }
 
-TEST(Rounding, beyond_the_float_range_is_the_largest_float_or_infinity) {
+TEST(Rounding, values_beyond_the_range_round_outward) {
   for (const double huge : {std::nextafter(static_cast<double>(FLT_MAX), kInf), 1e39, 1e308,
                             std::numeric_limits<double>::max()}) {
     EXPECT_EQ(round_down(huge), FLT_MAX);
@@ -99,7 +103,7 @@ TEST(Rounding, beyond_the_float_range_is_the_largest_float_or_infinity) {
   }
 }
 
-TEST(Rounding, keeps_infinity_and_nan) {
+TEST(Rounding, infinity_and_nan_are_kept) {
   EXPECT_EQ(round_down(kInf), kInfF);
   EXPECT_EQ(round_up(kInf), kInfF);
   EXPECT_EQ(round_down(-kInf), -kInfF);
@@ -108,7 +112,7 @@ TEST(Rounding, keeps_infinity_and_nan) {
   EXPECT_TRUE(std::isnan(round_up(std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST(Rounding, to_finite_floats_ends_at_the_largest) {
+TEST(Rounding, finite_float_is_clamped_to_the_largest_float) {
   const auto most = static_cast<double>(FLT_MAX);
   EXPECT_EQ(finite_float(0.1), 0.1F);
   EXPECT_EQ(finite_float(-1.5), -1.5F);
@@ -120,7 +124,7 @@ TEST(Rounding, to_finite_floats_ends_at_the_largest) {
   EXPECT_TRUE(std::isnan(finite_float(std::nan(""))));
 }
 
-/// Numbers of any size, among them denormal floats and doubles.
+/// Numbers of any size, including denormal floats and doubles.
 std::vector<double> some_numbers(std::size_t count, Random& random) {
   std::vector<double> numbers{
       0.0, -0.0, DBL_MIN,  -DBL_MIN, DBL_TRUE_MIN, -DBL_TRUE_MIN, FLT_MIN, -FLT_MIN, kDenormal,
@@ -133,7 +137,7 @@ std::vector<double> some_numbers(std::size_t count, Random& random) {
   return numbers;
 }
 
-TEST(Rounding, is_the_same_in_every_mode_of_a_host) {
+TEST(Rounding, rounding_is_equal_in_every_float_mode) {
   Random random(5);
   const std::vector<double> numbers = some_numbers(scaled(4000), random);
   std::vector<std::uint32_t> standard;
@@ -155,7 +159,7 @@ TEST(Rounding, is_the_same_in_every_mode_of_a_host) {
   }
 }
 
-TEST(Rounding, of_sums_is_outward_in_every_mode) {
+TEST(Rounding, sums_round_outward_in_every_float_mode) {
   Random random(6);
   std::vector<double> numbers = some_numbers(scaled(400), random);
   std::erase_if(numbers, [](double x) { return x != 0.0 && std::abs(x) < 0x1p-959; });
@@ -173,7 +177,7 @@ TEST(Rounding, of_sums_is_outward_in_every_mode) {
         up = add_up(a, b);
       }
       inward += down == add_down(a, b) && up == add_up(a, b) ? 0U : 1U;
-      // In exact arithmetic, which has no denormal terms.
+      // In exact arithmetic, whose terms must not be denormal.
       if (std::abs(a) < 1e-250 || std::abs(b) < 1e-250) continue;
       const Exact sum = Exact(a) + Exact(b);
       inward += Exact(down) <= sum && sum <= Exact(up) ? 0U : 1U;
@@ -182,7 +186,7 @@ TEST(Rounding, of_sums_is_outward_in_every_mode) {
   }
 }
 
-TEST(Rounding, of_a_float_to_double_keeps_it) {
+TEST(Rounding, to_double_is_exact_in_every_float_mode) {
   for (const FloatMode& mode : all_float_modes()) {
     for (const float value : {0.0F, -0.0F, kDenormal, -kDenormal, FLT_MIN - kDenormal, FLT_MIN,
                               1.0F, -FLT_MAX, kInfF, -kInfF}) {
@@ -198,15 +202,15 @@ TEST(Rounding, of_a_float_to_double_keeps_it) {
   }
 }
 
-TEST(Rounding, of_vectors_is_component_wise) {
+TEST(Rounding, vectors_are_rounded_by_component) {
   const Vec3d v(0.1, -0.1, 1e308);
   EXPECT_EQ(round_down(v), Vec3f(round_down(0.1), round_down(-0.1), FLT_MAX));
   EXPECT_EQ(round_up(v), Vec3f(round_up(0.1), round_up(-0.1), kInfF));
 }
 
-// Compilers turn such loops into vector code, and one of them (g++ 12 with its SLP vectoriser)
-// takes a double that is rounded to float and back for the double itself.
-TEST(Rounding, is_outward_in_code_that_is_vectorised) {
+// Compilers vectorise such loops, and g++ 12 with its SLP vectoriser replaces a double that is
+// rounded to float and back with the double itself.
+TEST(Rounding, rounding_is_outward_in_vectorised_code) {
   Random random(2);
   std::vector<double> values(4096);
   for (double& value : values) value = random.uniform(-1, 1);

@@ -1,3 +1,6 @@
+// The sorts of core/sort compared with std::stable_sort, on several numbers of threads: counting
+// sort by bucket, radix sort by bits, and floats as sortable integers.
+
 #include <gtest/gtest.h>
 #include "core/sort/counting_sort.h"
 #include "core/sort/radix_sort.h"
@@ -36,19 +39,19 @@ Sorted sort_by_counting(const std::vector<std::uint32_t>& bucket, std::size_t bu
   return sorted;
 }
 
-TEST(CountingSort, puts_rows_of_a_bucket_together_and_keeps_their_order) {
+TEST(CountingSort, counting_sort_is_stable_by_bucket) {
   const Sorted sorted = sort_by_counting({2, 0, kNone, 2, 0}, 4, 1);
   EXPECT_EQ(sorted.order, (std::vector<std::uint32_t>{1, 4, 0, 3}));
   EXPECT_EQ(sorted.start, (std::vector<std::uint32_t>{0, 2, 2, 4, 4}));
 }
 
-TEST(CountingSort, of_no_rows_in_no_buckets_is_empty) {
+TEST(CountingSort, empty_input_gives_empty_output) {
   const Sorted sorted = sort_by_counting({}, 0, 1);
   EXPECT_TRUE(sorted.order.empty());
   EXPECT_EQ(sorted.start, std::vector<std::uint32_t>{0});
 }
 
-TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
+TEST(CountingSort, bucket_sizes_are_available_before_placing) {
   const std::vector<std::uint32_t> bucket{1, 1, kNone, 0, 1};
   std::vector<std::uint32_t> start(3);
   const Execution execution = Execution::serial();
@@ -58,7 +61,7 @@ TEST(CountingSort, says_how_many_rows_a_bucket_has_before_they_are_placed) {
   EXPECT_EQ(sort.size_of(1), 3U);
 }
 
-TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_however_buckets_are_filled) {
+TEST(CountingSort, order_does_not_depend_on_threads_or_buckets) {
   Random random(1);
   for (const std::size_t buckets : {1U, 3U, 300U, 60000U}) {
     for (const std::size_t used : {std::size_t{1}, (buckets + 1) / 2, buckets}) {
@@ -84,7 +87,7 @@ TEST(CountingSort, gives_the_same_on_any_number_of_threads_and_however_buckets_a
   }
 }
 
-TEST(RadixSort, sorts_keys_of_any_length_and_keeps_the_order_of_equal_ones) {
+TEST(RadixSort, keys_of_any_length_are_sorted_stably) {
   Random random(2);
   for (const unsigned bits : {0U, 1U, 11U, 12U, 17U, 23U, 32U}) {
     std::vector<std::uint64_t> items(30000);
@@ -107,7 +110,7 @@ TEST(RadixSort, sorts_keys_of_any_length_and_keeps_the_order_of_equal_ones) {
   }
 }
 
-TEST(RadixSort, goes_by_bits_anywhere_in_an_item_and_by_no_others) {
+TEST(RadixSort, only_the_given_bits_decide_the_order) {
   Random random(3);
   struct Digits {
     unsigned first;
@@ -118,7 +121,7 @@ TEST(RadixSort, goes_by_bits_anywhere_in_an_item_and_by_no_others) {
     const unsigned bits = digits.bits;
     for (const std::size_t count : {0U, 1U, 700U, 20000U}) {
       std::vector<std::uint64_t> items(count);
-      // Some bits, as those of a level that all are on, do not differ.
+      // Some bits are equal in all items, as the level bits of items on one level are.
       for (std::uint64_t& item : items) item = random.bits() & ~(std::uint64_t{0x3FFFF} << 20U);
       const std::uint64_t whole = ~std::uint64_t{0} >> (64U - bits);
       const auto key = [&](std::uint64_t item) { return item >> first & whole; };
@@ -138,7 +141,7 @@ TEST(RadixSort, goes_by_bits_anywhere_in_an_item_and_by_no_others) {
   }
 }
 
-TEST(Sortable, orders_floats_and_gives_them_back) {
+TEST(Sortable, sortable_orders_floats_and_is_invertible) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<float> ascending{-kInfinity, -3.5F,  -1e-40F, -0.0F,
                                      0.0F,       1e-40F, 2.0F,    kInfinity};

@@ -9,7 +9,7 @@
 namespace winnow::test {
 namespace {
 
-// Squared distance in long double: exact to 64 bits, so its error is far below a float's ulp.
+// Distance in long double: exact to 64 bits, so its error is far below the ulp of a float.
 long double distance(const Vec3f& a, const Vec3f& b) {
   return (a.cast<long double>() - b.cast<long double>()).norm();
 }
@@ -20,7 +20,7 @@ Aabb random_box(Random& random, double scale) {
   return Aabb::outward(low * scale, (low + extent) * scale);
 }
 
-TEST(Sphere, that_touches_overlaps) {
+TEST(Sphere, spheres_that_touch_overlap) {
   const Sphere unit{{0, 0, 0}, 1};
   EXPECT_TRUE(unit.overlaps({{2, 0, 0}, 1}));
   EXPECT_TRUE(unit.overlaps({{0, 1, 0}, 0}));
@@ -28,7 +28,7 @@ TEST(Sphere, that_touches_overlaps) {
   EXPECT_TRUE((Sphere{{3, 4, 0}, 2}.overlaps({{0, 0, 0}, 3})));
 }
 
-TEST(Sphere, is_valid_exactly_if_finite_with_a_radius_of_at_least_zero) {
+TEST(Sphere, sphere_is_valid_if_finite_and_not_negative) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float inf = std::numeric_limits<float>::infinity();
   EXPECT_TRUE((Sphere{{1, 2, 3}, 0}.is_valid()));
@@ -39,7 +39,7 @@ TEST(Sphere, is_valid_exactly_if_finite_with_a_radius_of_at_least_zero) {
   }
 }
 
-TEST(Sphere, around_a_box_contains_its_corners) {
+TEST(Sphere, sphere_around_a_box_contains_its_corners) {
   Random random(2);
   for (int i = 0; i < 20000; ++i) {
     const Aabb box = random_box(random, random.log_uniform(1e-30, 1e30));
@@ -55,13 +55,13 @@ TEST(Sphere, around_a_box_contains_its_corners) {
   }
 }
 
-TEST(Sphere, around_a_point_is_that_point) {
+TEST(Sphere, sphere_around_a_point_has_radius_zero) {
   const Sphere sphere = Sphere::around({{3, 4, 5}, {3, 4, 5}});
   EXPECT_EQ(sphere.center, Vec3f(3, 4, 5));
   EXPECT_EQ(sphere.radius, 0.0F);
 }
 
-TEST(Sphere, has_bounds_that_contain_it_and_no_float_more) {
+TEST(Sphere, bounds_of_a_sphere_are_tight) {
   Random random(3);
   for (int i = 0; i < 20000; ++i) {
     const double scale = random.log_uniform(1e-30, 1e30);
@@ -79,8 +79,8 @@ TEST(Sphere, has_bounds_that_contain_it_and_no_float_more) {
   EXPECT_EQ(exact, (Aabb{{0.5F, 1.5F, 2.5F}, {1.5F, 2.5F, 3.5F}}));
 }
 
-// A filter may report too much, never too little.
-TEST(Sphere, around_overlapping_boxes_overlap) {
+// A filter may report too many pairs, never too few.
+TEST(Sphere, spheres_around_overlapping_boxes_overlap) {
   Random random(4);
   for (int i = 0; i < 50000; ++i) {
     const Aabb a = random_box(random, 1.0);

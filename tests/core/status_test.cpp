@@ -8,8 +8,8 @@
 namespace winnow::test {
 namespace {
 
-// What lies behind the last one has the name of none.
-TEST(Statuses, have_names_of_their_own) {
+// A value after the last status has the name of an unknown status.
+TEST(Statuses, every_status_has_its_own_name) {
   const std::string none = to_string(static_cast<Status>(255));
   std::set<std::string> names{none};
   for (int i = 0; i <= static_cast<int>(Status::communication_failed); ++i) {

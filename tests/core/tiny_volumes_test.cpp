@@ -1,4 +1,4 @@
-// Volumes around volumes, made by a host that rounds in any direction and flushes denormal numbers.
+// Conversions of volumes under a host that rounds in any direction and flushes denormal numbers.
 
 #include <gtest/gtest.h>
 #include <winnow/core/capsule.h>
@@ -30,7 +30,7 @@ std::vector<Aabb> tiny_boxes() {
   return boxes;
 }
 
-/// Calls make(box) for each of the boxes in a mode of a host.
+/// Returns make(box) for each box, computed in a floating-point mode.
 template <typename Make>
 auto made_in(const FloatMode& mode, const std::vector<Aabb>& boxes, Make&& make) {
   std::vector<decltype(make(boxes[0]))> made;
@@ -40,7 +40,7 @@ auto made_in(const FloatMode& mode, const std::vector<Aabb>& boxes, Make&& make)
   return made;
 }
 
-/// All floats of a volume. The sign of a 0 depends on the direction of rounding.
+/// Returns all floats of a volume. The sign of a 0 depends on the rounding direction.
 template <typename Made>
 auto floats_of(const Made& made) {
   return std::bit_cast<std::array<float, sizeof(Made) / sizeof(float)>>(made);
@@ -60,7 +60,7 @@ void expect_the_same_in_every_mode(Make&& make) {
   }
 }
 
-TEST(TinyVolumes, have_the_same_boxes_in_every_mode) {
+TEST(TinyVolumes, bounds_are_equal_in_every_float_mode) {
   expect_the_same_in_every_mode([](const Aabb& box) {
     return Sphere{box.min,
                   std::bit_cast<float>(std::bit_cast<std::uint32_t>(box.max.x()) & 0x7FFFFFFFU)}
@@ -76,7 +76,7 @@ TEST(TinyVolumes, have_the_same_boxes_in_every_mode) {
   });
 }
 
-TEST(TinyVolumes, from_an_origin_are_the_same_in_every_mode) {
+TEST(TinyVolumes, boxes_from_an_origin_are_equal_in_modes) {
   Random random(73);
   std::vector<double> numbers{0.0, -0.0, 1.0, 0x1p-1074, -0x1p-1074, 0x1p-1022, -0x1p-960};
   while (numbers.size() < scaled(300)) {
@@ -103,7 +103,7 @@ TEST(TinyVolumes, from_an_origin_are_the_same_in_every_mode) {
   }
 }
 
-TEST(TinyVolumes, have_the_same_kdops_in_every_mode) {
+TEST(TinyVolumes, kdops_are_equal_in_every_float_mode) {
   expect_the_same_in_every_mode([](const Aabb& box) { return Kdop<26>::around(box); });
   expect_the_same_in_every_mode([](const Aabb& box) {
     const std::vector<Vec3f> points{box.min, box.max};
@@ -123,7 +123,7 @@ OrientedBox oriented(const Aabb& box) {
   return result;
 }
 
-/// How far a box reaches along an integer direction from its centre, and where that is.
+/// The centre of a box along an integer direction, and its extent from there.
 struct Span {
   Exact middle;
   Exact reach;
@@ -144,7 +144,7 @@ Span span_of(const OrientedBox& box, const std::array<int, 3>& direction) {
   return span;
 }
 
-TEST(TinyVolumes, that_are_rotated_stay_inside_in_every_mode) {
+TEST(TinyVolumes, rotated_boxes_stay_inside_in_every_mode) {
   const std::vector<Aabb> boxes = tiny_boxes();
   const auto directions = kdop_directions<26>();
   for (const FloatMode& mode : all_float_modes()) {
@@ -166,7 +166,7 @@ TEST(TinyVolumes, that_are_rotated_stay_inside_in_every_mode) {
   }
 }
 
-TEST(TinyVolumes, lie_inside_their_spheres_in_every_mode) {
+TEST(TinyVolumes, boxes_stay_inside_their_spheres_in_every_mode) {
   const std::vector<Aabb> boxes = tiny_boxes();
   for (const FloatMode& mode : all_float_modes()) {
     const auto spheres = made_in(mode, boxes, [](const Aabb& b) { return Sphere::around(b); });

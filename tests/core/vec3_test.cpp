@@ -13,7 +13,7 @@
 namespace winnow::test {
 namespace {
 
-// What a user may have written.
+// A vector class of a user.
 class UsersPoint {
  public:
   UsersPoint(float x, float y, float z) : at_{x, y, z} {}
@@ -25,7 +25,7 @@ class UsersPoint {
   std::array<float, 3> at_;
 };
 
-TEST(Vec3, computes_as_written_on_paper) {
+TEST(Vec3, operators_compute_componentwise) {
   constexpr Vec3f a{1, 2, 3};
   constexpr Vec3f b{4, -5, 6};
   static_assert(a + b == Vec3f(5, -3, 9) && a - b == Vec3f(-3, 7, -3) && -a == Vec3f(-1, -2, -3));
@@ -39,7 +39,7 @@ TEST(Vec3, computes_as_written_on_paper) {
   EXPECT_EQ(Vec3f(3, 0, 4).norm(), 5.0F);
 }
 
-TEST(Vec3, is_finite_without_infinities_and_nan) {
+TEST(Vec3, vector_with_infinity_or_nan_is_not_finite) {
   EXPECT_TRUE(Vec3f::constant(std::numeric_limits<float>::max()).all_finite());
   for (const float bad :
        {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
@@ -52,7 +52,7 @@ TEST(Vec3, is_finite_without_infinities_and_nan) {
   }
 }
 
-TEST(Vec3, takes_vectors_of_others_and_becomes_those_of_eigen) {
+TEST(Vec3, foreign_vectors_convert_in_and_eigen_out) {
   const Aabb box{UsersPoint(1, 2, 3), Eigen::Vector3f(4, 5, 6)};
   EXPECT_EQ(box, (Aabb{{1, 2, 3}, {4, 5, 6}}));
   const Eigen::Vector3f max = box.max;
@@ -62,14 +62,14 @@ TEST(Vec3, takes_vectors_of_others_and_becomes_those_of_eigen) {
                 !std::is_convertible_v<Eigen::Vector3d, Vec3f>);
 }
 
-TEST(Vec3, lies_under_a_vector_of_eigen) {
+TEST(Vec3, as_eigen_maps_the_same_memory) {
   Vec3d v{1, -2, 3};
   as_eigen(v) *= 2.0;
   EXPECT_EQ(v, Vec3d(2, -4, 6));
   EXPECT_EQ(as_eigen(v).cwiseAbs().maxCoeff(), 6.0);
 }
 
-TEST(Matrix, goes_to_eigen_and_back) {
+TEST(Matrix, matrix_converts_to_eigen_and_back) {
   Random random(77);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));

@@ -1,9 +1,9 @@
 """Counts all instances of a template together: merge.py EXPORT.json IN.info OUT.info.
 
-llvm-cov writes the branches of each instance of a function by themselves to files for lcov, and a file
-that was compiled under two spellings of its path twice. This writes lines and branches once for each
-place in a source, with all that came by it. EXPORT.json is what `llvm-cov export -format=text` writes of
-the same as IN.info.
+In its files for lcov, llvm-cov writes separate branches for each instance of a template, and lists a
+file twice if it was compiled under two spellings of its path. This script writes lines and branches
+once for each place in a source, with the sum of all executions. EXPORT.json is the output of
+`llvm-cov export -format=text` for the same run as IN.info.
 """
 
 import collections
@@ -13,7 +13,7 @@ import sys
 
 
 def branches_of(export):
-    """By file, then place: how often it was true, and how often false."""
+    """Returns, by file and place, how often a condition was true and how often false."""
     files = collections.defaultdict(dict)
     for function in export["data"][0]["functions"]:
         for *place, true, false, file, _, _ in function.get("branches", []):
@@ -25,7 +25,7 @@ def branches_of(export):
 
 
 def lines_of(info):
-    """By file, then line: how often it was come by."""
+    """Returns, by file and line, how often the line was executed."""
     files = collections.defaultdict(collections.Counter)
     name = ""
     for line in info:
@@ -38,13 +38,13 @@ def lines_of(info):
 
 
 def record(name, lines, branches):
-    """What lcov reads of one file."""
+    """Yields the record of one file in lcov's format."""
     yield f"SF:{name}\n"
     for number, count in sorted(lines.items()):
         yield f"DA:{number},{count}\n"
     for number, (place, counts) in enumerate(sorted(branches.items())):
         for way, count in enumerate(counts):
-            # A condition that nothing came by was not asked at all.
+            # A condition that was never evaluated has no count.
             yield f"BRDA:{place[0]},{number},{way},{count if any(counts) else '-'}\n"
     yield f"BRF:{2 * len(branches)}\n"
     yield f"BRH:{sum(count != 0 for counts in branches.values() for count in counts)}\n"

@@ -1,5 +1,5 @@
-// Debug information of what partitions, scenes and contacts hold, as a winnow that was built with
-// it has: the library that is tested has none.
+// Emits debug information for the internal types of partitions, scenes and contacts, as a debug
+// build of winnow has it; the library under test is built without.
 
 #include "partitions/state/partition_state.h"
 #include "pipeline/scene/contact_frame.h"

@@ -1,4 +1,4 @@
-// Values that a debugger shows; see the script beside it.
+// Values that a debugger prints; run by the script `gdb`.
 
 #include <winnow/winnow.h>
 
@@ -6,7 +6,7 @@
 
 namespace {
 
-// Kept by who never looks at it, so that a debugger can.
+// The break point: takes the value by pointer, so that the compiler keeps it.
 void stop_here(const void* /*value*/) {}
 
 }  // namespace

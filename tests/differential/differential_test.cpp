@@ -1,5 +1,5 @@
-// All exact partitions against each other on larger scenes than the slow twin can check, in motion,
-// on every instruction set. Set WINNOW_SEED for other scenes.
+// Compares all exact partitions with each other on moving scenes, larger than the brute-force
+// reference can check, on every instruction set. Set WINNOW_SEED for other scenes.
 
 #include <algorithm>
 #include <memory>
@@ -50,8 +50,8 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-// The partitions that are played against each other: exact ones, alternately on one thread and on
-// more, each with a buffer that it carries along.
+// The partitions that are compared: exact ones, alternately on one thread and on several, each with
+// its own pair buffer that is reused in every frame.
 class Field {
  public:
   Field(Isa isa, const std::vector<Aabb>& boxes) {
@@ -76,7 +76,7 @@ class Field {
     }
   }
 
-  // All partitions' canonical pairs are the same; what they are.
+  // Returns the canonical pairs if all partitions have the same ones.
   std::optional<std::vector<Pair>> agreed_pairs() {
     std::optional<std::vector<Pair>> agreed;
     for (Player& player : players_) {
@@ -98,7 +98,7 @@ class Field {
     PairBuffer buffer;
   };
   std::vector<Player> players_;
-  std::vector<Key> keys_;  // of any player: the ids are the same in all
+  std::vector<Key> keys_;  // of any player: the ids are equal in all
 };
 
 class Differential : public testing::TestWithParam<Case> {};
@@ -117,7 +117,7 @@ TEST_P(Differential, partitions_agree_frame_by_frame) {
       field.update(move(motion, boxes, random), boxes);
       const auto agreed = field.agreed_pairs();
       ASSERT_TRUE(agreed.has_value()) << to_string(motion) << ", frame " << frame;
-      // Agreement is not yet truth.
+      // Agreement is no proof: compares with an independent sweep.
       if (frame == 5) {
         EXPECT_EQ(*agreed, swept_pairs(numbered(boxes)));
       }
@@ -128,8 +128,8 @@ TEST_P(Differential, partitions_agree_frame_by_frame) {
 INSTANTIATE_TEST_SUITE_P(All, Differential, testing::ValuesIn(all_cases()),
                          testing::PrintToStringParamName());
 
-// The tests' own fast twin is compared with the slow one here, since all large scenes rest on it.
-TEST(Twins, agree) {
+// Compares the fast reference of the tests with the slow one, since all large scenes rely on it.
+TEST(Twins, sweep_reference_agrees_with_brute_force) {
   for (const Start& start : kStarts) {
     const std::vector<Object> objects = numbered(start.make(1200, 9));
     EXPECT_EQ(swept_pairs(objects), brute_force_pairs(objects)) << start.name;

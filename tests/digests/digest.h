@@ -1,6 +1,6 @@
 #pragma once
 
-// What digests are made of and what with, and the works that other files have.
+// The digest, its random numbers, and the works that are digested.
 
 #include <winnow/winnow.h>
 
@@ -17,13 +17,13 @@ namespace winnow::test {
 class Digest {
  public:
   void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
-  /// Zeros of either sign are the same. By bits: a sum with 0 keeps the sign if the host rounds
+  /// Zeros of either sign are equal. Tests the bits: a sum with 0 keeps the sign if the host rounds
   /// down, and loses denormal numbers if it flushes them.
   void add(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     add(bits << 1U == 0 ? std::uint64_t{0} : bits);
   }
-  /// Which way pairs were answered: what lanes leave to the solver takes longer.
+  /// Adds how the pairs were computed: pairs that the lanes leave to the solver take longer.
   void add(const NarrowStatistics& s) {
     for (const std::uint64_t number :
          {s.pairs, s.recomputed, s.without_lanes, s.exact, s.bounded}) {
@@ -36,7 +36,7 @@ class Digest {
   std::uint64_t hash_ = 0xCBF29CE484222325ULL;
 };
 
-/// Numbers that are exact in every mode.
+/// Random numbers that are exact in every floating-point mode.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : state_(seed) {}
@@ -47,7 +47,7 @@ class Numbers {
     return z ^ (z >> 31U);
   }
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
-  /// A multiple of 2^-16 in [-range, range), of a power of two.
+  /// Returns a multiple of 2^-16 in [-range, range); the range is a power of two.
   double coordinate(int range) {
     const auto steps = static_cast<std::int64_t>(bits() % (std::uint64_t{1} << 20U)) - (1 << 19);
     return static_cast<double>(steps) * range * 0x1p-19;
@@ -63,17 +63,17 @@ class Numbers {
   std::uint64_t state_;
 };
 
-/// Something that is done and digested.
+/// A computation whose results are digested.
 struct Work {
   std::string name;
   std::function<void(const Execution&, Digest&)> run;
 };
 
-/// Bodies of every kind and what is special about them, met, moved and cast.
+/// Collisions, motions and casts of bodies of every kind and with special poses.
 [[nodiscard]] std::vector<Work> shape_works();
-/// Partitions that objects come to, leave and move in, and what that took.
+/// Partitions whose objects are inserted, removed and moved, with their work counters.
 [[nodiscard]] std::vector<Work> refresh_works();
-/// These, and pairs, queries, shapes and scenes besides.
+/// All works: the above, and pairs, queries, shapes and scenes.
 [[nodiscard]] std::vector<Work> all_work();
 
 }  // namespace winnow::test

@@ -1,12 +1,12 @@
 // Usage: winnow_digests [--check FILE | --check-once FILE]
 //
-// Prints a digest of every kind of answer, one a line, in each floating-point mode that a host may
-// have set: each is computed on every instruction set of the machine and on 1 to 32 threads, of
-// arenas of oneTBB, where winnow is built with it, and of a pool of its own, and if these do not
-// agree, says which of them differ. With --check prints the lines alone that the file has
-// otherwise, and ends with 1 if there are any. --check-once takes the best instruction set and one
-// thread alone. The numbers that go in are made without the mathematical library, whose last digits
-// depend on its version.
+// Prints a digest of every kind of result, one per line, in each floating-point mode that a host
+// may have set. Each is computed on every instruction set of the machine and on 1 to 32 threads, on
+// arenas of oneTBB, if winnow is built with it, and on a thread pool of this program. If these do
+// not agree, the line says which differ. With --check it prints only the lines that differ from the
+// file, and returns 1 if there are any. --check-once uses only the best instruction set and one
+// thread. The input numbers are made without the mathematical library, whose last digits depend on
+// its version.
 
 #if WINNOW_HAVE_TBB
 #include <tbb/global_control.h>
@@ -27,7 +27,7 @@
 #include "tests/digests/digest.h"
 #include "tests/support/float_modes.h"
 
-// There are no threads in WASI.
+// WASI has no threads.
 #if !defined(__wasi__)
 #include "bench/common/thread_pool.h"
 #endif
@@ -43,12 +43,12 @@ constexpr FloatMode kModes[] = {{FE_TONEAREST},
 #endif
                                 {FE_TONEAREST, true, true}};
 
-/// As the file of digests has it.
+/// The name in the file of digests.
 const char* name_of(const FloatMode& mode) {
   return mode.results_flushed ? "flushed" : direction_of(mode);
 }
 
-/// Who does the work: who asks alone, an arena of so many threads, or a pool.
+/// The threads of a computation: the caller only (1), an arena, or a pool.
 struct Workers {
   int threads;
   bool is_pool = false;
@@ -88,7 +88,7 @@ std::uint64_t digest_of(const FloatMode& mode, const Work& work, const Workers& 
   return digest.value();
 }
 
-/// `once`: computed but once.
+/// With `once` the digest is computed on one thread and the current instruction set only.
 std::string line_of(const FloatMode& mode, const Work& work, bool once) {
   std::ostringstream line;
   line << name_of(mode) << ' ' << work.name << ' ';
@@ -112,7 +112,7 @@ std::string line_of(const FloatMode& mode, const Work& work, bool once) {
   return line.str();
 }
 
-/// Lines of the file by what stands before the digest.
+/// Returns the lines of the file, by the text before the digest.
 std::map<std::string, std::string> lines_of(const std::string& path) {
   std::map<std::string, std::string> lines;
   std::ifstream file(path);

@@ -1,6 +1,6 @@
-// Does every work of the digests once, on the caller's thread, and prints how many there are: for
-// checkers that see only what they have compiled, and so neither streams nor threads of libraries.
-// A digest is looked at, so that what it was made of counts as used.
+// Runs every work of the digests once, on the calling thread, and prints their number. For checkers
+// that see only code that they have compiled, hence no streams or threads of libraries. The digest
+// is read, so that its inputs count as used.
 
 #include <cstdio>
 

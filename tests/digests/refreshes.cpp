@@ -1,6 +1,6 @@
-// Lives of partitions: objects come, leave, move and change what they meet, and the order of their
-// rows wears and is made anew. How often, and how many tests it takes, is counted and never timed:
-// it repeats exactly, and is digested as answers are.
+// Life cycles of partitions: objects are inserted, removed, moved and refiltered, while the row
+// order degrades and is rebuilt. The decisions to rebuild depend on counted tests and never on
+// time, so they repeat exactly and are digested like results.
 
 #include "tests/digests/digest.h"
 #include "tests/support/float_modes.h"
@@ -14,7 +14,7 @@
 namespace winnow::test {
 namespace {
 
-/// Digests what it is told to draw.
+/// Digests all draw calls.
 class Drawing final : public DebugDraw {
  public:
   explicit Drawing(Digest& digest) : digest_(digest) {}
@@ -74,7 +74,7 @@ class Life {
     boxes_.insert(boxes_.end(), boxes.begin(), boxes.end());
   }
 
-  /// One that chance tells.
+  /// Removes a random object.
   void remove_one() {
     const auto at = static_cast<std::ptrdiff_t>(numbers_.below(keys_.size()));
     note(partition_.remove(keys_[static_cast<std::size_t>(at)]));
@@ -82,7 +82,7 @@ class Life {
     boxes_.erase(boxes_.begin() + at);
   }
 
-  /// Every so many-th, from one that chance tells on.
+  /// Removes every `stride`-th object, starting from a random one.
   void remove(std::size_t stride) {
     std::vector<Key> gone;
     std::size_t kept = 0;
@@ -102,7 +102,8 @@ class Life {
     note(partition_.update(gone, {std::span<const Aabb>(boxes_).first(gone.size())}));
   }
 
-  /// Every so many-th goes up to so far, in the order of the keys or from the last to the first.
+  /// Moves every `stride`-th object by up to `way` sixteenths, in the order of the keys or
+  /// backwards.
   void move(std::size_t stride, int way, bool backwards = false) {
     std::vector<Key> keys;
     std::vector<Aabb> boxes;
@@ -122,7 +123,8 @@ class Life {
     }
   }
 
-  /// As move, of all boxes told which to look at; these are bad where they are not to.
+  /// As move(), but passes all boxes and an Entries that selects the moved ones; the other boxes
+  /// are invalid.
   void move_listed(std::size_t stride, int way, bool masked) {
     std::vector<Aabb> boxes = boxes_;
     std::vector<std::uint32_t> list;
@@ -141,10 +143,10 @@ class Life {
     note(partition_.update(keys_, boxes, masked ? Entries::masked(mask) : Entries::listed(list)));
   }
 
-  /// How boxes that tremble are told.
+  /// How the boxes of jittering objects are passed to the partition.
   enum class Told { in_order, backwards, in_columns, twice };
 
-  /// Each is up to 2^-12 from where it rests, but for every so many-th, which is there.
+  /// Moves each object by up to 2^-12 from its rest position, except every `stride`-th.
   void tremble(Told told, std::size_t stride = 5) {
     const std::size_t count = keys_.size();
     std::vector<Key> keys = keys_;
@@ -157,7 +159,7 @@ class Life {
       std::reverse(keys.begin(), keys.end());
       std::reverse(boxes.begin(), boxes.end());
     }
-    // Some go far away and are back at once: the last box of a key counts.
+    // Some keys come twice, first with a distant box: the last box of a key counts.
     for (std::size_t i = first; told == Told::twice && i < count; i += 97) {
       keys.push_back(keys[i]);
       boxes.push_back(boxes[i]);
@@ -172,7 +174,7 @@ class Life {
     note(partition_.update(keys, BoxView({at(0), at(1), at(2)}, {at(3), at(4), at(5)}, count)));
   }
 
-  /// So many that follow each other, from one that chance tells on.
+  /// Moves `count` consecutive objects, starting from a random one.
   void move_some(std::size_t count, int way) {
     std::vector<Key> keys;
     std::vector<Aabb> boxes;
@@ -197,7 +199,7 @@ class Life {
     note(partition_.update(keys_, boxes_));
   }
 
-  /// Calls that change nothing.
+  /// Makes invalid calls, which must change nothing.
   void ask_badly() {
     std::vector<Key> keys(keys_.begin(), keys_.begin() + 3);
     std::vector<Aabb> boxes(boxes_.begin() + 3, boxes_.begin() + 6);
@@ -215,7 +217,7 @@ class Life {
     note(partition_.set_filter(keys, std::vector<ObjectFilter>(2)));
   }
 
-  /// Every so many-th of the first ones.
+  /// Sets the filter of every `stride`-th of the first objects.
   void filter(std::size_t stride, const ObjectFilter& filter, std::size_t first = kMaxObjects) {
     std::vector<Key> keys;
     const std::size_t end = std::min(first, keys_.size());
@@ -237,7 +239,7 @@ class Life {
     count();
   }
 
-  /// As one that was not there before.
+  /// Queries into an empty buffer, as a new caller does.
   void ask_anew() {
     pairs_.clear();
     ask();
@@ -266,7 +268,7 @@ class Life {
     note(partition_.debug_draw(drawing, {.objects = true, .structure = true, .labels = true}));
   }
 
-  /// Goes on as what it was saved as.
+  /// Saves the partition and loads it again.
   void restart() {
     Column<std::byte> saved(std::pmr::get_default_resource());
     note(partition_.save(saved));
@@ -284,14 +286,14 @@ class Life {
   }
 
  private:
-  /// Cubes of a few sizes in a world that is longer than high.
+  /// Places a cube of one of a few sizes in a flat world.
   void place(Aabb& box) {
     const auto size = static_cast<float>(1U << numbers_.below(3)) * 0.5F;
     for (int k = 0; k < 3; ++k) {
       box.min[k] = static_cast<float>(numbers_.coordinate(k == 2 ? 4 : 16));
       box.max[k] = box.min[k] + size;
     }
-    // Some have an end or two at infinity.
+    // A few boxes are infinite on one or two sides.
     const std::size_t chance = numbers_.below(300);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     if (chance < 2 && !bounded_) box.min[chance] = -kInfinity;
@@ -301,8 +303,8 @@ class Life {
   /// `way` in sixteenths.
   void step(Aabb& box, int way) { shift(box, way * 0x1p-4); }
 
-  /// Up to `most` along each axis. Boxes are the same in all modes: answers about them are
-  /// compared.
+  /// Moves a box by up to `most` along each axis. Boxes must be equal in all floating-point modes,
+  /// since the results for them are compared.
   void shift(Aabb& box, double most) {
     const FloatModeScope nearest({FE_TONEAREST});
     for (int k = 0; k < 3; ++k) {
@@ -336,7 +338,7 @@ class Life {
   }
 
   Partition partition_;
-  bool bounded_;  // no volumes but boxes have ends at infinity
+  bool bounded_;  // volumes other than boxes have no infinite ends
   Numbers numbers_;
   Digest& digest_;
   std::vector<Key> keys_;
@@ -344,7 +346,8 @@ class Life {
   PairBuffer pairs_;
 };
 
-/// All move a little, for so long that orders wear and are planned.
+/// All objects move a little in every frame, long enough that the order degrades and a rebuild is
+/// planned.
 void drift(Life& life, int way) {
   for (int frame = 0; frame < 40; ++frame) {
     life.move(1, way, frame % 3 == 2);
@@ -354,7 +357,7 @@ void drift(Life& life, int way) {
   }
 }
 
-/// Some move, come and leave, in every way that a program may tell.
+/// Some objects move, arrive and leave, through every form of the calls.
 void churn(Life& life) {
   for (int frame = 0; frame < 24; ++frame) {
     life.move_one_by_one(37, 8);
@@ -375,7 +378,7 @@ void churn(Life& life) {
   }
 }
 
-/// Layers first, then environments, then none.
+/// Filters by layers first, then by environments, then not at all.
 void sift(Life& life) {
   for (int frame = 0; frame < 16; ++frame) {
     life.move(frame % 2 == 0 ? 1 : 7, 4);
@@ -390,7 +393,7 @@ void sift(Life& life) {
   }
 }
 
-/// All tremble where they are and hardly a pair changes, while some move, come and leave.
+/// All objects jitter in place, so that hardly a pair changes, while some move, arrive and leave.
 void rest(Life& life) {
   using Told = Life::Told;
   for (int frame = 0; frame < 90; ++frame) {
@@ -410,8 +413,8 @@ void rest(Life& life) {
   }
 }
 
-/// Few, then many that all move, then many of which few do, then few again: the automatic choice
-/// goes from one structure to another.
+/// Few objects, then many that all move, then many of which few move, then few again: the automatic
+/// structure switches several times.
 void turn(Life& life) {
   for (int frame = 0; frame < 120; ++frame) {
     if (frame == 10) life.insert(3000);
@@ -424,7 +427,7 @@ void turn(Life& life) {
   }
 }
 
-/// In every frame a few jump away from those around them.
+/// In every frame a few objects jump away from their neighbours.
 void stray(Life& life) {
   for (int frame = 0; frame < 24; ++frame) {
     life.move(1, 1);
@@ -433,7 +436,7 @@ void stray(Life& life) {
   }
 }
 
-/// One object jumps, leaves or comes in each frame, so that limits are met and not passed over.
+/// One object jumps, leaves or arrives in each frame, so that the count reaches each limit exactly.
 void trickle(Life& life, std::size_t count) {
   for (std::size_t i = 0; i < count / 2; ++i) {
     life.jump_one();
@@ -450,8 +453,8 @@ void trickle(Life& life, std::size_t count) {
   }
 }
 
-/// Of `count` objects a sixth changes from the first environment to the last, so many that rows are
-/// put in order anew, and nothing moves: those between are in other blocks then.
+/// Moves a sixth of `count` objects from the first environment to the last, enough that the rows
+/// are reordered, while no box moves: the objects of the middle environment get into other blocks.
 void regroup(Life& life, std::size_t count) {
   life.part(3);
   life.ask();
@@ -460,7 +463,7 @@ void regroup(Life& life, std::size_t count) {
   life.ask_anew();
 }
 
-/// In each frame one object more moves, until all of them do: of every share of them.
+/// In each frame one object more moves, until all of them move.
 void swell(Life& life, std::size_t count) {
   for (std::size_t moving = 1; moving <= count; ++moving) {
     life.move_some(moving, moving % 2 == 0 ? 1 : 8);
@@ -469,7 +472,7 @@ void swell(Life& life, std::size_t count) {
   }
 }
 
-/// Everything leaves, memory goes and comes, another structure takes over.
+/// Removes everything, releases and reserves memory, and switches the structure.
 void end(Life& life) {
   Partition& partition = life.partition();
   const StructureKind before = partition.structure();
@@ -512,7 +515,7 @@ void live(StructureKind structure, PartitionOptions options, const Execution& ex
   Life steady(structure, options, few, digest);
   swell(steady, few);
   trickle(steady, few);
-  // Those that were there first, and those that came later, are of layers that do not meet.
+  // The first objects and the later ones get layers that do not collide.
   steady.filter(1, {.layers = 2U, .mask = 2U, .environment = 0});
   steady.filter(1, {.layers = 1U, .mask = 1U, .environment = 0}, few / 2);
   trickle(steady, few);

@@ -1,4 +1,5 @@
-// Pairs of bodies of every kind: where they meet, when, and what a computation can get wrong.
+// Pairs of bodies of every kind: contacts, times of impact and casts, with inputs that are
+// numerically hard.
 
 #include "tests/digests/digest.h"
 
@@ -21,7 +22,7 @@ constexpr ShapeKind kKinds[] = {
     ShapeKind::triangle,        ShapeKind::half_space, ShapeKind::ellipsoid,
     ShapeKind::tapered_capsule, ShapeKind::support};
 
-/// Farthest of a box with this half diagonal.
+/// Support function of a box with this half diagonal.
 void corner_of(const void* context, const double direction[3], double point[3]) {
   const auto& half = *static_cast<const double(*)[3]>(context);
   for (int k = 0; k < 3; ++k) point[k] = direction[k] < 0.0 ? -half[k] : half[k];
@@ -89,7 +90,7 @@ class Bodies {
     return style_ == Style::lattice ? half_steps(-3, 3) : unit_ * numbers_.coordinate(2);
   }
 
-  /// One, two or four components that are alike but for signs.
+  /// Sets an orientation with one, two or four components of equal magnitude: quarter turns.
   void turn_by_quarters(Pose& pose) {
     constexpr int kMasks[] = {1, 2, 4, 8, 3, 5, 9, 6, 10, 12, 15};
     const int mask = kMasks[numbers_.below(std::size(kMasks))];
@@ -99,7 +100,7 @@ class Bodies {
     }
   }
 
-  /// As another pose, but for little or nothing, or as its opposite.
+  /// Sets nearly the orientation of another pose, or its opposite.
   void turn_alike(const Pose& other, Pose& pose) {
     constexpr double kLittle[] = {0.0, 0x1p-50, 0x1p-40, 0x1p-30, 0x1p-20};
     const double sign = numbers_.below(2) == 0 ? 1.0 : -1.0;
@@ -123,7 +124,7 @@ class Bodies {
     return shape;
   }
 
-  /// An octahedron or a block with other proportions.
+  /// Adds an octahedron or a block with other proportions.
   Status add_hull(ShapeId& id) {
     const auto some = [&] { return std::max(length(), 0.5 * unit_); };
     const Vec3d size{some(), some(), some()};
@@ -184,7 +185,7 @@ class Bodies {
   double unit_ = 1.0;
 };
 
-/// Some of each two kinds.
+/// Adds pairs of every two kinds, `each` of them.
 void add_all(Bodies& bodies, std::size_t each, Digest& digest) {
   for (const ShapeKind a : kKinds) {
     for (const ShapeKind b : kKinds) {
@@ -238,7 +239,7 @@ void impacts(Style style, const Execution& execution, Digest& digest) {
   for (std::size_t i = 0; i < bodies.poses.size(); ++i) {
     const Pose& start = bodies.poses[i];
     Pose end = bodies.pose();
-    // One in four slides, one stands.
+    // One in four does not rotate, one in four does not move.
     if (i % 4 == 1) std::copy_n(start.orientation, 4, end.orientation);
     motions.push_back(i % 4 == 2 ? RigidMotion::standing(start) : RigidMotion::between(start, end));
   }
@@ -258,7 +259,7 @@ void impacts(Style style, const Execution& execution, Digest& digest) {
   }
 }
 
-/// Points of triangles and edges that move, on a lattice of so many steps.
+/// Triangles and edges whose points move on a lattice with steps of this size.
 void feature_impacts_of(FeaturePair kind, double steps, Digest& digest) {
   constexpr std::size_t kCount = 300;
   Numbers numbers(13);

@@ -1,4 +1,4 @@
-// The works of each phase, and of all files.
+// The works of each phase, and the list of all works.
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 namespace winnow::test {
 namespace {
 
-/// Cubes of so many sizes.
+/// Returns cubes of `sizes` different sizes.
 std::vector<Aabb> boxes(std::size_t count, std::uint64_t seed, std::size_t sizes = 4) {
   Numbers numbers(seed);
   std::vector<Aabb> boxes(count);
@@ -31,7 +31,7 @@ void add(Digest& digest, std::span<const Hit> hits) {
   }
 }
 
-/// Pairs in the order found, of all objects and of what moved.
+/// Digests the pairs in the order found, of all objects and after some have moved.
 void pairs_of(std::vector<Aabb> given, StructureKind structure, const Execution& execution,
               Digest& digest) {
   Partition partition(structure, {.execution = execution});
@@ -54,7 +54,7 @@ void pairs_of(std::vector<Aabb> given, StructureKind structure, const Execution&
   digest.add(good ? 1.0 : 0.0);
 }
 
-/// Of many sizes, which structures of cells may leave to a tree, and of one.
+/// Cubes of many sizes, some of which grids leave to a tree, and cubes of one size.
 void pairs(StructureKind structure, const Execution& execution, Digest& digest) {
   const std::size_t count = structure == n_squared() ? 60 : 1500;
   pairs_of(boxes(count, 1), structure, execution, digest);
@@ -181,7 +181,7 @@ void scene(const Execution& execution, Digest& digest) {
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 60; ++i) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      // Arguments of a call would be found in whatever order.
+      // In separate statements: the evaluation order of arguments is unspecified.
       Vec3f& point = points.emplace_back();
       for (const int axis : {2, 1, 0}) point[axis] = static_cast<float>(numbers.coordinate(2));
       corners.push_back(3 * i + k);

@@ -1,4 +1,4 @@
-// Rays, moving volumes, views and neighbours among boxes.
+// Queries boxes with rays, moving volumes, a camera view and nearest neighbours.
 
 #include <winnow/partitions/partition.h>
 
@@ -32,22 +32,22 @@ int main() {
 
   // [asking]
   winnow::Hit hit;
-  partition.closest(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hit);        // key, client data, t
-  winnow::HitBuffer hits;                                                  // yours, reused
+  partition.closest(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hit);  // key, client data, t
+  winnow::HitBuffer hits;                                            // keep it from query to query
   partition.all(winnow::SphereCast{{{-5, 0, 0}, 0.5F}, {1, 0, 0}}, hits);  // sorted by first touch
 
   const winnow::Vec3f eye(0, 0, 50), ahead(0, 0, -1), up(0, 1, 0);
   winnow::OverlapBuffer seen;
   partition.overlap(winnow::Frustum::perspective(eye, ahead, up, 1.0F, 1.6F, 0.1F, 100.0F), seen);
-  draw(seen.inside());  // what they contain needs no test
+  draw(seen.inside());  // children of these need no test
   test_children(seen.crossing());
 
-  partition.nearest({{7, 3, 0}, {7, 3, 0}}, 8, 50.0F, hits);  // of a point, sorted by distance
+  partition.nearest({{7, 3, 0}, {7, 3, 0}}, 8, 50.0F, hits);  // to a point, sorted by distance
   winnow::PairBuffer pairs;
   partition.overlap(winnow::BoxView(boxes), pairs);  // (index of the box, object)
   // [end]
   check(hit.key == keys[0] && hit.t == 5.0F, "the first box is hit");
   check(drawn == seen.size() && drawn > 10, "the camera sees some of them");
   check(hits.size() == 8 && hits[0].key == keys[3], "the nearest to x = 7 is the fourth");
-  check(pairs.size() == boxes.size(), "each box overlaps itself alone");
+  check(pairs.size() == boxes.size(), "each box overlaps only itself");
 }

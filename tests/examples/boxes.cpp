@@ -1,4 +1,4 @@
-// Boxes in a row, one of which moves into its neighbour.
+// A row of boxes, one of which moves into its neighbour.
 
 #include <winnow/partitions/partition.h>
 
@@ -30,18 +30,18 @@ int main() {
   // [boxes]
   winnow::Partition partition(winnow::linear_bvh());
   partition.insert(boxes, names, keys);  // Aabb, or your own columns or structs: see BoxView
-  winnow::PairBuffer pairs;              // yours, reused from frame to frame
+  winnow::PairBuffer pairs;              // keep it from frame to frame
   partition.self_pairs(pairs);           // pairs of ids: keys[i].id
   // [end]
-  check(pairs.empty(), "boxes that stand apart make no pairs");
+  check(pairs.empty(), "boxes that are apart make no pairs");
 
   const std::vector<std::uint32_t> moved{3};
   boxes[3] = {{4, 0, 0}, {5, 1, 1}};
   // [frames]
   winnow::PairEvents events;
   partition.self_pairs(pairs, events);
-  partition.update(keys, boxes, winnow::Entries::listed(moved));  // or masked, or copied together
-  partition.self_pairs(pairs, events);  // where little moved, only its pairs are redone
+  partition.update(keys, boxes, winnow::Entries::listed(moved));  // or Entries::masked
+  partition.self_pairs(pairs, events);  // if few objects moved, only their pairs are recomputed
   for (const winnow::KeyPair& pair : events.begun()) meet(pair);
   for (const winnow::KeyPair& pair : events.ended()) part(pair);
   // [end]
@@ -51,11 +51,11 @@ int main() {
 
   // [structures]
   partition.set_structure(winnow::hierarchical_grid());  // keys, filters and events stay
-  partition.set_structure(winnow::automatic());          // picks one and goes on picking
+  partition.set_structure(winnow::automatic());          // chooses one, and changes it if needed
   winnow::Partition bodies(
       winnow::linear_bvh(),
       {.volume = winnow::Volume::kdop14,                 // or aabb, sphere, ...
-       .margin = {.distance = 0.02F, .share = 0.05F}});  // moves within are free
+       .margin = {.distance = 0.02F, .share = 0.05F}});  // moves within it cost nothing
   // [end]
   partition.self_pairs(pairs);
   check(pairs.size() == 1, "another structure finds the same");

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// Ends the example if what it should have found is not so.
+/// Ends the program with an error message if the condition does not hold.
 inline void check(bool holds, const char* what) {
   if (holds) return;
   std::printf("not so: %s\n", what);

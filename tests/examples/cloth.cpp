@@ -1,4 +1,4 @@
-// A sheet that falls through another in one step, which it must not.
+// A sheet moves through another in one step; the time of impact stops it.
 
 #include <winnow/pipeline/deformable_mesh.h>
 
@@ -25,13 +25,13 @@ int main() {
   const std::vector<std::uint32_t> triangles{0, 1, 2, 1, 3, 2, 4, 5, 6, 5, 7, 6};
   // [cloth]
   winnow::DeformableMesh cloth;
-  cloth.build(before, std::span(triangles));  // once: vertices at rest, three corners a triangle
-  cloth.move(before, after);  // in every step: yours, in float or double, columns or structs
+  cloth.build(before, std::span(triangles));  // once: rest positions, corners
+  cloth.move(before, after);                  // in every step: float or double, columns or structs
   double earliest = 1.0;
   for (const auto kind : {winnow::FeaturePair::vertex_face, winnow::FeaturePair::edge_edge}) {
     cloth.self_impacts(kind, {}, [&](std::span<const winnow::MeshImpact> impacts) {
-      for (const winnow::MeshImpact& impact : impacts) {  // of impact.features, two numbers
-        earliest = std::min(earliest, impact.time);       // never later than they touch
+      for (const winnow::MeshImpact& impact : impacts) {  // of the two impact.features
+        earliest = std::min(earliest, impact.time);       // never late
       }
     });
   }

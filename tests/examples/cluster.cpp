@@ -1,4 +1,4 @@
-// Boxes in a row on four ranks of this process, one of which moves into its neighbour.
+// A row of boxes on four ranks of this process, one of which moves into its neighbour.
 
 #include <winnow/pipeline/cluster.h>
 
@@ -32,18 +32,18 @@ int main() {
   // [a cluster]
   winnow::LoopbackTransport transport(4);  // or make_mpi_transport: one rank in each process
   winnow::Cluster cluster(transport);
-  cluster.add(batches, answers);  // of each rank here: names, of 64 bits, and boxes
-  cluster.self_pairs();           // bodies go to the ranks that their centres lie in
+  cluster.add(batches, answers);  // for each rank here: 64-bit names and boxes
+  cluster.self_pairs();           // bodies move to the ranks that own their centres
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
     for (const winnow::ClusterBody& body : cluster.arrived(rank)) {
       if (body.name == 3) cluster.move(rank, std::span(&body.key, 1), std::span(&moved, 1));
     }
   }
-  cluster.self_pairs();  // only what moved, and is met elsewhere, is sent
+  cluster.self_pairs();  // sends only bodies that moved and have ghosts
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
     for (const winnow::NamePair pair : cluster.pairs(rank)) meet(pair.first, pair.second);
   }
   // [end]
   check(answers[0] == winnow::Status::ok, "the bodies are taken");
-  check(met == 1, "two boxes overlap, and one rank tells of it");
+  check(met == 1, "two boxes overlap, and one rank reports it");
 }

@@ -1,4 +1,4 @@
-// The narrow phase alone: pairs that the caller has found.
+// Uses only the narrow phase, on pairs that the caller has found.
 
 #include <winnow/pipeline/narrow_phase.h>
 
@@ -30,7 +30,7 @@ int main() {
                                           winnow::Pose::at(0, 0, 4)};
   const std::vector<winnow::BodyPair> pairs{{0, 1}, {1, 2}};
   winnow::NarrowPhase narrow;
-  winnow::NarrowResult result;  // yours, reused
+  winnow::NarrowResult result;  // keep it from call to call
   narrow.collide(shapes, {shape_of, pose_of}, pairs,
                  {.level = winnow::ContactLevel::manifold, .margin = 0.01}, result);
   for (std::size_t i = 0; i < result.size(); ++i) {  // in the order of kinds of shapes
@@ -39,7 +39,7 @@ int main() {
   }
   // [end]
   // [one pair]
-  winnow::PairAnswer answer;  // no scratch, no list
+  winnow::PairAnswer answer;  // no scratch memory, no lists
   winnow::collide(shapes, box, winnow::Pose::at(0, 0, 0), pyramid, winnow::Pose::at(0, 0, 1.5),
                   {.level = winnow::ContactLevel::distance}, answer);
   // [end]

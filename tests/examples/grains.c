@@ -1,4 +1,4 @@
-/* Spheres that fall onto a floor and stay there, in C. */
+/* Spheres fall onto a floor and come to rest, in C. */
 
 #include <stdio.h>
 #include <winnow/c/winnow.h>
@@ -46,7 +46,7 @@ int main(void) {
     winnow_contacts_columns(contacts, &c);  // no copies: valid until the next collide
     for (size_t i = 0; i < c.pairs; ++i) {
       for (size_t m = c.manifold_first[i]; m < c.manifold_first[i + 1]; ++m) {
-        const uint64_t body = c.data_a[i];  // the smaller kind of shape: the sphere
+        const uint64_t body = c.data_a[i];  // a has the smaller ShapeKind: the sphere
         const double push = -1000.0 * c.distance[m] - 20.0 * speed[body];
         if (push > 0.0) speed[body] += push * step;
       }

@@ -1,4 +1,4 @@
-// When bodies meet that move and turn.
+// Times of impact of bodies that move and rotate.
 
 #include <winnow/pipeline/time_of_impact.h>
 
@@ -22,11 +22,11 @@ int main() {
       Motion::by_velocities(winnow::Pose::at(0, 0, 0), {0, 0, 0}, {0, 0, -300}, 0.1),
       Motion::between(winnow::Pose::at(1.5, -40, 0), winnow::Pose::at(1.5, 40, 0))};
   const std::vector<winnow::BodyPair> pairs{{0, 1}};
-  winnow::ImpactResult impacts;  // yours, reused
+  winnow::ImpactResult impacts;  // keep it from call to call
   winnow::time_of_impact(shapes, {shape_of, motion_of}, pairs, {}, impacts);
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     if (impacts.hits(i)) stop(pairs[i].a, impacts.time()[i]);
-    // also gap(), normal(axis), point(axis), error_bound(): at that time
+    // also gap(), normal(axis), point(axis), error_bound() at that time
   }
   // [end]
   check(first > 0.45 && first < 0.55, "the blade hits the bullet as it passes");

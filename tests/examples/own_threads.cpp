@@ -1,4 +1,4 @@
-// Boxes in a partition whose work runs on the program's own threads.
+// A partition that runs its work on the threads of the program.
 
 #include <winnow/partitions/partition.h>
 
@@ -11,8 +11,8 @@
 
 namespace {
 
-/// What a program has: a way to do something for every i < count on its threads. A real one keeps
-/// them.
+/// A job system of a program: runs a function for every i < count on its threads. A real one keeps
+/// its threads.
 class JobQueue {
  public:
   static constexpr std::size_t kThreads = 4;

@@ -1,4 +1,4 @@
-// A program records itself and is played again; and it saves its objects and goes back to them.
+// A program records its calls and replays them; it also saves its objects and loads them again.
 
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/replay.h>
@@ -31,7 +31,7 @@ int main() {
   {
     // [recording]
     winnow::Recorder recorder(file);
-    winnow::RecordedPartition partition(recorder, winnow::linear_bvh());  // in place of Partition
+    winnow::RecordedPartition partition(recorder, winnow::linear_bvh());  // instead of Partition
     partition.insert(boxes, names, keys);
     partition.self_pairs(pairs);
     recorder.end_frame();
@@ -55,7 +55,7 @@ int main() {
   winnow::Column<std::byte> saved(std::pmr::get_default_resource());
   partition.save(saved);
   partition.remove(keys[0]);
-  partition.load({saved.data(), saved.size()});  // here or in another process: keys[0] is back
+  partition.load({saved.data(), saved.size()});  // here or in another process; restores keys[0]
   // [end]
   check(partition.contains(keys[0]), "the key is that of the same object again");
 }

@@ -1,4 +1,4 @@
-// Chairs of two boxes each stand on a terrain of triangles, and are asked about.
+// Chairs of two boxes each on a terrain of triangles: contacts, queries and sensors.
 
 #include <winnow/winnow.h>
 
@@ -37,7 +37,7 @@ int main() {
                                                  {back, winnow::Pose::at(-0.4, 0, 1)}};
 
   // [scene]
-  winnow::CompositePool composites(shapes);  // a scene without meshes needs, and links, none
+  winnow::CompositePool composites(shapes);  // only for meshes, height fields, compounds
   winnow::ShapeId terrain, chair;
   composites.add_mesh(std::span(points), std::span(corners), terrain);  // see PointView, IndexView
   composites.add_compound(parts, chair);  // children at poses; also add_height_field, add_scaled
@@ -72,7 +72,7 @@ int main() {
   winnow::ShapeId ball;
   shapes.add(winnow::SphereShape{0.25}, ball);
   // [scene queries]
-  scene.refresh();                  // after changes; then any number of threads may ask
+  scene.refresh();                  // after changes; then any number of threads may query
   winnow::SceneQueries ask(scene);  // one per thread
   winnow::SceneHit hit;             // body, triangle or child, t, normal, point
   ask.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0}, hit);
@@ -87,7 +87,7 @@ int main() {
   check(gap.distance > 7.9, "the chairs are apart");
 
   // [sensors]
-  winnow::Sensors sensors(scene);  // goals, triggers, light curtains: no bodies, no contacts
+  winnow::Sensors sensors(scene);  // triggers: they detect bodies and have no contacts
   winnow::Key goal;
   sensors.add({.shape = ball, .pose = winnow::Pose::at(0.5, 0, 0.2)}, goal);
   sensors.sense();

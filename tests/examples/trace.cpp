@@ -1,5 +1,5 @@
-// Where the time of a frame goes: the stages of a scene as a trace that chrome://tracing,
-// ui.perfetto.dev and Tracy's import read, and what winnow has to say as a log. Usage: trace FILE
+// Writes the stages of a scene as a trace for chrome://tracing, ui.perfetto.dev and the import of
+// Tracy, and the messages of winnow as a log. Usage: trace FILE
 
 #include <winnow/winnow.h>
 

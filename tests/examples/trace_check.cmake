@@ -2,10 +2,10 @@ cmake_minimum_required(VERSION 3.25)
 
 # Usage: cmake -DTRACE=program -DFILE=path -P trace_check.cmake
 #
-# Runs the example and reads what it wrote: JSON, in which every stage that begins ends.
+# Runs the example and reads its output: JSON in which every stage that begins ends.
 execute_process(COMMAND ${TRACE} ${FILE} OUTPUT_VARIABLE log COMMAND_ERROR_IS_FATAL ANY)
 if(NOT log MATCHES "Scene::add: invalid_key")
-  message(FATAL_ERROR "the log does not tell what was refused:\n${log}")
+  message(FATAL_ERROR "the log does not contain the refused call:\n${log}")
 endif()
 file(READ ${FILE} text)
 string(JSON events LENGTH "${text}")

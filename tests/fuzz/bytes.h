@@ -13,8 +13,8 @@
 
 namespace winnow::test {
 
-/// Bytes of a fuzzer read as the choices of a test: any bytes make sense, and behind their end all
-/// are zero.
+/// Reads the bytes of a fuzzer as the choices of a test: any bytes are valid, and all bytes beyond
+/// the end are zero.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -27,11 +27,11 @@ class Bytes {
     bytes_ = bytes_.subspan(1);
     return first;
   }
-  /// In [0, count), count at most 256.
+  /// Returns a number in [0, count); count is at most 256.
   std::size_t below(std::size_t count) { return byte() % count; }
   bool chance(std::size_t one_in) { return below(one_in) == one_in - 1; }
 
-  /// Any value of a plain type: NaN and infinities among those of floats.
+  /// Returns any value of a plain type, for floats including NaN and infinities.
   template <typename T>
   T any() {
     std::array<std::uint8_t, sizeof(T)> raw{};
@@ -41,9 +41,9 @@ class Bytes {
     return value;
   }
 
-  /// Mostly a quarter of a small integer, so that things touch exactly.
+  /// Mostly a multiple of a quarter, so that shapes touch exactly.
   double tame() { return 0.25 * (byte() - 128); }
-  /// The same, now and then an end of the range of float, or what lies between.
+  /// As tame(), but sometimes near an end of the range of float or of any size.
   float wild() {
     constexpr float inf = std::numeric_limits<float>::infinity();
     constexpr std::array kEnds{inf,    -inf,    -0.0F,   1e30F,      -3e38F,
@@ -53,13 +53,13 @@ class Bytes {
     if (choice < 240 + kEnds.size()) return kEnds[choice - 240U];
     return any<float>();
   }
-  /// An extent: zero, small, large.
+  /// An extent: zero, small or large.
   double extent() {
     constexpr std::array kExtents{0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 100.0};
     return kExtents[below(kExtents.size())];
   }
 
-  /// Of tame numbers; always valid.
+  /// A valid box of tame numbers.
   Aabb tame_box() {
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {
@@ -68,7 +68,7 @@ class Bytes {
     }
     return box;
   }
-  /// Seldom of wild numbers; may then be invalid.
+  /// Sometimes a box of wild numbers, which may be invalid.
   Aabb box() {
     if (!chance(8)) return tame_box();
     Aabb box;
@@ -81,7 +81,7 @@ class Bytes {
     return box;
   }
 
-  /// A valid pose of tame numbers, often without a turn.
+  /// A valid pose of tame numbers, often without a rotation.
   Pose pose() {
     Pose pose;
     for (double& x : pose.position) x = 0.25 * tame();

@@ -1,5 +1,5 @@
-// Checkpoints of clusters and saved height fields, as anybody may have written them: restored and
-// loaded, or refused. Digests are made to fit, so that what lies behind them is reached.
+// Untrusted checkpoints of clusters and untrusted saved height fields are restored and loaded, or
+// refused. Their digests are made to fit, so that the code behind the digest check is reached.
 
 #include <winnow/pipeline/cluster_scene.h>
 #include <winnow/pipeline/height_field.h>
@@ -20,7 +20,7 @@ using Saved = std::vector<std::byte>;
 
 constexpr std::size_t kMostMemory = std::size_t{64} << 20U;
 
-/// Gives a checkpoint its size and the digest that it should have.
+/// Writes the correct size and digest into a checkpoint.
 void seal_checkpoint(Saved& bytes) {
   if (bytes.size() < 24) return;
   const std::uint64_t size = bytes.size() - 16;
@@ -36,7 +36,7 @@ const WorldShapes& shapes() {
   return all;
 }
 
-/// Twice: as it is, where the digest seldom fits, and sealed.
+/// Restores twice: the bytes as they are, whose digest seldom fits, and sealed.
 void restore(Saved bytes) {
   for (const bool sealed : {false, true}) {
     if (sealed) seal_checkpoint(bytes);

@@ -1,5 +1,5 @@
 // Meshes and height fields of hostile numbers: bad ones are refused and change nothing, and rays,
-// overlaps and distances of good ones are those of their triangles, one by one.
+// overlaps and distances of good ones equal the results of their single triangles.
 
 #include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
@@ -60,7 +60,7 @@ Surface some_surface(Bytes& bytes) {
   return surface;
 }
 
-/// One composite shape, as it is and as its triangles, in a scene.
+/// One composite shape in a scene, as a whole and as single triangles.
 class Exhibit {
  public:
   explicit Exhibit(Bytes& bytes) : composites_(shapes_, &memory_) {
@@ -258,7 +258,7 @@ void Exhibit::ask_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pos
 
 void Exhibit::ask(Bytes& bytes) {
   if (id_ == ShapeId{}) return;
-  // What is told to the last digits is told of sizes that are alike.
+  // Results are compared to the last digits only if the sizes are similar.
   const Aabb box = composites_.bounds(id_, Pose{});
   if (!(as_eigen(box.min).minCoeff() > -1e6F && as_eigen(box.max).maxCoeff() < 1e6F)) return;
   Scene scene(shapes_, {.composites = &composites_});

@@ -1,6 +1,6 @@
-// Contacts from frame to frame, under every combination of a scene's options, against a model that
-// keeps whole frames: carry-over, warm start, reduction, offsets, floors without seams, sleep,
-// several Contacts of one scene, and what is saved and loaded.
+// Contacts from frame to frame, under every combination of scene options, compared with a model
+// that stores whole frames: contact cache, warm start, reduction, offsets, ghost contacts on
+// floors, sleep, several Contacts of one scene, and snapshots.
 
 #include <winnow/winnow.h>
 
@@ -21,7 +21,7 @@
 namespace winnow::test {
 namespace {
 
-/// What all programs of this process did, printed at its end.
+/// The work of all programs of this process, printed at its end.
 struct Tally {
   std::uint64_t operations = 0;
   std::uint64_t frames = 0;
@@ -68,7 +68,7 @@ class ContactsProgram {
   void load();
   void check_memory() const;
 
-  /// All of a program's state that can be saved.
+  /// The part of a program's state that can be saved.
   struct Checkpoint {
     explicit Checkpoint(const ModelScene& now) : world(now) {}
 
@@ -101,7 +101,7 @@ ContactsProgram::ContactsProgram(Bytes& bytes)
       world_{shapes_.pool, shapes_.composites, some_options(bytes, shapes_, memory_)} {
   constexpr double kFar[] = {0.0, 0.0, 0.0, 1e5};
   far_ = kFar[bytes.below(4)];
-  // Steps below, about and above what is carried over.
+  // Steps below, near and above the carry-over distance.
   constexpr double kSteps[] = {0.0078125, 0.03125, 0.0546875, 0.125};
   step_ = kSteps[bytes.below(4)];
   scene_ = std::make_unique<Scene>(shapes_.pool, world_.options);
@@ -123,7 +123,7 @@ SceneOptions ContactsProgram::some_options(Bytes& bytes, const EveryShape& shape
   return options;
 }
 
-// Places on a lattice, so that shapes touch exactly, rest flush and share edges.
+// Returns positions on a lattice, so that shapes touch exactly, rest flush and share edges.
 Pose ContactsProgram::some_pose(Bytes& bytes) const {
   Pose pose;
   for (double& x : pose.position) {
@@ -144,7 +144,7 @@ ContactOffsets ContactsProgram::some_offsets(Bytes& bytes) const {
   return offsets;
 }
 
-// Mostly convex ones.
+// Returns mostly convex shapes.
 ShapeId ContactsProgram::some_shape(Bytes& bytes) const {
   return shapes_.ids[bytes.below(bytes.chance(3) ? shapes_.ids.size() : shapes_.convex)];
 }
@@ -186,7 +186,7 @@ void ContactsProgram::move(ModelBody& body, const Pose& pose) {
   WINNOW_HOLDS(scene_->move(body.key, pose) == Status::ok);
 }
 
-// Small steps and turns, of one body or of all together.
+// Moves and rotates one body or all of them a little.
 void ContactsProgram::nudge(Bytes& bytes) {
   double by[3];
   for (double& x : by) x = step_ * (static_cast<double>(bytes.below(3)) - 1.0);
@@ -232,7 +232,7 @@ void ContactsProgram::reshape(Bytes& bytes) {
   if (!is_as_before) ++body->reshaped;
 }
 
-// By each rule that keeps two bodies from pairing.
+// Separates two bodies by one of the rules that prevent pairs.
 void ContactsProgram::part(Bytes& bytes) {
   ModelBody* const a = some_body(bytes);
   ModelBody* const b = some_body(bytes);
@@ -276,7 +276,7 @@ void ContactsProgram::change_surface(Bytes& bytes) {
     WINNOW_HOLDS(shapes_.composites.update_height_field(
                      id, at % 3, at / 3, {heights, 1, 1, 0, {1.0, 1.0}}) == Status::ok);
     ++world_.surfaces_changed;
-    // Pools are saved apart from scenes: the one that was saved is no more.
+    // Pools are saved apart from scenes, so the saved pool no longer exists.
     checkpoint_.reset();
     return;
   }
@@ -316,7 +316,7 @@ void ContactsProgram::save() {
   }
 }
 
-// The scene that was saved goes on in place of this one.
+// Continues with the saved scene in place of this one.
 void ContactsProgram::load() {
   if (!checkpoint_) return;
   const Checkpoint& from = *checkpoint_;

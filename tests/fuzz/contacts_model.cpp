@@ -1,3 +1,7 @@
+// The reference model of contacts_fuzz.cpp: computes which contacts a scene must report, from a
+// pair list over all bodies and from new scenes without any cache, and compares them with the
+// Contacts.
+
 #include "tests/fuzz/contacts_model.h"
 
 #include "pipeline/composites/parts.h"
@@ -80,7 +84,7 @@ namespace {
   return out.str();
 }
 
-/// What a failed comparison prints.
+/// The text of a failed comparison.
 [[nodiscard]] testing::AssertionResult explained(bool holds, const ModelManifolds& now,
                                                  const ModelManifolds& fresh, const ModelBody& a,
                                                  const ModelBody& b) {
@@ -91,7 +95,7 @@ namespace {
                                      << text_of(fresh);
 }
 
-/// To the bit.
+/// Compares bit by bit.
 [[nodiscard]] bool same_manifolds(const ModelManifolds& x, const ModelManifolds& y) {
   return std::equal(x.begin(), x.end(), y.begin(), y.end(), same_manifold);
 }
@@ -105,7 +109,8 @@ namespace {
   return {pose.position[0], pose.position[1], pose.position[2]};
 }
 
-/// How far the farthest point of a body of this radius moved as seen from another one.
+/// Returns the distance that the farthest point of a body of this radius moved, relative to the
+/// other body.
 [[nodiscard]] double moved(const Pose (&from)[2], const Pose (&to)[2], int seen, double radius) {
   const auto relative = [&](const Pose(&pose)[2]) {
     const Eigen::Quaterniond back = turn_of(pose[1 - seen]).conjugate();
@@ -119,7 +124,7 @@ namespace {
   return (now.first - before.first).norm() + chord;
 }
 
-/// What rest offsets make of an answer about the shapes themselves, by the words of ContactOffsets.
+/// Applies rest offsets to a result of the shapes, as ContactOffsets documents.
 void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double rest_b) {
   if (rest_a == 0.0 && rest_b == 0.0) return;
   const double size = std::abs(manifold.distance) + std::abs(rest_a) + std::abs(rest_b);
@@ -159,7 +164,8 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
   return {manifold};
 }
 
-/// A scene of nothing else, without anything that reaches from frame to frame.
+/// Returns the contacts of a new scene of only these two bodies, without any state of earlier
+/// frames.
 [[nodiscard]] ModelManifolds ask_scene(const ModelScene& world, ContactLevel level,
                                        const ModelBody& a, const ModelBody& b) {
   Scene scene(world.shapes, {.execution = Execution::serial(),
@@ -264,7 +270,7 @@ ContactsModel::Kept ContactsModel::new_pair(const Sides& pair) {
   return kept;
 }
 
-/// Which pairs are shown; each once, in their order.
+/// Returns the pairs that are reported; checks that each occurs once and in order.
 ContactsModel::KeptPairs ContactsModel::list_shown(const ModelScene& world,
                                                    const Contacts& contacts) const {
   KeptPairs shown;
@@ -304,7 +310,8 @@ bool ContactsModel::keeps_manifolds(const ModelScene& world, ContactLevel level,
 
 namespace {
 
-/// All contacts of a new scene of the same bodies: seams depend on all contacts of a body.
+/// All contacts in a new scene of the same bodies, since ghost contacts depend on all contacts of a
+/// body.
 class WholeScene {
  public:
   WholeScene(const ModelScene& world, ContactLevel level)
@@ -368,7 +375,7 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
       if (!world.may_pair(first->second, second->second)) continue;
       const Sides pair = sides(first->second, second->second);
       const bool has_seams = whole && (is_floor(pair.a) || is_floor(pair.b));
-      // At level pairs it is boxes that overlap: no pair that touches may be missing.
+      // At level pairs boxes overlap: no touching pair may be missing.
       const ContactLevel asked = std::max(level, ContactLevel::boolean);
       const ModelManifolds fresh = has_seams ? whole->contacts(pair.a, pair.b)
                                              : reference.contacts(world, asked, pair.a, pair.b);
@@ -386,8 +393,8 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
 void ContactsModel::check_not_shown(const ModelScene& world, ContactLevel level, const Sides& pair,
                                     const ModelManifolds& fresh) {
   if (fresh.empty()) return;
-  // A pair that is not made anew since it has moved by less than it was apart is still apart, but
-  // for rounding.
+  // A pair that moved by less than its distance is not recomputed; it is still apart, except for
+  // rounding.
   WINNOW_HOLDS(world.options.carry_over > 0.0 && level >= ContactLevel::distance);
   const double rest = pair.a.definition.offsets.rest + pair.b.definition.offsets.rest;
   for (const ModelManifold& manifold : fresh) {
@@ -397,7 +404,7 @@ void ContactsModel::check_not_shown(const ModelScene& world, ContactLevel level,
 
 namespace {
 
-/// True if `shown` may be `made` carried over from the poses `from` to the poses `to`.
+/// Returns true if `shown` may be `made`, carried over from the poses `from` to the poses `to`.
 [[nodiscard]] bool is_carried(const ModelManifold& shown, const ModelManifold& made,
                               const Pose (&from)[2], const Pose (&to)[2], double carry_over,
                               double radius_a) {
@@ -412,8 +419,8 @@ namespace {
     return (now - turn * then).norm() <= most + slack * (1.0 + then.norm());
   };
   const auto vector = [](const double(&v)[3]) { return Eigen::Vector3d(v[0], v[1], v[2]); };
-  // Turns of body a by less than this may have been left out. A deep contact's points may be
-  // farther from it than its surface.
+  // Rotations of body a by less than this angle may be missing. Points of a deep contact may be
+  // farther from the body than its surface.
   const double angle = std::isfinite(radius_a) ? carry_over / radius_a : 0.0;
   const auto off = [&](const Eigen::Vector3d& point) {
     return std::max(carry_over, angle * point.norm());

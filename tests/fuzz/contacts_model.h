@@ -1,5 +1,8 @@
 #pragma once
 
+// The model of contacts_fuzz.cpp: the calls of a program as plain containers, a reference for the
+// contacts of each pair, and the comparison of both with Contacts.
+
 #include <winnow/winnow.h>
 
 #include <compare>
@@ -14,15 +17,15 @@
 
 namespace winnow::test {
 
-/// A body as the program defined it. Its client data is its own.
+/// A body as the program defined it, with unique client data.
 struct ModelBody {
   BodyDefinition definition;
   Key key;
-  /// Grows when the shape or the offsets change.
+  /// Incremented when the shape or the offsets change.
   std::uint64_t reshaped = 0;
 };
 
-/// What a program told a scene, in plain containers.
+/// The calls of a program on a scene, as plain containers.
 struct ModelScene {
   using Names = std::pair<ClientData, ClientData>;
 
@@ -30,21 +33,21 @@ struct ModelScene {
   const CompositePool& composites;
   SceneOptions options;
   std::map<ClientData, ModelBody> bodies{};
-  /// Of two each, the smaller first.
+  /// Pairs of client data and pairs of layers, the smaller first.
   std::set<Names> ignored{};
   std::set<std::pair<std::uint16_t, std::uint16_t>> layers_apart{};
-  /// Grows when a mesh or a field changes in place.
+  /// Incremented when a mesh or a height field changes in place.
   std::uint64_t surfaces_changed = 0;
 
   [[nodiscard]] bool may_pair(const ModelBody& a, const ModelBody& b) const;
-  /// The pair is a contact up to this distance, before rest offsets are counted.
+  /// Returns the distance up to which the pair is a contact, before rest offsets.
   [[nodiscard]] double gap(const ModelBody& a, const ModelBody& b) const;
   [[nodiscard]] double radius(const ModelBody& body) const;
-  /// As far as it matters to the two.
+  /// Returns surfaces_changed if it matters to one of the two bodies.
   [[nodiscard]] std::uint64_t surfaces_changed_of(const ModelBody& a, const ModelBody& b) const;
 };
 
-/// One manifold as a Contacts shows it.
+/// One manifold as Contacts reports it.
 struct ModelManifold {
   std::uint32_t part[2] = {kWholeShape, kWholeShape};
   double distance = 0.0;
@@ -55,18 +58,19 @@ struct ModelManifold {
 };
 using ModelManifolds = std::vector<ModelManifold>;
 
-/// Each pair's contacts from the two bodies only: by the narrow phase's call for one pair of convex
-/// shapes, by a new scene of two bodies for others. No manifolds: the pair does not touch.
+/// Computes the contacts of each pair from its two bodies only: with the single-pair call of the
+/// narrow phase for convex shapes, with a new scene of two bodies for others. A pair that does not
+/// touch has no manifolds.
 class PairReference {
  public:
   [[nodiscard]] const ModelManifolds& contacts(const ModelScene& world, ContactLevel level,
                                                const ModelBody& a, const ModelBody& b);
-  /// The distance of two convex shapes, whatever their gap, before rest offsets are counted.
+  /// Returns the distance of two convex shapes, at any gap, before rest offsets.
   [[nodiscard]] static PairAnswer distance(const ModelScene& world, const ModelBody& a,
                                            const ModelBody& b);
 
  private:
-  /// What an answer was computed from.
+  /// The inputs of a cached result.
   struct Inputs {
     Pose pose[2];
     std::uint64_t reshaped[2];
@@ -83,23 +87,23 @@ class PairReference {
   std::map<ModelScene::Names, Answer> answers_;
 };
 
-/// What Contacts have to show after each call of Scene::collide, by their documentation: which
-/// pairs, in which order, with which events, manifolds and places in the last frame. It keeps
-/// whole frames and compares all with all.
+/// The contents that Contacts must have after each call of Scene::collide, by its documentation:
+/// the pairs, their order, events, manifolds and places in the last frame. The model stores whole
+/// frames and compares all pairs with all.
 class ContactsModel {
  public:
-  /// Aborts with a message if `contacts`, which `scene` just filled, show anything else.
+  /// Aborts with a message if `contacts`, which `scene` has just filled, differs from the model.
   void check(const ModelScene& world, const Scene& scene, ContactLevel level,
              const Contacts& contacts, PairReference& reference);
-  /// The contacts remember nothing.
+  /// The contacts have no history from here on.
   void forget();
 
-  /// Manifolds that stayed as they were made before a move, since the start.
+  /// Number of manifolds so far that were carried over unchanged from before a move.
   std::uint64_t carried = 0;
 
  private:
-  /// Two bodies in the order of contacts, and the kinds of their shapes: in another order or with
-  /// other kinds they begin anew.
+  /// Two bodies in the order of contacts, and the kinds of their shapes: if the order or the kinds
+  /// change, the pair begins anew.
   struct Name {
     ClientData a;
     ClientData b;
@@ -107,7 +111,7 @@ class ContactsModel {
 
     friend auto operator<=>(const Name&, const Name&) = default;
   };
-  /// When and as what shown manifolds may have been made.
+  /// A state in which the reported manifolds may have been computed.
   struct Origin {
     Pose pose[2];
     std::uint64_t reshaped[2];
@@ -117,7 +121,7 @@ class ContactsModel {
   struct Kept {
     std::uint64_t order = 0;
     EndedContact ended{};
-    /// Those that explain what was shown last.
+    /// The origins that explain the last reported manifolds.
     std::vector<Origin> origins{};
   };
   using KeptPairs = std::map<Name, Kept>;

@@ -18,7 +18,7 @@ struct EveryShape {
   ShapePool pool;
   CompositePool composites{pool};
   std::vector<ShapeId> ids;
-  /// Bounded and convex: the first ones.
+  /// The number of bounded convex shapes, which come first.
   std::size_t convex = 0;
 };
 

@@ -1,5 +1,5 @@
-// Files of questions, of hard cases and of reports that anybody may have written: answered, or
-// refused with an error that says what is wrong with which file.
+// Untrusted files of queries, hard cases and reports are processed, or refused with an error that
+// names the file and its fault.
 
 #include <algorithm>
 #include <filesystem>
@@ -20,7 +20,8 @@ namespace {
 
 using bench::Json;
 
-/// Numbers that JSON has no words for. What an id is made of is the caller's.
+/// Returns whether there are numbers that JSON cannot represent. Ids are ignored: the caller
+/// chooses them.
 bool has_nulls(const Json& value) {
   if (value.is_array()) {
     return std::any_of(value.begin(), value.end(),
@@ -32,7 +33,7 @@ bool has_nulls(const Json& value) {
                      [](const auto& one) { return one.key() != "id" && has_nulls(one.value()); });
 }
 
-/// As `winnow query` and `winnow query --judge` do.
+/// Calls the code of `winnow query` and `winnow query --judge`.
 void ask(const Json& questions) {
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     const Json answers = bench::answer(questions, tier);
@@ -41,7 +42,7 @@ void ask(const Json& questions) {
     const Json turned = bench::answer(bench::exchanged(questions), tier);
     WINNOW_HOLDS(turned.size() == questions.size());
     for (std::size_t i = 0; i < questions.size(); ++i) {
-      // Of two bad shapes the first one is named.
+      // If both shapes are bad, the first one determines the status, so the two may differ.
       WINNOW_HOLDS((answers[i]["status"] == "ok") == (turned[i]["status"] == "ok"));
       if (bench::member(questions[i], "expect").is_null()) continue;
       (void)bench::judge_case(questions[i], answers[i], bench::promised_error(tier));
@@ -49,7 +50,7 @@ void ask(const Json& questions) {
   }
 }
 
-/// As `winnow compare`, `winnow results` and `winnow report --from` do.
+/// Calls the code of `winnow compare`, `winnow results` and `winnow report --from`.
 void report(const std::string& path) {
   bench::Results results = bench::read_results(path);
   (void)bench::compare(results, results, {}).passes();
@@ -98,13 +99,13 @@ std::vector<std::string> fuzz_seeds() {
                         "format": "number"}],
             "rows": [{"id": "t/1", "k": "1", "v": {"min": 1, "median": 2, "max": 3,
                       "samples": [1, 2, 3]}, "command": "c"}]}]})"};
-  // Short enough for a fuzzer: one question of each file, then the file.
+  // Short enough for a fuzzer: single queries of each file, then the file.
   for (const auto& entry : std::filesystem::directory_iterator(WINNOW_HARD_CASES)) {
     const std::string text = text_of(entry.path());
     const Json questions = Json::parse(text);
     for (std::size_t i = 0; i < questions.size() && i < 6; ++i) {
       seeds.push_back(Json::array({questions[i]}).dump());
-      // Each member in turn is missing, or something else.
+      // Removes or replaces each member in turn.
       for (const auto& [name, value] : questions[i].items()) {
         Json less = questions[i];
         less.erase(name);

@@ -1,6 +1,6 @@
-// One story told to a partition of each exact structure, of which no two run on the same number of
-// threads and each step on another instruction set: pairs, rays and boxes are answered to the bit
-// as by all others.
+// Makes the same calls on a partition of each exact structure, each with another number of threads
+// and each step on another instruction set: pairs, rays and boxes give bit-identical results in all
+// of them.
 
 #include <winnow/partitions/partition.h>
 
@@ -16,7 +16,7 @@
 namespace winnow::test {
 namespace {
 
-/// As the others, on threads of its own number.
+/// A partition, with its own number of threads.
 struct Player {
   explicit Player(const StructureKind& structure, std::size_t number)
       : partition(structure,
@@ -25,7 +25,7 @@ struct Player {
 
   Partition partition;
   Threads threads;
-  PairBuffer pairs;  // carried along
+  PairBuffer pairs;  // reused from call to call
 };
 
 class Game {
@@ -47,7 +47,7 @@ class Game {
   void ask_ray(Bytes& bytes);
   void ask_box(Bytes& bytes);
 
-  /// What `say(player)` answers, which is the same for all.
+  /// Runs `say(player)` for every player; the results must be equal.
   template <typename Say>
   void all_say(const Say& say) {
     std::optional<decltype(say(players_[0]))> first;
@@ -57,7 +57,7 @@ class Game {
       WINNOW_HOLDS(said == *first);
     }
   }
-  /// Of every player the same objects, some after another.
+  /// Returns some objects, mostly consecutive; the same for every player.
   [[nodiscard]] std::vector<ObjectId> some(Bytes& bytes) const;
   static std::vector<Key> keys_of(const Player& player, const std::vector<ObjectId>& ids) {
     std::vector<Key> keys;

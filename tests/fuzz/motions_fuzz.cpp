@@ -1,5 +1,5 @@
-// Shapes and features of meshes in motion: bad numbers are refused, no time is late, and one answer
-// is that of many, on any instruction set.
+// Shapes and mesh features in motion: bad numbers are refused, no time of impact is late, and
+// single calls and batches agree on any instruction set.
 
 #include <winnow/winnow.h>
 
@@ -25,7 +25,7 @@ bool is_finite(const Points& points) {
   return std::ranges::all_of(points, [](const Vec3d& p) { return p.all_finite(); });
 }
 
-/// Mostly tame, so that features touch exactly.
+/// Mostly tame numbers, so that features touch exactly.
 Points some_points(Bytes& bytes) {
   Points points;
   const bool wild = bytes.chance(16);
@@ -35,7 +35,7 @@ Points some_points(Bytes& bytes) {
   return points;
 }
 
-/// Alone, and in columns of several.
+/// Checks a feature pair in single calls and in columns of several.
 void check_features(Bytes& bytes) {
   const FeaturePair kind = bytes.chance(2) ? FeaturePair::edge_edge : FeaturePair::vertex_face;
   const Points start = some_points(bytes);
@@ -68,7 +68,7 @@ void check_features(Bytes& bytes) {
   WINNOW_HOLDS(!truth.touch || (impact.hit && impact.time <= truth.to));
 }
 
-/// A motion that is usually good.
+/// Returns a motion that is usually valid.
 RigidMotion some_motion(Bytes& bytes) {
   RigidMotion motion;
   motion.start = bytes.pose();
@@ -109,7 +109,7 @@ void check_shapes(Bytes& bytes) {
   if (!good) return;
   const double time = result.time()[0];
   WINNOW_HOLDS(time >= 0.0 && time <= 1.0 && (result.hits(0) || time == 1.0));
-  // Beyond, doubles tell less than what is asked here.
+  // For larger values doubles are too coarse for this check.
   double most = 0.0;
   for (const RigidMotion& motion : pair.motion) {
     for (const double x : motion.travel) most = std::max(most, std::abs(x));
@@ -123,7 +123,7 @@ void check_shapes(Bytes& bytes) {
                at.error + result.error_bound()[0] + resolution_of(pool, pair) + 1e-12);
 }
 
-/// A mesh of hostile triangles and places.
+/// Checks a mesh of hostile triangles and positions.
 void check_cloth(Bytes& bytes) {
   CountingMemory memory;
   DeformableMesh mesh({.memory = &memory, .execution = Execution::serial()});

@@ -1,4 +1,4 @@
-// Everything that can be told to two partitions, against a model that tests every pair.
+// All calls of a partition, on two partitions, compared with a model that tests every pair.
 
 #include <winnow/partitions/partition.h>
 
@@ -15,7 +15,7 @@
 namespace winnow::test {
 namespace {
 
-/// An object as it was given.
+/// An object as it was inserted or last updated.
 struct Given {
   Key key;
   Aabb box;
@@ -31,7 +31,7 @@ bool sphere_meets(const Sphere& sphere, const Aabb& box) {
   return (nearest - c).squared_norm() <= r * r;
 }
 
-/// True if the two have to be reported.
+/// Returns true if the pair must be reported.
 bool must_meet(const Given& a, const Given& b) {
   if (!may_meet(a.filter, b.filter) || !a.box.overlaps(b.box)) return false;
   if (a.sphere && b.sphere) return a.sphere->overlaps(*b.sphere);
@@ -76,7 +76,7 @@ PartitionOptions some_options(Bytes& bytes, std::pmr::memory_resource* memory) {
   return options;
 }
 
-/// A partition, what it was told, and what its events have said.
+/// A partition, the objects that it must contain, and the pairs that its events imply.
 class Model {
  public:
   Model(Bytes& bytes, CountingMemory& memory)
@@ -145,7 +145,7 @@ std::vector<Aabb> Model::some_boxes(Bytes& bytes, std::size_t count) const {
   Aabb box = bytes.box();
   const Vec3f step(static_cast<float>(bytes.extent()), static_cast<float>(bytes.extent()),
                    static_cast<float>(bytes.extent()));
-  // One box that goes on in steps, so that few bytes make many objects.
+  // One box that is repeated in steps, so that few bytes make many objects.
   const bool repeats = bytes.chance(2);
   for (std::size_t i = 0; i < count; ++i) {
     boxes.push_back(takes(box) ? box : bytes.tame_box());
@@ -168,7 +168,7 @@ void Model::insert(Bytes& bytes) {
   std::vector<Key> keys(count);
   const Status status = partition_.insert(boxes, data, keys);
   if (status != Status::ok) {
-    // A sphere about a huge box may not be finite.
+    // A sphere around a huge box may not be finite.
     WINNOW_HOLDS(partition_.volume() == Volume::sphere && status == Status::invalid_bounds);
     return;
   }
@@ -199,7 +199,7 @@ void Model::update(Bytes& bytes) {
   if (bytes.chance(2)) {
     boxes = some_boxes(bytes, keys.size());
   } else {
-    // Each a little from where it is, or not at all.
+    // Moves each box a little, or not at all.
     const auto step = static_cast<float>(bytes.extent() * (bytes.chance(2) ? 0.0625 : 0.0));
     for (const Key& key : keys) {
       Aabb box = objects_.at(key.id).box;
@@ -286,7 +286,7 @@ void Model::empty_or_reserve(Bytes& bytes) {
   }
 }
 
-/// What has to be refused; that nothing has changed is seen by what follows.
+/// Makes calls that must be refused; later checks notice if they changed anything.
 void Model::misuse(Bytes& bytes, const Model& other) {
   const Key live = objects_.empty() ? Key{} : objects_.begin()->second.key;
   Key bad = bytes.any<Key>();
@@ -337,7 +337,7 @@ void Model::check_pairs(std::span<const Pair> got) const {
   std::sort(pairs.begin(), pairs.end());
   WINNOW_HOLDS(std::adjacent_find(pairs.begin(), pairs.end()) == pairs.end());
   auto at = pairs.begin();
-  // Spheres whose boxes miss each other by less than rounding may be reported.
+  // Spheres whose boxes are separated by less than rounding may be reported.
   const bool prunes =
       partition_.structure() != n_squared() && partition_.volume() != Volume::sphere;
   std::map<ObjectId, Aabb> stored;
@@ -355,7 +355,7 @@ void Model::check_pairs(std::span<const Pair> got) const {
       WINNOW_HOLDS(!prunes || stored[a->first].overlaps(stored[b->first]));
     }
   }
-  // Pairs of what is not there, or in the wrong order.
+  // The rest are pairs of unknown objects, or in the wrong order.
   WINNOW_HOLDS(at == pairs.end());
 }
 
@@ -382,7 +382,7 @@ void Model::check_events(const PairEvents& events, std::vector<KeyPair>& before,
 }
 
 void Model::query(Bytes& bytes) {
-  // A buffer is updated as long as no other one is filled with all that is new.
+  // A pair buffer is updated in place until another buffer receives the full result.
   if (bytes.chance(2)) return query_events();
   if (bytes.chance(4)) return query_changes_alone();
   PairBuffer fresh;

@@ -1,5 +1,5 @@
-// What programs recorded and saved, as anybody may have written it: played, loaded and asked, or
-// refused. Digests are made to fit, so that what lies behind them is reached.
+// Untrusted recordings and snapshots are replayed, loaded and queried, or refused. Their digests
+// are made to fit, so that the code behind the digest check is reached.
 
 #include <winnow/winnow.h>
 
@@ -43,7 +43,7 @@ void load(Bytes8 bytes) {
   }
 }
 
-/// Bodies of all convex kinds, in the scene that seeds are saved of.
+/// Bodies of all convex kinds, in the scene whose snapshots are the seeds.
 struct FuzzedScene {
   FuzzedScene()
       : world(12),

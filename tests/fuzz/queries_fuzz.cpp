@@ -1,5 +1,5 @@
-// Rays, casts, regions and nearest objects: two structures against the slow twin, and against each
-// other to the bit.
+// Rays, casts, regions and nearest objects: two structures are compared with a brute-force
+// reference, and bit by bit with each other.
 
 #include <winnow/partitions/partition.h>
 
@@ -24,7 +24,7 @@ Vector3f tame_vector(Bytes& bytes) {
           static_cast<float>(bytes.tame())};
 }
 
-/// Two partitions that are told the same.
+/// Two partitions with the same objects.
 class Pairing {
  public:
   Pairing(Bytes& bytes, CountingMemory& memory)
@@ -56,7 +56,7 @@ class Pairing {
 
   [[nodiscard]] Cast some_cast(Bytes& bytes) const;
   [[nodiscard]] Region some_region(Bytes& bytes);
-  /// What a filter lets pass.
+  /// Returns the objects that pass a filter.
   [[nodiscard]] std::vector<Object> seen(const Filter& filter) const;
   static Filter some_filter(Bytes& bytes);
 

@@ -1,5 +1,5 @@
-// Recordings that anybody may have written: read whole, and the same once written again, or refused
-// with what is wrong.
+// Untrusted recordings of boxes are read whole and equal when written again, or refused with an
+// error.
 
 #include <cstring>
 #include <fstream>
@@ -16,7 +16,7 @@ bool same_frames(const Recording& a, const Recording& b) {
   return a.scene == b.scene && a.frames == b.frames;
 }
 
-/// A recording of `objects` unit boxes.
+/// Returns a recording of `objects` unit boxes.
 std::string file_of(std::int32_t objects, std::int32_t steps, std::int32_t frames) {
   std::string file(256, '\0');
   file.replace(0, 7, "uniform");
@@ -61,7 +61,7 @@ std::vector<std::string> fuzz_seeds() {
                                  file_of(17, 1, 2),
                                  file_of(2, 1000, 1)};
   const std::string whole = file_of(2, 1, 2);
-  // Each byte of the header, and some behind it, made another; every length.
+  // Changes each byte of the header and some bytes after it, and tries every length.
   for (std::size_t i = 0; i < whole.size(); i += i < 256 ? 37 : 1) {
     for (const char other : {'\0', '\x7F', '\x80', '\xFF'}) {
       seeds.push_back(whole);
@@ -70,7 +70,7 @@ std::vector<std::string> fuzz_seeds() {
     seeds.push_back(whole.substr(0, i));
   }
   seeds.push_back(whole + "x");
-  // What begins like a compressed one.
+  // Inputs with the signature of compressed files.
   for (std::string seed : random_seeds(20, 200)) {
     seeds.push_back(std::string("\xFD"
                                 "7zXZ\0",

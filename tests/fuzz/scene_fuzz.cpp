@@ -1,5 +1,5 @@
-// Everything that can be told to a scene, against a scene that is built from scratch each time; and
-// its questions, rays and moving shapes among them, against each body on its own.
+// All calls of a scene, compared with a scene that is built from scratch each time; its queries,
+// including rays and moving shapes, are compared with tests of each single body.
 
 #include <winnow/winnow.h>
 
@@ -25,8 +25,8 @@ using KeyOrder = decltype([](const Key& a, const Key& b) {
   return std::pair(a.id, a.stamp) < std::pair(b.id, b.stamp);
 });
 
-/// A pair of bodies, the smaller id first, and the kinds of their shapes in that order: a body that
-/// gets a shape of another kind begins anew.
+/// A pair of bodies, the smaller id first, and the kinds of their shapes in that order: if a body
+/// gets a shape of another kind, the pair begins anew.
 struct Meeting {
   Key a;
   Key b;
@@ -84,7 +84,7 @@ class Play {
   Contacts contacts_;
   std::map<Key, BodyDefinition, KeyOrder> bodies_;
   Meetings shown_;    // by the last frame
-  Meetings dormant_;  // of two that rest since they were shown
+  Meetings dormant_;  // pairs of two bodies that have rested since they were reported
   ContactLevel level_ = ContactLevel::pairs;
   std::uint64_t named_ = 0;
 };
@@ -170,7 +170,7 @@ void Play::remove(Bytes& bytes) {
   bodies_.erase(key);
 }
 
-/// What has to be refused; that nothing has changed is seen by what follows.
+/// Makes calls that must be refused; later checks notice if they changed anything.
 void Play::misuse(Bytes& bytes) {
   const ShapeId bad{bytes.any<std::uint32_t>()};
   const bool there = shapes_.pool.contains(bad) || shapes_.composites.contains(bad);
@@ -210,7 +210,7 @@ Meeting Play::meeting(Key a, Key b) const {
 
 void Play::check_events() {
   Meetings before = shown_;
-  // Contacts of another level are not those that sleep.
+  // Contacts of another level do not continue the dormant pairs.
   if (level_ == contacts_.level()) before.insert(dormant_.begin(), dormant_.end());
   level_ = contacts_.level();
   shown_.clear();
@@ -233,7 +233,7 @@ void Play::check_events() {
     WINNOW_HOLDS(at != before.end());
     before.erase(at);
   }
-  // What was neither shown nor ended is of two that rest.
+  // Pairs that were neither reported nor ended are of two bodies at rest.
   dormant_ = before;
   for (const Meeting& pair : dormant_) {
     WINNOW_HOLDS(bodies_.at(pair.a).motion != Motion::dynamic);
@@ -241,7 +241,7 @@ void Play::check_events() {
   }
 }
 
-/// Everything about contact m of two that were found alike.
+/// Compares all columns of contact m in two Contacts that must be equal.
 bool same_manifold(const Contacts& a, const Contacts& b, std::size_t m) {
   if (a.part_a()[m] != b.part_a()[m] || a.part_b()[m] != b.part_b()[m]) return false;
   if (a.level() < ContactLevel::distance) return true;
@@ -277,7 +277,8 @@ void Play::check_fresh(ContactLevel level) {
   }
 }
 
-/// Every pair that touches is shown, and none that is farther than margin and carry-over allow.
+/// Checks that every touching pair is reported, and no pair that is farther than margin and
+/// carry-over allow.
 void Play::check_carried(const Contacts& fresh) const {
   std::map<std::pair<ClientData, ClientData>, double> least;
   for (std::size_t i = 0; i < fresh.size(); ++i) {
@@ -352,7 +353,7 @@ void Play::ask_cast(Bytes& bytes, SceneQueries& queries) {
   constexpr double kTolerance = 1e-6;
   SceneHit hit;
   WINNOW_HOLDS(queries.closest(cast, hit, {}, kTolerance) == Status::ok);
-  // Nothing is met before, and the one that is met is close then.
+  // No body is touched before the hit, and the hit body is close at that time.
   for (const auto& [key, body] : bodies_) {
     if (body.shape.is_composite()) continue;
     const double end = hit ? hit.t : cast.max_t;

@@ -1,5 +1,5 @@
-// Convex shapes, hulls of hostile points and faces among them: bad ones are refused and change
-// nothing, and of good ones both tiers say the same within their bounds, either way round.
+// Convex shapes, including hulls of hostile points and faces: bad ones are refused and change
+// nothing, and both tiers agree on good ones within their error bounds, in either order.
 
 #include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
@@ -29,7 +29,7 @@ class Workshop {
   void check_rays(Bytes& bytes) const;
 
  private:
-  /// Mostly good.
+  /// Returns mostly a valid length.
   double length(Bytes& bytes) const {
     return bytes.chance(32) ? bytes.any<double>() : size_ * bytes.extent();
   }
@@ -58,7 +58,7 @@ std::vector<Eigen::Vector3d> Workshop::points(Bytes& bytes) const {
 }
 
 Status Workshop::add_faces(Bytes& bytes, ShapeId& id) {
-  // An octahedron, with some of it changed.
+  // Starts from an octahedron and changes some of it.
   std::vector<Eigen::Vector3d> points;
   for (int axis = 0; axis < 3; ++axis) {
     points.push_back(size_ * Eigen::Vector3d::Unit(axis));
@@ -88,7 +88,7 @@ Status Workshop::add_faces(Bytes& bytes, ShapeId& id) {
   return pool_.add_hull(points, {loops, sizes}, size_ * bytes.extent(), id);
 }
 
-/// Says whether it has to be taken, where that is plain.
+/// Sets `good` to whether the shape must be accepted, if that is clear.
 Status Workshop::add_kind(Bytes& bytes, ShapeId& id, bool& good) {
   const double a = length(bytes);
   const double b = length(bytes);
@@ -146,13 +146,13 @@ void Workshop::add(Bytes& bytes) {
     WINNOW_HOLDS(good && pool_.contains(id));
     const Aabb box = pool_.bounds(id, Pose{});
     WINNOW_HOLDS(!as_eigen(box.min).hasNaN() && !as_eigen(box.max).hasNaN());
-    // Pairs are asked about where sizes have something to do with each other.
+    // Pairs are tested only if their sizes are comparable.
     const float largest = (as_eigen(box.max) - as_eigen(box.min)).maxCoeff();
     const bool is_small = static_cast<double>(largest) < 1e12 * size_;
     if (is_small || id.kind() == ShapeKind::half_space) ids_.push_back(id);
     return;
   }
-  // Numbers near the ends of double may make what is no hull any more.
+  // Numbers near the ends of double may turn a hull into none.
   WINNOW_HOLDS(status == Status::invalid_shape || status == Status::unsupported);
   WINNOW_HOLDS(id == ShapeId{} && pool_.footprint().total().used == reserved);
   WINNOW_HOLDS(std::equal(before.count, before.count + kShapeKinds, pool_.tables().count));
@@ -224,7 +224,7 @@ void Workshop::check_pairs(Bytes& bytes) {
   }
 }
 
-/// Where a ray meets a shape, the shape is.
+/// Checks that the hit point of a ray is on the shape.
 void Workshop::check_rays(Bytes& bytes) const {
   if (ids_.empty()) return;
   const ShapeId id = ids_[bytes.below(ids_.size())];

@@ -1,6 +1,6 @@
-// What runs a target: libFuzzer, or a plain program that replays files and the target's own seeds.
-// A file whose name ends in .inputs holds many inputs, one after the other: of each first its size,
-// in four bytes, the lowest first.
+// The main program of a fuzz target: libFuzzer, or a program that replays files and the target's
+// own seeds. A file whose name ends in .inputs contains many inputs, one after the other: the size
+// of each in four bytes, the lowest first, then its bytes.
 
 #include "tests/fuzz/target.h"
 
@@ -27,7 +27,7 @@ std::string content_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Of all files of a folder, by name, of a file of many, or one file.
+/// Returns the inputs of a folder, sorted by name, of an .inputs file, or of one file.
 std::vector<std::string> inputs_of(const std::filesystem::path& path) {
   std::vector<std::string> inputs;
   if (std::filesystem::is_directory(path)) {
@@ -48,7 +48,7 @@ std::vector<std::string> inputs_of(const std::filesystem::path& path) {
   return inputs;
 }
 
-/// One file each, named by number.
+/// Writes one file for each input, named by number.
 void write_each(const std::vector<std::string>& inputs, const std::filesystem::path& folder,
                 const std::string& name) {
   std::filesystem::create_directories(folder);
@@ -68,7 +68,7 @@ void write_together(const std::vector<std::string>& inputs, const std::filesyste
   }
 }
 
-/// What a target does with inputs but to run them; false if nothing of it was asked for.
+/// Handles the options that write or pack files; returns false if there is no such option.
 bool handle_files(int argc, char** argv) {
   const std::string option = argc > 1 ? argv[1] : "";
   if (option == "--write-seeds" && argc == 3) {

@@ -10,17 +10,17 @@
 
 namespace winnow::test {
 
-// What each fuzzed target defines.
+// Every target defines fuzz() and fuzz_seeds().
 
-/// Does what the bytes say and ends the process if something does not hold.
+/// Makes the calls that the bytes encode, and ends the process if a check fails.
 void fuzz(std::span<const std::uint8_t> bytes);
-/// Inputs to begin with; the same each time.
+/// Returns the inputs to begin with; equal each time.
 [[nodiscard]] std::vector<std::string> fuzz_seeds();
 
-/// So many strings of random bytes, up to a length.
+/// Returns `count` random strings of at most this length.
 [[nodiscard]] std::vector<std::string> random_seeds(std::size_t count, std::size_t length);
 
-/// A file of these bytes that is gone when this is.
+/// A temporary file with these bytes; the destructor removes it.
 class ScratchFile {
  public:
   ScratchFile(std::span<const std::uint8_t> bytes, const std::string& ending);
@@ -34,12 +34,12 @@ class ScratchFile {
   std::string path_;
 };
 
-/// Ends the process so that a fuzzer keeps the input.
+/// Ends the process so that the fuzzer saves the input.
 [[noreturn]] void does_not_hold(const char* file, int line, const std::string& what);
 
 }  // namespace winnow::test
 
-/// Of a bool or a testing::AssertionResult.
+/// Checks a bool or a testing::AssertionResult.
 #define WINNOW_HOLDS(...)                                                             \
   do {                                                                                \
     if (const testing::AssertionResult held(__VA_ARGS__); !held) {                    \

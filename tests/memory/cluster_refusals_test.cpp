@@ -1,5 +1,5 @@
-// Every request for memory of clusters is refused in turn: what that ends says so from then on, and
-// what it does not end goes on as if nothing had been refused.
+// Refuses each memory request of clusters in turn. A refusal either ends the cluster, after which
+// every call returns the error, or has no lasting effect.
 
 #include <winnow/pipeline/cluster_scene.h>
 #include <winnow/winnow.h>
@@ -24,7 +24,7 @@ const ShapePool& balls_and_boxes() {
   return *pool;
 }
 
-/// Bodies of three ranks, which move once.
+/// A cluster with bodies on three ranks, which move once.
 class ClusterPlay {
  public:
   explicit ClusterPlay(std::pmr::memory_resource* memory)
@@ -43,8 +43,7 @@ class ClusterPlay {
     }
   }
 
-  /// The digest of all contacts; zeros if the cluster ended. Calls that were refused are made
-  /// again.
+  /// Returns the digest of all contacts, or zeros if the cluster ended. Repeats refused calls.
   ClusterDigest run() {
     call([&] { return add(); });
     call([&] { return cluster_.collide(ContactLevel::manifold); });
@@ -108,7 +107,7 @@ class ClusterPlay {
   std::uint32_t moved_ = 0;
 };
 
-TEST(ClusterRefusals, end_the_cluster_or_leave_no_trace) {
+TEST(ClusterRefusals, refused_memory_ends_cluster_or_changes_nothing) {
   CountingMemory plenty;
   const ClusterDigest truth = ClusterPlay(&plenty).run();
   EXPECT_FALSE(truth == ClusterDigest{});
@@ -126,7 +125,7 @@ TEST(ClusterRefusals, end_the_cluster_or_leave_no_trace) {
       }
       EXPECT_EQ(memory.outstanding(), 0U);
       refused = memory.refusals() != 0;
-      ASSERT_FALSE(HasFailure()) << "request " << k << (once ? " alone" : " and all after it");
+      ASSERT_FALSE(HasFailure()) << "request " << k << (once ? " only" : " and all later ones");
     }
     EXPECT_GT(k, 50U);
   }

@@ -1,5 +1,5 @@
-// Every request for memory of what asks scenes about ways, volumes and sets, and of meshes that
-// deform, is refused in turn.
+// Refuses each memory request of scene sweeps, sensors, queries of sets, layers and deformable
+// meshes in turn (refusals.h has the loop over requests).
 
 #include <winnow/winnow.h>
 
@@ -12,7 +12,7 @@
 namespace winnow::test {
 namespace {
 
-/// A ball, a box, a capsule, a mesh and a compound: made once, scenes only look at them.
+/// A ball, a box, a capsule, a mesh and a compound, shared by all worlds.
 struct FewShapes {
   FewShapes() {
     ids.push_back(pool.add(SphereShape{0.5}));
@@ -114,7 +114,7 @@ struct MovingWorld {
       EXPECT_TRUE(sensors.sensed().empty());
       return status;
     }
-    // Whether they were there before is not told after a question that was refused.
+    // Leaves out the event of each overlap: it restarts after a refused call.
     for (const SensedBody& in : sensors.sensed()) {
       answers.insert(answers.end(), {in.sensor_data, in.body_data});
     }
@@ -173,9 +173,10 @@ void add_bodies_and_layers(MovingCalls& calls) {
 
 void add_ways_and_volumes(MovingCalls& calls) {
   calls.push_back({"sweep", [](auto& w) { return w.look({}); }});
-  calls.push_back({"sweep for the first", [](auto& w) { return w.look({.first_only = true}); }});
   calls.push_back(
-      {"sweep against what stands", [](auto& w) { return w.look({.pairs = SweepPairs::fixed}); }});
+      {"sweep, first impacts only", [](auto& w) { return w.look({.first_only = true}); }});
+  calls.push_back(
+      {"sweep against fixed bodies", [](auto& w) { return w.look({.pairs = SweepPairs::fixed}); }});
   for (const std::size_t i : {0U, 1U, 3U, 4U}) {
     calls.push_back({"sensor", [i](auto& w) { return w.add_sensor(i); }});
   }
@@ -212,10 +213,10 @@ void add_ways_and_volumes(MovingCalls& calls) {
                      if (status == Status::ok) w.answers.push_back(pair.first.id);
                      return status;
                    }});
-  calls.push_back({"contacts at last", [](auto& w) { return w.collide(); }});
+  calls.push_back({"contacts at the end", [](auto& w) { return w.collide(); }});
 }
 
-TEST(SceneRefusals, of_ways_volumes_sets_and_layers_leave_no_trace) {
+TEST(SceneRefusals, refused_sweeps_sensors_sets_and_layers_change_nothing) {
   for (const int threads : {1, 2}) {
     MovingCalls calls;
     add_bodies_and_layers(calls);
@@ -226,7 +227,7 @@ TEST(SceneRefusals, of_ways_volumes_sets_and_layers_leave_no_trace) {
   }
 }
 
-/// Two cloths, one above the other, of which one folds.
+/// Two cloths, one above the other. The first one folds.
 struct ClothWorld {
   ClothWorld(std::pmr::memory_resource* memory, Execution execution)
       : cloth({.memory = memory, .execution = execution, .chunk = 64}),
@@ -244,7 +245,7 @@ struct ClothWorld {
   Status build(DeformableMesh& mesh, const Surface& surface) {
     return mesh.build(points(surface), IndexView(std::span<const std::uint32_t>(rest.corners)));
   }
-  /// Chunks that were handed over before memory was refused do not count.
+  /// Drops the chunks that were delivered before a refusal.
   template <typename Ask>
   Status ask(Ask&& question) {
     Digest found;
@@ -268,7 +269,7 @@ struct ClothWorld {
   Digest answers;
 };
 
-TEST(ClothRefusals, change_nothing_and_leave_no_trace) {
+TEST(ClothRefusals, refused_memory_changes_nothing) {
   using enum FeaturePair;
   std::vector<Call<ClothWorld>> calls;
   calls.push_back({"build", [](auto& w) { return w.build(w.cloth, w.rest); }});
@@ -290,13 +291,13 @@ TEST(ClothRefusals, change_nothing_and_leave_no_trace) {
         {"impacts with the other", [kind](auto& w) {
            return w.ask([&](auto take) { return w.cloth.impacts_with(w.other, kind, {}, take); });
          }});
-    calls.push_back({"what is near", [kind](auto& w) {
+    calls.push_back({"proximity", [kind](auto& w) {
                        return w.ask([&](auto take) {
                          return w.cloth.proximity_with(w.other, kind, 0.05, take);
                        });
                      }});
   }
-  calls.push_back({"build anew", [](auto& w) { return w.build(w.cloth, w.folded); }});
+  calls.push_back({"rebuild", [](auto& w) { return w.build(w.cloth, w.folded); }});
   for (const int threads : {1, 2}) {
     const Execution execution = threads == 1 ? Execution::serial() : Execution::parallel();
     EXPECT_GT((RefusedPlay<ClothWorld, Execution>(calls, threads, execution).check()), 20U);

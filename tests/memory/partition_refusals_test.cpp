@@ -1,4 +1,5 @@
-// Every request for memory of every call of a partition is refused in turn.
+// Refuses each memory request of each call of a partition in turn (refusals.h has the loop over
+// requests).
 
 #include <algorithm>
 #include <deque>
@@ -10,7 +11,7 @@
 namespace winnow::test {
 namespace {
 
-/// A partition, another one, buffers of results, and what was answered.
+/// Two partitions, result buffers, and a digest of the results so far.
 struct PartitionWorld {
   PartitionWorld(std::pmr::memory_resource* memory, StructureKind structure, Volume volume,
                  Margin margin, Execution execution)
@@ -47,7 +48,7 @@ struct PartitionWorld {
     }
   }
 
-  /// Pairs in an order that does not depend on what was refused before.
+  /// Adds the pairs in sorted order, which earlier refusals do not affect.
   void answer(const PairBuffer& found) {
     std::vector<Pair> sorted(found.begin(), found.end());
     std::sort(sorted.begin(), sorted.end());
@@ -74,7 +75,7 @@ struct PartitionWorld {
   Digest answers;
 };
 
-/// What the calls are told: the same for every world.
+/// Arguments of the calls, equal for all worlds.
 struct Script {
   Script() {
     Random random(61);
@@ -123,20 +124,20 @@ Status changes_alone(PartitionWorld& w) {
 
 using Calls = std::vector<Call<PartitionWorld>>;
 
-/// Objects come, move, get filters, go, and come again.
+/// Adds calls that insert, move, filter, remove and insert again.
 void add_changes(Calls& calls) {
   calls.push_back({"insert", [](auto& w) {
                      return insert(w, w.partition, std::span(script().boxes).first(100));
                    }});
   calls.push_back({"pairs", [](auto& w) { return self_pairs(w, Order::fast); }});
-  calls.push_back({"changes alone", changes_alone});
+  calls.push_back({"only changes", changes_alone});
   calls.push_back({"update some", [](auto& w) {
                      const std::vector<std::uint32_t> listed{1, 5, 9, 60};
                      return w.partition.update(w.keys, std::span(script().later).first(100),
                                                Entries::listed(listed));
                    }});
-  calls.push_back({"pairs of what moved", [](auto& w) { return self_pairs(w, Order::fast); }});
-  calls.push_back({"changes alone, of what moved", changes_alone});
+  calls.push_back({"pairs after moves", [](auto& w) { return self_pairs(w, Order::fast); }});
+  calls.push_back({"only changes after moves", changes_alone});
   calls.push_back({"filter", [](auto& w) {
                      const ObjectFilter filters[] = {{2, 2, 0}, {1, 3, 1}};
                      return w.partition.set_filter(std::span(w.keys).first(2), filters);
@@ -164,12 +165,12 @@ void add_changes(Calls& calls) {
   calls.push_back({"canonical pairs", [](auto& w) { return self_pairs(w, Order::canonical); }});
 }
 
-/// The questions, each of fresh buffers' memory the first time.
+/// Adds the queries. The first of each kind allocates its buffer.
 void add_questions(Calls& calls) {
-  calls.push_back({"insert into the other one", [](auto& w) {
+  calls.push_back({"insert into the other partition", [](auto& w) {
                      return insert(w, w.other, std::span(script().later).first(60));
                    }});
-  calls.push_back({"pairs with the other one", [](auto& w) {
+  calls.push_back({"pairs with the other partition", [](auto& w) {
                      const Status status = w.partition.pairs_with(w.other, w.cross);
                      if (status == Status::ok) w.answer(w.cross);
                      return status;
@@ -214,7 +215,7 @@ void add_questions(Calls& calls) {
                    }});
 }
 
-/// Structures are exchanged, room is made, and all is given back.
+/// Adds calls that change the structure, reserve and release memory.
 void add_upkeep(Calls& calls) {
   calls.push_back({"other structure", [](auto& w) {
                      return w.partition.set_structure(
@@ -233,9 +234,9 @@ void add_upkeep(Calls& calls) {
                      w.keys.clear();
                      return Status::ok;
                    }});
-  calls.push_back({"insert after all was given back",
-                   [](auto& w) { return insert(w, w.partition, script().later); }});
-  calls.push_back({"pairs at last", [](auto& w) { return self_pairs(w, Order::fast); }});
+  calls.push_back(
+      {"insert after clear", [](auto& w) { return insert(w, w.partition, script().later); }});
+  calls.push_back({"pairs at the end", [](auto& w) { return self_pairs(w, Order::fast); }});
 }
 
 class PartitionRefusals : public Conformance {
@@ -252,12 +253,13 @@ class PartitionRefusals : public Conformance {
   }
 };
 
-TEST_P(PartitionRefusals, change_nothing_and_leave_no_trace) {
+TEST_P(PartitionRefusals, refused_memory_changes_nothing) {
   EXPECT_GT(check(Volume::aabb, {}), 100U);
 }
 
-TEST_P(PartitionRefusals, change_nothing_where_volumes_have_margins) {
-  // As many more columns as there are, in the narrowest and the widest of them.
+TEST_P(PartitionRefusals, refused_memory_with_margins_changes_nothing) {
+  // Margins double the number of columns. Test the volume with the fewest and the one with the
+  // most.
   for (const Volume volume : {Volume::sphere, Volume::kdop26}) check(volume, {0.1F, 0.05F});
 }
 

@@ -1,5 +1,5 @@
-// Every request for memory of every call of scenes, their questions, shapes and the narrow phase is
-// refused in turn.
+// Refuses each memory request of each call of scenes, scene queries, shape pools and the narrow
+// phase in turn (refusals.h has the loop over requests).
 
 #include <winnow/winnow.h>
 
@@ -12,7 +12,7 @@
 namespace winnow::test {
 namespace {
 
-// Shapes, convex and composite ones.
+// Convex and composite shapes.
 
 void put_box(Digest& digest, const Aabb& box) {
   for (int k = 0; k < 3; ++k) {
@@ -41,7 +41,7 @@ struct ShapeWorld {
     put_box(digest, field.bounds());
   }
 
-  /// Of a call that gives out an id.
+  /// Runs a call that returns a new id, and stores the id.
   template <typename Add>
   Status keep(Add&& add) {
     ShapeId id;
@@ -168,7 +168,7 @@ void add_surfaces(ShapeCalls& calls) {
   calls.push_back(
       {"build", [](auto& w) { return w.mesh.build(points_of(hills(0)), corners_of(hills(0))); }});
   calls.push_back({"refit", [](auto& w) { return w.mesh.refit(points_of(hills(2))); }});
-  calls.push_back({"build anew on threads", [](auto& w) {
+  calls.push_back({"parallel rebuild", [](auto& w) {
                      return w.mesh.build(points_of(hills(2)), corners_of(hills(2)), {},
                                          Execution::parallel());
                    }});
@@ -179,7 +179,7 @@ void add_surfaces(ShapeCalls& calls) {
   calls.push_back({"smaller field", [](auto& w) { return w.field.build({some_heights(), 2, 3}); }});
 }
 
-TEST(ShapeRefusals, change_nothing_and_leave_no_trace) {
+TEST(ShapeRefusals, refused_memory_changes_nothing) {
   for (const int threads : {1, 2}) {
     ShapeCalls calls;
     add_shapes(calls);
@@ -189,7 +189,7 @@ TEST(ShapeRefusals, change_nothing_and_leave_no_trace) {
   }
 }
 
-// The narrow phase, and the mid phase before it.
+// The mid phase and the narrow phase.
 
 struct NarrowWorld {
   NarrowWorld(std::pmr::memory_resource* memory, Execution how)
@@ -266,7 +266,7 @@ struct NarrowWorld {
   Digest answers;
 };
 
-TEST(NarrowRefusals, change_nothing_and_leave_no_trace) {
+TEST(NarrowRefusals, refused_memory_changes_nothing) {
   using enum ContactLevel;
   for (const int threads : {1, 2}) {
     std::vector<Call<NarrowWorld>> calls;
@@ -275,21 +275,21 @@ TEST(NarrowRefusals, change_nothing_and_leave_no_trace) {
     calls.push_back({"manifolds", [](auto& w) { return w.collide(manifold, NarrowTier::robust); }});
     calls.push_back({"solved", [](auto& w) { return w.collide(manifold, NarrowTier::reference); }});
     calls.push_back({"primitives", [](auto& w) { return w.expand(); }});
-    calls.push_back({"of primitives", [](auto& w) { return w.collide_primitives(); }});
+    calls.push_back({"manifolds of primitives", [](auto& w) { return w.collide_primitives(); }});
     const Execution execution = threads == 1 ? Execution::serial() : Execution::parallel();
     EXPECT_GT((RefusedPlay<NarrowWorld, Execution>(calls, threads, execution).check()), 20U);
   }
 }
 
-// Scenes and their questions.
+// Scenes and scene queries.
 
-/// Made once: scenes only look at it.
+/// Shapes shared by all scenes.
 const CompositeWorld& shapes_of_scenes() {
   static const auto world = [] {
     auto made = std::make_unique<CompositeWorld>();
     Random random(5);
     made->add_shapes(random);
-    // The largest compounds and the soup of triangles take long and show nothing new.
+    // Leave out the largest compounds and the triangle soup: they are slow and add no coverage.
     for (const std::ptrdiff_t i : {14, 12, 11}) made->ids.erase(made->ids.begin() + i);
     return made;
   }();
@@ -347,7 +347,8 @@ struct WholeWorld {
     }
     return status;
   }
-  /// Without events: cleared contacts know of no frame before. Carried ones differ in their digits.
+  /// Leaves out events, which need the last frame and a refusal clears that. With carry-over leaves
+  /// out distances and points too: they depend on the frame in which they were computed.
   void answer() {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       answers.insert(answers.end(), {contacts.data_a()[i], contacts.data_b()[i]});
@@ -385,11 +386,11 @@ void add_scene_changes(SceneCalls& calls) {
                      for (std::size_t i = 0; i < 12; ++i) poses.push_back(w.bodies[i + 5].pose);
                      return w.scene.move(std::span(w.keys).first(12), poses);
                    }});
-  calls.push_back({"contacts of what moved", [](auto& w) { return w.collide(manifold); }});
+  calls.push_back({"contacts after moves", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"wake and sleep", [](auto& w) {
                      return w.scene.set_motion(std::span(w.keys).first(8), Motion::sleeping);
                    }});
-  calls.push_back({"contacts of those awake", [](auto& w) { return w.collide(manifold); }});
+  calls.push_back({"contacts of awake bodies", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"shape", [](auto& w) { return w.scene.set_shape(w.keys[3], w.world.ids[9]); }});
   calls.push_back({"ignored", [](auto& w) { return w.scene.set_ignored(w.keys[5], w.keys[2]); }});
   calls.push_back({"filter", [](auto& w) { return w.scene.set_filter(w.keys[4], {2, 2, 0}); }});
@@ -471,11 +472,12 @@ void add_scene_questions(SceneCalls& calls) {
                      w.keys.clear();
                      return Status::ok;
                    }});
-  calls.push_back({"add at last", [](auto& w) { return w.add(0, 30); }});
-  calls.push_back({"contacts at last", [](auto& w) { return w.collide(ContactLevel::manifold); }});
+  calls.push_back({"add at the end", [](auto& w) { return w.add(0, 30); }});
+  calls.push_back(
+      {"contacts at the end", [](auto& w) { return w.collide(ContactLevel::manifold); }});
 }
 
-TEST(SceneRefusals, change_nothing_and_leave_no_trace) {
+TEST(SceneRefusals, refused_memory_changes_nothing) {
   for (const int threads : {1, 2}) {
     for (const double carry_over : {0.0, 0.01}) {
       if (threads != 1 && carry_over != 0.0) continue;

@@ -22,36 +22,36 @@ namespace winnow::test {
 
 inline std::size_t refused_to_all_plays = 0;
 
-/// Numbers to be compared bit by bit.
+/// Values that are compared bit by bit.
 using Digest = std::vector<std::uint64_t>;
 
 inline void put(Digest& digest, double value) {
   digest.push_back(std::bit_cast<std::uint64_t>(value));
 }
 
-/// One call of a play: its name for messages, and what it does to the world.
+/// One call of a script: a name for messages and its effect on the world.
 template <typename World>
 struct Call {
   const char* name;
   std::function<Status(World&)> run;
 };
 
-/// Plays a list of calls on a world whose memory resource refuses the k-th request of one call,
-/// that one alone or all from it on: for every call, and every k until the call makes fewer
-/// requests. A call that answers `out_of_memory` has changed nothing that a digest shows, succeeds
-/// once memory is there again, and the rest of the play ends as if nothing had ever been refused:
-/// with the same keys, ids and answers.
+/// Runs a list of calls on a world whose memory resource refuses the k-th request of one call,
+/// either only that request or all from it on; for each call, and for each k until the call makes
+/// fewer requests. A call that returns `out_of_memory` must leave the digest as it was and must
+/// succeed once memory is available. The remaining calls must then give the keys, ids and results
+/// of a run without refusals.
 ///
-/// A World is made with a memory resource, and has `void describe(Digest&) const`: all that can be
-/// seen of it without changing it, and what calls have answered.
+/// A World is constructed with a memory resource and has `void describe(Digest&) const`, which
+/// appends all its observable state and the results of the calls so far.
 template <typename World, typename... Arguments>
 class RefusedPlay {
  public:
   RefusedPlay(std::vector<Call<World>> calls, int threads, Arguments... arguments)
       : calls_(std::move(calls)), threads_(threads), arguments_(arguments...) {}
 
-  /// How many requests were refused in all. What all plays of the process were refused until then
-  /// is a property of the test that ran.
+  /// Returns the number of refused requests. Records the total over all plays of the process as a
+  /// property of the running test.
   std::size_t check() {
     play_twin();
     for (std::size_t call = 0; call < calls_.size() && !testing::Test::HasFailure(); ++call) {
@@ -59,7 +59,7 @@ class RefusedPlay {
       for (const bool once : {true, false}) {
         std::size_t k = is_quick() && !once ? 1 : 0;
         while (refuse(call, k, once)) k += step_after(k);
-        EXPECT_LT(k, kMost) << "the call never stops asking for memory";
+        EXPECT_LT(k, kMost) << "the call never stops requesting memory";
       }
     }
     refused_to_all_plays += refused_;
@@ -70,8 +70,8 @@ class RefusedPlay {
  private:
   static constexpr std::size_t kMost = 2000;
 
-  /// In smaller runs not each of very many is refused, and in the smallest every second by itself,
-  /// the others with all after them.
+  /// Reduced runs skip most of the many requests. The quickest runs refuse even requests only once,
+  /// and odd requests together with all that follow.
   static std::size_t step_after(std::size_t k) {
     if (!is_reduced()) return 1;
     if (is_quick()) return k < 6 ? 2 : 62;
@@ -102,7 +102,7 @@ class RefusedPlay {
     }
   }
 
-  /// False if the call got all that it asked for, or something is wrong.
+  /// Returns false if no request of the call was refused, or if a check failed.
   bool refuse(std::size_t call, std::size_t k, bool once) {
     CountingMemory memory;
     const auto world = make(memory);
@@ -120,15 +120,15 @@ class RefusedPlay {
     ++refused_;
     if (status != Status::ok) {
       EXPECT_EQ(status, Status::out_of_memory);
-      EXPECT_TRUE(digest(*world) == truths_[call]) << "changed by what was refused";
-      EXPECT_EQ(run(*world, call), Status::ok) << "once there is memory";
+      EXPECT_TRUE(digest(*world) == truths_[call]) << "a refused call changed the state";
+      EXPECT_EQ(run(*world, call), Status::ok) << "after memory was granted";
     }
     for (std::size_t i = call + 1; i < calls_.size(); ++i) {
       EXPECT_EQ(run(*world, i), Status::ok) << "later, " << calls_[i].name;
     }
-    EXPECT_TRUE(digest(*world) == truths_.back()) << "not as the twin that was never refused";
+    EXPECT_TRUE(digest(*world) == truths_.back()) << "differs from the run without refusals";
     if (!testing::Test::HasFailure() && k < kMost) return true;
-    ADD_FAILURE() << "request " << k << (once ? " alone" : " and all after it");
+    ADD_FAILURE() << "request " << k << (once ? " only" : " and all later ones");
     return false;
   }
 

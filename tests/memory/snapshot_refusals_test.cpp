@@ -1,4 +1,5 @@
-// Every request for memory of what saves and loads, and of recordings, is refused in turn.
+// Refuses each memory request of saving, loading, recording and replaying in turn (refusals.h has
+// the loop over requests for snapshots).
 
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/replay.h>
@@ -25,7 +26,7 @@ const std::vector<float>& some_heights() {
   return heights;
 }
 
-/// Everything that can be saved twice: what is, and what becomes the same by loading.
+/// Two sides with one object of each type that can be saved: the original and the loaded copy.
 struct SavedWorld {
   struct Side {
     Side(std::pmr::memory_resource* memory, Execution execution)
@@ -61,7 +62,7 @@ struct SavedWorld {
                      side->composites.size(CompositeKind::mesh), side->scene.size()});
     }
     digest.insert(digest.end(), answers.begin(), answers.end());
-    // Not what they say: stamps of keys are others in every world.
+    // Only the size: the bytes contain key stamps, which differ in every world.
     digest.push_back(bytes.size());
   }
 
@@ -99,7 +100,7 @@ struct SavedWorld {
     std::vector<Key> keys(bodies.size());
     return one.scene.add(bodies, keys);
   }
-  /// Without events: contacts that a refusal has cleared know of no frame before.
+  /// Leaves out events: a refusal clears the contacts and with them the last frame.
   Status collide(Side& side) {
     const Status status = side.scene.collide(ContactLevel::manifold, side.contacts);
     if (status != Status::ok) return status;
@@ -108,7 +109,7 @@ struct SavedWorld {
     }
     return status;
   }
-  /// Appended to what was saved before.
+  /// Appends to the earlier snapshots.
   template <typename Save>
   Status save(Save&& how) {
     const std::size_t before = bytes.size();
@@ -116,7 +117,7 @@ struct SavedWorld {
     if (status == Status::ok) begin = before;
     return status;
   }
-  /// The last one.
+  /// Returns the last snapshot.
   [[nodiscard]] std::span<const std::byte> saved() const {
     return std::span(bytes.data(), bytes.size()).subspan(begin);
   }
@@ -178,10 +179,10 @@ void add_scene(SavedCalls& calls) {
   calls.push_back({"load contacts", [](auto& w) {
                      return w.other.scene.load_contacts(w.saved(), w.other.contacts);
                    }});
-  calls.push_back({"contacts of the loaded", [](auto& w) { return w.collide(w.other); }});
+  calls.push_back({"contacts of the loaded scene", [](auto& w) { return w.collide(w.other); }});
 }
 
-TEST(SnapshotRefusals, change_nothing_and_leave_no_trace) {
+TEST(SnapshotRefusals, refused_memory_changes_nothing) {
   for (const int threads : {1, 2}) {
     SavedCalls calls;
     add_parts(calls);
@@ -192,9 +193,10 @@ TEST(SnapshotRefusals, change_nothing_and_leave_no_trace) {
   }
 }
 
-/// Plays a program whose recorder is refused the k-th request for memory, and says whether it was.
-/// What the program itself is answered does not change, and a recording that is not told to have
-/// ended is whole (who is refused much may do with less).
+/// Runs a program whose recorder is refused the k-th memory request, and returns true if there was
+/// such a request. Checks that the program's own results do not change, and that the recording is
+/// complete unless `close` returns an error. The recorder may get by without memory that was
+/// refused.
 bool record(std::size_t k, std::vector<std::byte>& recording) {
   CountingMemory memory;
   const RecordingSink sink{[](void* to, std::span<const std::byte> bytes) {
@@ -226,7 +228,7 @@ bool record(std::size_t k, std::vector<std::byte>& recording) {
   return memory.refusals() != 0;
 }
 
-TEST(RecordingRefusals, end_the_recording_and_the_program_goes_on) {
+TEST(RecordingRefusals, refused_recorder_ends_recording_but_not_program) {
   std::size_t refused = 0;
   for (std::vector<std::byte> recording; record(refused, recording); recording.clear()) {
     ++refused;
@@ -235,7 +237,8 @@ TEST(RecordingRefusals, end_the_recording_and_the_program_goes_on) {
   EXPECT_GT(refused, 2U);
 }
 
-/// Plays a recording whose player is refused the k-th request, and says whether it was.
+/// Replays a recording with a player that is refused the k-th request, and returns true if there
+/// was such a request.
 bool play(std::span<const std::byte> recording, std::size_t k) {
   CountingMemory memory;
   memory.refuse_one_after(k);
@@ -253,7 +256,7 @@ bool play(std::span<const std::byte> recording, std::size_t k) {
   return memory.refusals() != 0;
 }
 
-TEST(RecordingRefusals, of_players_are_told) {
+TEST(RecordingRefusals, refused_player_returns_out_of_memory) {
   std::vector<std::byte> recording;
   ASSERT_FALSE(record(100'000, recording));
   std::size_t refused = 0;

@@ -1,4 +1,4 @@
-"""Takes mutants back that do not compile: drop.py TREE MUTANTS LOG. Ends with 1 if there are none."""
+"""Removes mutants that do not compile: drop.py TREE MUTANTS LOG. Ends with 1 if there are none."""
 
 import json
 import pathlib
@@ -13,7 +13,7 @@ def main():
     file = pathlib.Path(sys.argv[2])
     mutants = json.loads(file.read_text())
     log = pathlib.Path(sys.argv[3]).read_text()
-    # Also where a template that has one is instantiated: the lines of all messages about errors.
+    # Includes the instantiations of templates with a mutant: takes the lines of all error messages.
     places = set(re.findall(r"([\w./-]+):(\d+):(?:\d+:)? +(?:error|required|note|  )", log))
     lines = {(name, int(line)) for name, line in places}
     dropped = 0

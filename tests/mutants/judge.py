@@ -1,13 +1,13 @@
 """Runs the tests against each mutant: judge.py PROGRAMS MUTANTS SECONDS OUT [SUITES].
 
-First every suite of tests runs once without a mutant, and tells which mutants it comes by; one that does
-not pass at the scale of WINNOW_TEST_SCALE, as too few of its cases are left, is run at larger ones. Each
-line of digests.txt for the host's usual rounding counts as a suite. Then each mutant is run by the suites
-that come by it until one fails, hangs or crashes, which kills it, or until SECONDS have been used for it:
-those first that killed others of its file, then those that come by few mutants for the time that they
-take. Prints the survivors, with the reason that survivors.txt gives where it knows one, and the score by
-group; OUT gets all of it as JSON. Equivalent mutants, as that file calls them, are not counted. SUITES, a
-regular expression, takes those suites alone. All times are of the processor: others may use it too.
+First every test suite runs once without a mutant and records which mutants it executes; a suite that fails
+at the scale of WINNOW_TEST_SCALE, because too few of its cases are left, is run at larger scales. Each line
+of digests.txt for the host's usual rounding counts as a suite. Then each mutant is run by the suites that
+execute it until one fails, hangs or crashes, which kills it, or until SECONDS have been used for it: first
+suites that killed other mutants of its file, then suites with few mutants for their run time. Prints the
+survivors, with the reason in survivors.txt if there is one, and the score by group; writes all of it to OUT
+as JSON. Mutants that survivors.txt calls equivalent are not counted. SUITES, a regular expression, selects
+suites. All times are CPU times, since other processes may use the machine.
 """
 
 import collections
@@ -25,16 +25,16 @@ import time
 PROGRAMS = ["core", "partition", "query", "pipeline", "recording", "memory"]
 HERE = pathlib.Path(__file__).parent
 DIGESTS = HERE.parent / "digests" / "digests.txt"
-# A process that does nothing for so many seconds waits for ever.
+# A process without CPU time for this many seconds is taken to hang.
 MOST_IDLE = 60
-# Tests have an operator delete of their own, by which they count.
+# The tests replace operator delete, to count calls.
 SANITIZER = "alloc_dealloc_mismatch=0:detect_leaks=0"
-# Of tests, where the one that was asked for leaves a suite too little to find.
+# Used if a suite fails at the given scale because it has too few cases.
 LARGER_SCALES = ["0.3", "1"]
 
 
 def suites_of(programs, files):
-    """Names, and the words that run each. `files` is a folder for what they read."""
+    """Returns the names of suites and the command of each. `files` is a folder for their input files."""
     suites = []
     for name in PROGRAMS:
         program = f"{programs}/winnow_{name}_tests"
@@ -55,7 +55,7 @@ def suites_of(programs, files):
 
 
 def is_idle(process, used):
-    """Whether the processor time that a process has used is still this, unless it was stopped; and that
+    """Returns whether the CPU time of a process is still `used`, unless it was stopped; and the CPU
     time."""
     try:
         fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
@@ -66,7 +66,7 @@ def is_idle(process, used):
 
 
 def run_suite(words, extra, limit):
-    """True if the tests pass within so many seconds, and how many they took."""
+    """Returns whether the tests pass within `limit` seconds, and the seconds that they took."""
     process = subprocess.Popen(["prlimit", f"--cpu={math.ceil(limit)}", *words],
                                env=dict(os.environ, ASAN_OPTIONS=SANITIZER, **extra),
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -85,7 +85,7 @@ def run_suite(words, extra, limit):
 
 
 def survey(name, words):
-    """What a suite comes by without a mutant, at which scale, and how long it takes."""
+    """Returns the mutants that a suite executes, the scale at which it passes, and its run time."""
     for scale in [os.environ.get("WINNOW_TEST_SCALE", "0.1"), *LARGER_SCALES]:
         with tempfile.NamedTemporaryFile("r") as file:
             passed, took = run_suite(words, {"WINNOW_MUTANTS_REACHED": file.name,
@@ -98,8 +98,8 @@ def survey(name, words):
 
 
 def judge(mutant, suites, kills, budget):
-    """The suite that kills it, None if it survives, and whether all that come by it were run. `kills` counts
-    by file and suite what was killed so far."""
+    """Returns the suite that kills a mutant, None if it survives, and whether all suites that execute it
+    were run. `kills` counts, by file and suite, the mutants killed so far."""
     file_kills = kills[mutant["file"]]
     mine = sorted((s for s in suites if mutant["id"] in s["reached"]),
                   key=lambda s: (-file_kills[s["suite"]], s["took"] * len(s["reached"])))
@@ -118,7 +118,7 @@ def judge(mutant, suites, kills, budget):
 
 
 def known_survivors():
-    """Reasons by file, place and what became of it."""
+    """Returns the reasons of survivors.txt by file, place and change."""
     known = {}
     for line in (HERE / "survivors.txt").read_text().splitlines():
         if line and not line.startswith("#"):

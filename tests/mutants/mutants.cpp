@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMost = 100'000;
 
-/// Appends the numbers of those that were come by to the file that WINNOW_MUTANTS_REACHED names.
+/// Appends the numbers of the executed mutants to the file that WINNOW_MUTANTS_REACHED names.
 void write_reached() {
   const char* path = std::getenv("WINNOW_MUTANTS_REACHED");
   std::FILE* file = path == nullptr ? nullptr : std::fopen(path, "a");

@@ -1,6 +1,6 @@
 #pragma once
 
-// Put into sources by rewrite.py, in a copy of the tree alone.
+// rewrite.py includes this into sources, only in a copy of the tree.
 
 #include <type_traits>
 
@@ -8,12 +8,12 @@ namespace winnow_mutants {
 
 /// The mutant that this process runs, from WINNOW_MUTANT; -1 for none.
 extern const int chosen;
-/// Which were come by.
+/// Which mutants were executed.
 extern unsigned char reached[];
 
 [[gnu::noinline]] void note(int mutant) noexcept;
 
-/// True where this mutant runs. What is computed while compiling stays as it is.
+/// Returns true if this mutant runs. Constant expressions are never mutated.
 constexpr bool is(int mutant) noexcept {
   if (std::is_constant_evaluated()) return false;
   if (reached[mutant] == 0) note(mutant);

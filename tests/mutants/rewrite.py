@@ -1,11 +1,11 @@
 """Puts mutants into the sources of a copy of the tree: rewrite.py TREE COMPILE_COMMANDS COUNT SEED OUT [GROUPS].
 
 A mutant is a small change of one expression or statement. All of them are compiled into one program, and
-the environment variable WINNOW_MUTANT says which one runs: `a < b` becomes
-`(winnow_mutants::is(17) ? (a) <= (b) : (a) < (b))`. COUNT of each group of targets.txt are drawn by SEED,
-no two of which overlap; 0 takes all that do not. Those of a group do not depend on other groups, and fewer
-are the first of more. GROUPS, a regular expression, takes those groups alone. OUT gets what they are, as
-JSON.
+the environment variable WINNOW_MUTANT selects the one that runs: `a < b` becomes
+`(winnow_mutants::is(17) ? (a) <= (b) : (a) < (b))`. COUNT mutants of each group of targets.txt are drawn
+with SEED, no two of which overlap; 0 takes all that do not overlap. The mutants of a group do not depend on
+other groups, and a smaller COUNT draws the first ones of a larger COUNT. GROUPS, a regular expression,
+selects groups. Writes the list of mutants to OUT as JSON.
 """
 
 import itertools
@@ -23,25 +23,25 @@ OTHER = {
     "+": "-", "-": "+", "*": "+", "/": "*", "&&": "||", "||": "&&",
     "&": "|", "|": "&", "+=": "-=", "-=": "+=", "|=": "&=", "&=": "|=", "<<": ">>", ">>": "<<",
 }
-# What compilers say of changes, which are meant to be odd.
+# Warnings about the mutants, which are odd on purpose.
 QUIET = "".join(f'#pragma GCC diagnostic ignored "-W{name}"\n' for name in (
     "conversion", "sign-conversion", "float-conversion", "parentheses", "unused-value", "type-limits",
     "sign-compare", "bool-operation", "int-in-bool-context", "shift-count-overflow", "duplicated-cond"))
-# Statements that can be left out.
+# Statements that can be removed.
 REMOVABLE = {
     CursorKind.CALL_EXPR, CursorKind.BINARY_OPERATOR, CursorKind.COMPOUND_ASSIGNMENT_OPERATOR,
     CursorKind.UNARY_OPERATOR, CursorKind.CONTINUE_STMT,
 }
-# clang wraps what makes temporaries in a cursor that it has no name for.
+# clang wraps expressions with temporaries in a cursor that has no name in this interface.
 WRAPPED = {CursorKind.UNEXPOSED_EXPR}
 LITERALS = {CursorKind.INTEGER_LITERAL, CursorKind.FLOATING_LITERAL}
 DECLARATIONS = {CursorKind.VAR_DECL, CursorKind.PARM_DECL, CursorKind.FIELD_DECL}
-# Called, it changes how long something takes and nothing else.
+# A call changes only the run time.
 HINTS = {"__builtin_prefetch"}
 
 
 class Source:
-    """One file, and what can be made of it."""
+    """One source file, and the mutants that are possible in it."""
 
     def __init__(self, tree, path, arguments):
         self.path = path
@@ -58,7 +58,7 @@ class Source:
         return self.bytes[start:end].decode()
 
     def span(self, cursor):
-        """Begin and end as offsets; None for what is not written in this file as it is."""
+        """Returns begin and end as offsets; None for text that is not written in this file verbatim."""
         start, end = cursor.extent.start, cursor.extent.end
         if not start.file or start.file.name != self.name or end.file.name != self.name:
             return None
@@ -71,8 +71,8 @@ class Source:
                             "place": self.place(start, end)})
 
     def place(self, start, end):
-        """The line that something is written in, the part itself between « and »: a number or a name
-        alone is in many places of a file."""
+        """Returns the line of the change, with the changed part between « and »: a mere
+        number or name occurs in many places of a file."""
         first = self.bytes.rfind(b"\n", 0, start) + 1
         last = self.bytes.find(b"\n", end)
         around = (self.text(first, start), "«", self.text(start, end), "»", self.text(end, last))
@@ -97,31 +97,31 @@ class Source:
                 self.visit(child)
 
     def is_decided_early(self, cursor):
-        """How many of its parts, from the first on, are computed while compiling."""
+        """Returns how many of its parts, from the first on, are constant expressions."""
         if cursor.kind is not CursorKind.IF_STMT:
             return 0
         words = [token.spelling for token, _ in zip(cursor.get_tokens(), range(2))]
         return 1 if words == ["if", "constexpr"] else 0
 
     def is_in_type(self, cursor):
-        """How many there are of an array: computed while compiling, too."""
+        """Returns whether this is an array size, which is a constant expression."""
         place = self.span(cursor)
         return (place is not None and self.bytes[: place[0]].rstrip().endswith((b"[", b","))
                 and self.bytes[place[1] :].lstrip().startswith((b"]", b">")))
 
     def is_template_argument(self, start, end):
-        """Computed while compiling, too. What is less than a number has a space before it."""
+        """Returns whether this is a template argument, which is constant. A comparison has a space before it."""
         return self.bytes[start - 1 : start] == b"<" and self.bytes[end : end + 1] in (b">", b",")
 
     def is_constant(self, cursor):
-        """Computed while compiling, where no mutant is ever switched on: see mutants.h."""
+        """Returns whether this is constant; mutants never run in constant expressions, see mutants.h."""
         if cursor.kind is not CursorKind.VAR_DECL:
             return False
         words = (token.spelling for token in cursor.get_tokens())
         return "constexpr" in itertools.takewhile(lambda word: word not in ("=", "{"), words)
 
     def visit_operator(self, cursor):
-        """The other operator in place of this one."""
+        """Replaces an operator with the other ones of its group."""
         children = list(cursor.get_children())
         place = self.span(cursor)
         if place is None or len(children) != 2:
@@ -151,7 +151,7 @@ class Source:
                  f"{literal} -> {literal} + 1")
 
     def visit_statement(self, statement):
-        """Left out."""
+        """Removes a statement."""
         inner = statement
         while inner.kind in WRAPPED and len(list(inner.get_children())) == 1:
             inner = next(inner.get_children())
@@ -167,7 +167,7 @@ class Source:
                  f"if (!winnow_mutants::is(@)) {{ {self.text(place[0], end + 1)} }}", "left out")
 
     def visit_condition(self, cursor):
-        """Negated."""
+        """Negates a condition."""
         children = list(cursor.get_children())
         place = self.span(children[0]) if children else None
         words = [token.spelling for token, _ in zip(cursor.get_tokens(), range(2))]
@@ -181,7 +181,7 @@ class Source:
 
 
 def compile_arguments(commands, path):
-    """Those of the file itself, or of the kernels or sources of its room."""
+    """Returns the compile options of the file itself, or of the kernels or sources of its room."""
     room = path.parts[0]
     kernel = ".kernel." in path.name
     for own in (True, False):
@@ -200,7 +200,7 @@ def compile_arguments(commands, path):
 
 
 def drawn(points, count, rng):
-    """So many of them, of which no two overlap, in an order by chance."""
+    """Returns `count` of the points, no two of which overlap, in random order."""
     rng.shuffle(points)
     taken = {}
     chosen = []
@@ -216,10 +216,10 @@ def drawn(points, count, rng):
 
 
 def write(tree, mutants):
-    """The sources with all mutants that are to be compiled."""
+    """Writes the sources with all mutants that are to be compiled."""
     by_file = {}
     for mutant in mutants:
-        # A file of which all are dropped is to be without them, too.
+        # A file whose mutants were all dropped is written without them.
         some = by_file.setdefault(mutant["file"], [])
         if not mutant.get("dropped"):
             some.append(mutant)
@@ -230,7 +230,7 @@ def write(tree, mutants):
         text = pristine.read_bytes()
         for mutant in sorted(some, key=lambda m: -m["start"]):
             change = mutant["text"].replace("@", str(mutant["id"])).encode()
-            # Lines keep their numbers, by which errors are told.
+            # Keeps the line numbers, by which errors are matched.
             change += b"\n" * (mutant["was"].count("\n") - change.count(b"\n"))
             text = text[: mutant["start"]] + change + text[mutant["end"] :]
         (tree / path).write_bytes(f'#include "tests/mutants/mutants.h"\n{QUIET}#line 1\n'.encode() + text)

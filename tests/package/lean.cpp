@@ -1,5 +1,5 @@
-// A program without exceptions and run-time types that implements what winnow calls: memory, a
-// drawing, threads.
+// A program without exceptions and run-time types that implements the interfaces that winnow calls:
+// memory, debug drawing, threads.
 
 #include <winnow/winnow.h>
 

@@ -1,5 +1,5 @@
-// The automatic choice where it changes from one structure to another: nobody may notice. What it
-// has in common with all structures is tested with them, by name.
+// The automatic structure while it switches from one structure to another, which must not change
+// any result. Its common behaviour is tested together with all structures, by name.
 
 #include <winnow/partitions/partition.h>
 
@@ -21,11 +21,11 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::size_t kFew = 20;     // brute force is the best choice whatever the scene
-constexpr std::size_t kMany = 1200;  // and the worst
+constexpr std::size_t kFew = 20;     // brute force is the best choice in any scene
+constexpr std::size_t kMany = 1200;  // brute force is the worst choice
 constexpr std::size_t kFramesOfEach = 120;
 
-// A world whose number of objects changes so much that its structure must.
+// A world whose number of objects changes enough to switch its structure.
 class TurningWorld {
  public:
   explicit TurningWorld(const Config& config,
@@ -51,7 +51,7 @@ class TurningWorld {
     world.update(keys, boxes);
   }
   [[nodiscard]] const Partition& partition() const { return world.partition(); }
-  /// Name of the structure that prunes the objects.
+  /// The name of the structure in use.
   [[nodiscard]] std::string_view chosen() const { return partition().choice().structure.name(); }
   [[nodiscard]] std::uint64_t changes() const { return partition().choice().changes; }
 
@@ -63,7 +63,7 @@ class TurningWorld {
   Random random_{17};
 };
 
-// Few, many, few, many, few: numbers of objects of successive frames.
+// The numbers of objects in successive frames: few, many, few, many, few.
 std::vector<std::size_t> turning_counts() {
   std::vector<std::size_t> counts;
   for (const std::size_t count : {kFew, kMany, kFew, kMany, kFew})
@@ -81,7 +81,7 @@ std::vector<Config> auto_configs() {
 
 class AutomaticChoice : public Conformance {};
 
-TEST_P(AutomaticChoice, keep_keys_filters_data_and_pairs_when_they_change) {
+TEST_P(AutomaticChoice, switch_keeps_keys_filters_data_and_pairs) {
   TurningWorld scene(config());
   PairBuffer buffer;
   std::set<std::string_view> chosen;
@@ -99,9 +99,9 @@ TEST_P(AutomaticChoice, keep_keys_filters_data_and_pairs_when_they_change) {
   EXPECT_GE(chosen.size(), 2U);
 }
 
-// Of one object no cost of a structure is known, and a scene that grows soon leaves what it began
-// with.
-TEST_P(AutomaticChoice, begin_with_brute_force_where_hardly_anything_is) {
+// With very few objects there is no measured cost, and a growing scene soon leaves the first
+// structure.
+TEST_P(AutomaticChoice, few_objects_begin_with_brute_force) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{8}, kFew}) {
     TurningWorld scene(config());
     PairBuffer buffer;
@@ -111,7 +111,7 @@ TEST_P(AutomaticChoice, begin_with_brute_force_where_hardly_anything_is) {
   }
 }
 
-TEST_P(AutomaticChoice, look_at_scenes_in_which_many_objects_have_no_end) {
+TEST_P(AutomaticChoice, scene_with_many_infinite_boxes_is_handled) {
   constexpr float kEndless = std::numeric_limits<float>::infinity();
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(kMany);
@@ -125,14 +125,14 @@ TEST_P(AutomaticChoice, look_at_scenes_in_which_many_objects_have_no_end) {
   EXPECT_TRUE(std::isfinite(world.partition().choice().features.crowding));
 }
 
-// The ids of pairs that began or ended.
+// Returns the ids of pairs that began or ended.
 std::vector<Pair> ids_of(std::span<const KeyPair> pairs) {
   std::vector<Pair> ids;
   for (const auto& [first, second] : pairs) ids.push_back({first.id, second.id});
   return ids;
 }
 
-TEST_P(AutomaticChoice, tell_the_same_pair_events_as_one_that_never_changes) {
+TEST_P(AutomaticChoice, pair_events_equal_those_of_one_structure) {
   TurningWorld turning(config());
   TurningWorld steady({"LinearBvh", config().isa, config().threads});
   PairBuffer turning_pairs;
@@ -156,8 +156,8 @@ TEST_P(AutomaticChoice, tell_the_same_pair_events_as_one_that_never_changes) {
   EXPECT_GE(turning.changes(), 2U);
 }
 
-// A frame that asks about what moved alone must not become one that asks about everything.
-TEST_P(AutomaticChoice, update_tracked_buffers_across_a_change) {
+// A query for changes only must not turn into a full query.
+TEST_P(AutomaticChoice, switch_keeps_tracked_buffers_up_to_date) {
   TurningWorld scene(config());
   PairBuffer buffer;
   scene.fill(kMany);
@@ -174,7 +174,7 @@ TEST_P(AutomaticChoice, update_tracked_buffers_across_a_change) {
   EXPECT_LE(scene.partition().statistics().full_queries, full + 1);
 }
 
-TEST_P(AutomaticChoice, choose_alike_whatever_runs_them) {
+TEST_P(AutomaticChoice, choice_does_not_depend_on_isa_and_threads) {
   const auto choices = [](const Config& config) {
     const IsaScope isa(config.isa);
     TurningWorld scene(config);
@@ -191,9 +191,9 @@ TEST_P(AutomaticChoice, choose_alike_whatever_runs_them) {
   EXPECT_EQ(choices(config()), choices(auto_configs().front()));
 }
 
-// Each change of mind must pay for twice as much as the one before: their number grows with the
-// logarithm of the frames alone.
-TEST_P(AutomaticChoice, change_less_and_less_in_a_scene_that_alternates) {
+// Each switch must save twice as much as the one before: the number of switches grows only with the
+// logarithm of the frames.
+TEST_P(AutomaticChoice, alternating_scene_switches_less_and_less) {
   TurningWorld scene(config());
   PairBuffer buffer;
   std::array<std::uint64_t, 2> changes{};
@@ -208,7 +208,7 @@ TEST_P(AutomaticChoice, change_less_and_less_in_a_scene_that_alternates) {
       << "in the three times as many frames after " << changes[0];
 }
 
-TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
+TEST_P(AutomaticChoice, refused_memory_during_a_switch_is_recoverable) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   for (const auto& [from, to] : {std::pair{kFew, kMany}, std::pair{kMany, kFew}}) {
@@ -237,7 +237,7 @@ TEST_P(AutomaticChoice, stay_usable_when_memory_is_refused_while_they_change) {
   }
 }
 
-TEST(AutomaticReserve, is_as_much_as_each_structure_takes_that_may_be_chosen) {
+TEST(AutomaticReserve, reserve_suffices_for_each_possible_structure) {
   const auto reserved_by = [](StructureKind kind) {
     Partition partition(kind);
     EXPECT_EQ(partition.reserve(kMany), Status::ok);
@@ -250,7 +250,7 @@ TEST(AutomaticReserve, is_as_much_as_each_structure_takes_that_may_be_chosen) {
 }
 
 #if WINNOW_TEST_THREADS
-TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
+TEST_P(AutomaticChoice, concurrent_queries_during_a_switch_are_safe) {
   TurningWorld scene(config());
   constexpr std::size_t kReaders = 4;
   std::array<PairBuffer, kReaders> buffers;
@@ -277,7 +277,7 @@ TEST_P(AutomaticChoice, may_be_asked_by_several_threads_while_they_change) {
 }
 #endif
 
-TEST_P(AutomaticChoice, pair_with_each_other_while_they_change) {
+TEST_P(AutomaticChoice, pairs_with_is_right_during_a_switch) {
   TurningWorld a(config());
   TurningWorld b(config());
   b.fill(kFew);

@@ -1,4 +1,5 @@
-// Boxes on their way into rows, and those that left where they were, box by box.
+// Kernels that copy boxes into rows and find the boxes that left their old bounds, compared with
+// tests of each box.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -18,7 +19,7 @@ namespace {
 constexpr std::size_t kFloats = 6;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Six floats each; some reach to infinity.
+/// Returns boxes of six floats each, some of which are infinite.
 std::vector<float> some_boxes(Random& random, std::size_t count) {
   std::vector<float> floats;
   for (std::size_t i = 0; i < count; ++i) {
@@ -36,7 +37,7 @@ std::vector<float> some_boxes(Random& random, std::size_t count) {
 
 class BoxInput : public testing::TestWithParam<Isa> {};
 
-TEST_P(BoxInput, finds_the_boxes_that_do_not_lie_within_another) {
+TEST_P(BoxInput, boxes_not_within_a_box_are_found) {
   const IsaScope scope(GetParam());
   Random random(1);
   for (std::size_t count = 0; count < 120; ++count) {
@@ -59,7 +60,7 @@ TEST_P(BoxInput, finds_the_boxes_that_do_not_lie_within_another) {
   }
 }
 
-TEST_P(BoxInput, copies_boxes_and_finds_those_that_are_not_near) {
+TEST_P(BoxInput, boxes_are_copied_and_distant_ones_found) {
   const IsaScope scope(GetParam());
   Random random(2);
   for (std::size_t count = 0; count < 120; ++count) {
@@ -85,14 +86,15 @@ TEST_P(BoxInput, copies_boxes_and_finds_those_that_are_not_near) {
   }
 }
 
-// What rows hold of infinite ends.
+// Returns the value that rows store for an infinite end.
 float stored_end(float end) {
   constexpr float kMost = std::numeric_limits<float>::max();
   return std::clamp(end, -kMost, kMost);
 }
 
-// By the rule of one box: all of these are decided without rounding, so that lanes agree with it.
-TEST_P(BoxInput, finds_the_boxes_that_the_stored_ones_still_serve) {
+// Compares with the test of a single box: no decision here needs rounding, so the lanes must agree
+// exactly.
+TEST_P(BoxInput, boxes_still_inside_their_margin_are_found) {
   const IsaScope scope(GetParam());
   Random random(4);
   constexpr float kDistance = 0.25F;
@@ -121,7 +123,7 @@ TEST_P(BoxInput, finds_the_boxes_that_the_stored_ones_still_serve) {
       const float margin = kDistance + kShare * longest;
       bool serves = true;
       for (std::size_t a = 0; a < 3; ++a) {
-        // In eighths of the margin: mostly it serves.
+        // In eighths of the margin: mostly the new box is inside.
         const auto low_by = static_cast<float>(random.below(40)) - 1.0F;
         const auto high_by = static_cast<float>(random.below(18)) - (random.chance(0.1) ? 1.0F : 0);
         const bool endless_axis = endless < kFloats && endless % 3 == a;
@@ -147,12 +149,12 @@ TEST_P(BoxInput, finds_the_boxes_that_the_stored_ones_still_serve) {
   }
 }
 
-TEST_P(BoxInput, gives_rows_the_boxes_of_their_objects_and_leaves_others_alone) {
+TEST_P(BoxInput, rows_get_only_the_boxes_of_their_objects) {
   const IsaScope scope(GetParam());
   Random random(3);
   constexpr std::size_t kRows = 96;
   for (int round = 0; round < 200; ++round) {
-    // Of ids from 10 on some have a box; rows hold any of them, or others, or none.
+    // Some ids from 10 on have a box; rows hold these ids, other ids or none.
     const std::vector<float> boxes = some_boxes(random, 60);
     std::vector<std::uint32_t> table(80, ~0U);
     const bool listed = round % 2 == 0;

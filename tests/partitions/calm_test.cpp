@@ -1,5 +1,5 @@
-// Scenes in which everything moves a little and hardly a pair changes: boxes are not brought to
-// their rows then, which no caller can see but by the work that is done.
+// Resting scenes: all boxes jitter and hardly a pair changes. Boxes are then not written to their
+// rows, which callers can notice only by the amount of work.
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/hits.h>
@@ -32,7 +32,7 @@ Aabb shaken(const Aabb& box, float by, Random& random) {
   return {box.min + d, box.max + d};
 }
 
-class CalmScenes : public Conformance {
+class RestingScenes : public Conformance {
  protected:
   void start(std::vector<Aabb> boxes) {
     rest_ = std::move(boxes);
@@ -40,7 +40,7 @@ class CalmScenes : public Conformance {
     keys_ = world_->insert(rest_);
   }
 
-  /// All but some in a hundred tremble about where they rest.
+  /// Moves all boxes, except one in `still`, around their rest positions.
   void shake(float by, std::size_t still = 100) {
     std::vector<Key> keys;
     std::vector<Aabb> boxes;
@@ -52,13 +52,13 @@ class CalmScenes : public Conformance {
     world_->update(keys, boxes);
   }
 
-  /// One of many tiny boxes that lie within the margin of large ones of each other.
+  /// Returns a tiny box close to many others, all within the margin of large boxes.
   [[nodiscard]] Aabb dust() {
     const Vec3f at = Vec3f::constant(2.0F + 1e-4F * static_cast<float>(random_.uniform(0, 1)));
     return {at, at + Vec3f::constant(1e-6F)};
   }
 
-  // Frames in which nothing changes, until boxes are deferred.
+  // Runs frames without pair changes until updates are deferred.
   void calm_down(float by, PairBuffer& buffer) {
     for (int frame = 0; frame < 6; ++frame) {
       shake(by);
@@ -78,7 +78,7 @@ class CalmScenes : public Conformance {
   Random random_{8};
 };
 
-TEST_P(CalmScenes, ask_for_no_pair_that_cannot_have_changed) {
+TEST_P(RestingScenes, resting_frames_test_no_pair) {
   start(uniform_boxes(kCount));
   PairBuffer buffer;
   calm_down(1e-5F, buffer);
@@ -92,8 +92,8 @@ TEST_P(CalmScenes, ask_for_no_pair_that_cannot_have_changed) {
   EXPECT_EQ(full_queries(), full);
 }
 
-// Neighbours that touch, or all but do, begin and end all the time.
-TEST_P(CalmScenes, tell_every_pair_that_begins_and_ends) {
+// Neighbours that touch, or nearly touch, begin and end all the time.
+TEST_P(RestingScenes, every_pair_that_begins_or_ends_is_reported) {
   std::vector<Aabb> boxes;
   for (int i = 0; i < 343; ++i) {
     const Vec3f at(static_cast<float>(i % 7), static_cast<float>(i / 7 % 7),
@@ -131,7 +131,7 @@ TEST_P(CalmScenes, tell_every_pair_that_begins_and_ends) {
   EXPECT_GT(changed, 1000U);
 }
 
-TEST_P(CalmScenes, are_left_by_some_that_come_go_and_move) {
+TEST_P(RestingScenes, objects_that_come_go_and_move_are_handled) {
   for (const bool touching : {false, true}) {
     std::vector<Aabb> boxes = uniform_boxes(kCount);
     if (touching) {
@@ -175,12 +175,12 @@ TEST_P(CalmScenes, are_left_by_some_that_come_go_and_move) {
           case 4:
             world_->set_filter(keys_[at], {1, 1, random_.chance(0.5) ? 0U : 1U});
             break;
-          default:  // away and back again, in one update
+          default:  // moves away and back in one update
             world_->update(std::vector<Key>{keys_[at], keys_[at]},
                            std::vector<Aabb>{shaken(rest_[at], 5.0F, random_), rest_[at]});
         }
       }
-      // Now and then nobody asks in between.
+      // Some frames have no query in between.
       if (frame % 5 == 3) continue;
       ASSERT_TRUE(world_->agrees(buffer)) << "frame " << frame;
     }
@@ -189,7 +189,7 @@ TEST_P(CalmScenes, are_left_by_some_that_come_go_and_move) {
   }
 }
 
-TEST_P(CalmScenes, end_where_everything_moves_on) {
+TEST_P(RestingScenes, rest_ends_if_everything_moves) {
   start(uniform_boxes(kCount));
   PairBuffer buffer;
   for (int round = 0; round < 3; ++round) {
@@ -201,8 +201,8 @@ TEST_P(CalmScenes, end_where_everything_moves_on) {
   }
 }
 
-// Every other question sees the boxes as they were given.
-TEST_P(CalmScenes, are_seen_as_they_are_by_every_question) {
+// All other queries read the current boxes.
+TEST_P(RestingScenes, every_query_reads_the_current_boxes) {
   start(uniform_boxes(kCount));
   World other(config());
   other.insert(uniform_boxes(100, 2));
@@ -263,7 +263,7 @@ TEST_P(CalmScenes, are_seen_as_they_are_by_every_question) {
   ASSERT_TRUE(world_->agrees(buffer));
 }
 
-TEST_P(CalmScenes, may_hold_infinite_huge_tiny_and_flat_boxes) {
+TEST_P(RestingScenes, infinite_huge_tiny_and_flat_boxes_are_right) {
   std::vector<Aabb> boxes = uniform_boxes(300);
   for (std::size_t i = 0; i < 60; ++i) boxes[i].max = boxes[i].min;
   for (std::size_t i = 60; i < 100; ++i) boxes[i].max[2] = boxes[i].min[2];
@@ -282,8 +282,8 @@ TEST_P(CalmScenes, may_hold_infinite_huge_tiny_and_flat_boxes) {
   }
 }
 
-// Next to all pairs of what is smaller than the margin, and close together, would be watched.
-TEST_P(CalmScenes, are_none_where_dust_lies_among_large_boxes) {
+// Here nearly all pairs of boxes smaller than the margin would have to be watched.
+TEST_P(RestingScenes, tiny_boxes_among_large_ones_prevent_rest) {
   std::vector<Aabb> boxes = uniform_boxes(kCount);
   for (std::size_t i = 0; i < kCount / 2; ++i) boxes.push_back(dust());
   start(boxes);
@@ -296,7 +296,7 @@ TEST_P(CalmScenes, are_none_where_dust_lies_among_large_boxes) {
   }
 }
 
-TEST_P(CalmScenes, end_where_dust_gathers) {
+TEST_P(RestingScenes, rest_ends_if_tiny_boxes_gather) {
   start(uniform_boxes(kCount));
   PairBuffer buffer;
   calm_down(1e-5F, buffer);
@@ -312,7 +312,7 @@ TEST_P(CalmScenes, end_where_dust_gathers) {
   EXPECT_GT(full_queries(), full);
 }
 
-TEST_P(CalmScenes, refuse_what_any_scene_refuses) {
+TEST_P(RestingScenes, invalid_calls_are_refused) {
   start(uniform_boxes(kCount));
   PairBuffer buffer;
   calm_down(1e-5F, buffer);
@@ -329,7 +329,7 @@ TEST_P(CalmScenes, refuse_what_any_scene_refuses) {
   EXPECT_TRUE(world_->agrees(buffer));
 }
 
-TEST_P(CalmScenes, are_right_whatever_memory_is_refused) {
+TEST_P(RestingScenes, results_are_right_after_any_refused_memory) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t granted = 0; granted < 12; ++granted) {
     start(uniform_boxes(300));
@@ -360,9 +360,9 @@ TEST_P(CalmScenes, are_right_whatever_memory_is_refused) {
   }
 }
 
-// What began and ended since the last frame that was answered, wherever memory ends; and a copy of
-// that frame's buffer goes on, too.
-TEST_P(CalmScenes, report_what_changed_since_before_a_refusal) {
+// Events contain all changes since the last successful frame, wherever memory was refused; a copy
+// of the buffer of that frame can be continued, too.
+TEST_P(RestingScenes, events_after_a_refusal_cover_all_changes) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto sorted = [](const PairBuffer& buffer) {
     std::vector<Pair> pairs(buffer.begin(), buffer.end());
@@ -426,7 +426,7 @@ TEST_P(CalmScenes, report_what_changed_since_before_a_refusal) {
   EXPECT_GT(failures, 0);
 }
 
-TEST_P(CalmScenes, allocate_nothing_in_steady_frames) {
+TEST_P(RestingScenes, steady_frames_do_not_allocate) {
   start(uniform_boxes(kCount));
   PairBuffer buffer(&results_);
   calm_down(1e-5F, buffer);
@@ -442,8 +442,8 @@ TEST_P(CalmScenes, allocate_nothing_in_steady_frames) {
   EXPECT_EQ(memory_.requests() + results_.requests(), requests);
 }
 
-// Nor where something else is asked in every frame, which needs the rows as they are.
-TEST_P(CalmScenes, allocate_nothing_where_they_are_looked_at_in_every_frame) {
+// Nor if every frame has another query that needs the current rows.
+TEST_P(RestingScenes, steady_frames_with_queries_do_not_allocate) {
   start(uniform_boxes(kCount));
   PairBuffer buffer(&results_);
   const auto play = [&] {
@@ -459,8 +459,8 @@ TEST_P(CalmScenes, allocate_nothing_where_they_are_looked_at_in_every_frame) {
 }
 
 #if WINNOW_TEST_THREADS
-// The thread sanitizer says whether the answers were right by luck.
-TEST_P(CalmScenes, may_be_asked_anything_by_several_threads) {
+// The thread sanitizer finds races that happen to give the right results.
+TEST_P(RestingScenes, concurrent_queries_are_safe) {
   start(uniform_boxes(300));
   std::array<PairBuffer, 3> buffers;
   for (int round = 0; round < 6; ++round) {
@@ -486,11 +486,11 @@ TEST_P(CalmScenes, may_be_asked_anything_by_several_threads) {
 }
 #endif
 
-INSTANTIATE_TEST_SUITE_P(All, CalmScenes, testing::ValuesIn(exact_configs()),
+INSTANTIATE_TEST_SUITE_P(All, RestingScenes, testing::ValuesIn(exact_configs()),
                          testing::PrintToStringParamName());
 
-// The same bytes on every instruction set and number of threads.
-TEST(CalmScenesOfAnyConfig, are_the_same) {
+// Results are byte-identical on every instruction set and number of threads.
+TEST(RestingScenesOfAnyConfig, results_are_equal_in_every_config) {
   for (const std::string_view name : structure_names()) {
     std::vector<std::vector<Pair>> expected;
     for (const Config& config : exact_configs()) {

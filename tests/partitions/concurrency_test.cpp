@@ -1,5 +1,5 @@
-// Const queries from several threads at once. The answers must be right; the thread sanitizer says
-// whether they were right by luck.
+// Const queries from several threads at once. The results must be right; the thread sanitizer finds
+// races that happen to give the right results.
 
 #include <array>
 
@@ -18,7 +18,7 @@ constexpr std::size_t kReaders = 4;
 
 class Concurrency : public Conformance {
  protected:
-  // Starts all readers together, each with its number.
+  // Starts all readers at the same time, each with its number.
   template <typename Body>
   static void read_at_once(const Body& body) {
     std::vector<std::thread> readers;
@@ -27,9 +27,9 @@ class Concurrency : public Conformance {
   }
 };
 
-// The first readers after a change find the structure out of date and must not trip over each other
-// bringing it up to date.
-TEST_P(Concurrency, of_self_pairs_right_after_a_change_is_safe) {
+// The first readers after a change find the structure out of date and must refresh it without a
+// race.
+TEST_P(Concurrency, concurrent_self_pairs_after_a_change_are_safe) {
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(600);
   const std::vector<Key> keys = world.insert(boxes);
@@ -53,7 +53,7 @@ TEST_P(Concurrency, of_self_pairs_right_after_a_change_is_safe) {
   }
 }
 
-TEST_P(Concurrency, of_all_const_calls_is_safe) {
+TEST_P(Concurrency, concurrent_const_calls_are_safe) {
   World a(config());
   World b(config());
   std::vector<Aabb> boxes_a = mixed_boxes(400);
@@ -70,7 +70,7 @@ TEST_P(Concurrency, of_all_const_calls_is_safe) {
     b.update(keys_b, boxes_b);
     const Partition& p = a.partition();
     const Partition& q = b.partition();
-    // Both directions at once: taking two locks in either order must not block for ever.
+    // Both directions at once: locking two partitions in either order must not deadlock.
     read_at_once([&](std::size_t i) {
       const Partition& asked = i % 2 == 0 ? p : q;
       const Partition& other = i % 2 == 0 ? q : p;
@@ -93,8 +93,8 @@ TEST_P(Concurrency, of_all_const_calls_is_safe) {
   }
 }
 
-// Partitions share nothing: each may be changed by a thread of its own.
-TEST_P(Concurrency, of_changes_to_different_partitions_is_safe) {
+// Partitions share nothing: each may be changed by its own thread.
+TEST_P(Concurrency, concurrent_changes_to_different_partitions_are_safe) {
   std::array<testing::AssertionResult, kReaders> results{
       testing::AssertionSuccess(), testing::AssertionSuccess(), testing::AssertionSuccess(),
       testing::AssertionSuccess()};

@@ -1,5 +1,5 @@
-// What a partition shows of itself: every object once, a structure that holds them all, and nothing
-// that was not asked for.
+// Debug drawing of a partition: every object once, a structure that encloses all objects, and
+// nothing that was not requested.
 
 #include <winnow/core/eigen.h>
 #include <winnow/partitions/debug_colours.h>
@@ -25,7 +25,7 @@ bool contains(const Aabb& outer, const Aabb& inner) {
          (as_eigen(outer.max).array() >= as_eigen(inner.max).array()).all();
 }
 
-/// Writes down what it is told.
+/// Records all draw calls.
 class Sketch final : public DebugDraw {
  public:
   struct Box {
@@ -87,7 +87,7 @@ class DebugDrawing : public Conformance {
     return config().partition == "FlatGrid" || config().partition == "SweepAndPrune";
   }
 
-  // The boxes that hold objects themselves: contents of cells and leaves of the tree.
+  // Returns the boxes that enclose objects directly: contents of cells and leaves of the tree.
   [[nodiscard]] std::vector<Aabb> holders(const Sketch& sketch, const Statistics& statistics) {
     std::vector<Aabb> result = sketch.boxes_in(kContentsColour);
     if (statistics.depth == 0) return result;
@@ -111,7 +111,7 @@ class DebugDrawing : public Conformance {
     const Sketch structure = draw(world, kStructureOnly);
     EXPECT_TRUE(structure.boxes_in(kObjectColour).empty());
     if (config().partition == "AutoPartition" && structure.is_empty())
-      return;  // it chose a flat one
+      return;  // a flat structure was chosen
     if (is_flat()) {
       EXPECT_TRUE(structure.is_empty());
       return;
@@ -124,7 +124,7 @@ class DebugDrawing : public Conformance {
   }
 };
 
-TEST_P(DebugDrawing, shows_every_object_once_and_a_structure_around_it) {
+TEST_P(DebugDrawing, every_object_is_drawn_once_inside_the_structure) {
   for (const auto* scenes :
        {&random_scenes(), &degenerate_scenes(), &infinite_scenes(), &extreme_float_scenes()}) {
     for (const Scene& scene : *scenes) {
@@ -137,7 +137,7 @@ TEST_P(DebugDrawing, shows_every_object_once_and_a_structure_around_it) {
   }
 }
 
-TEST_P(DebugDrawing, follows_what_moved_and_was_removed) {
+TEST_P(DebugDrawing, drawing_follows_moved_and_removed_objects) {
   World world(config());
   std::vector<Aabb> boxes = uniform_boxes(700);
   std::vector<Key> keys = world.insert(boxes);
@@ -154,7 +154,7 @@ TEST_P(DebugDrawing, follows_what_moved_and_was_removed) {
   }
 }
 
-TEST_P(DebugDrawing, puts_each_lower_corner_of_a_fresh_even_scene_into_a_cell) {
+TEST_P(DebugDrawing, each_object_has_a_cell_in_even_scenes) {
   if (!has_cells()) return;
   World world(config());
   const std::vector<Aabb> boxes = uniform_boxes(1500);
@@ -165,14 +165,14 @@ TEST_P(DebugDrawing, puts_each_lower_corner_of_a_fresh_even_scene_into_a_cell) {
   EXPECT_GT(cells.size(), 4U);
   EXPECT_EQ(cells.size(), sketch.boxes_in(kContentsColour).size());
   for (const Aabb& box : boxes) {
-    // Beside the edge of a cell by rounding is in it.
+    // Rounding may put a point at the edge of a cell into the neighbour.
     const Aabb corner{as_eigen(box.min).array() - 1e-4F, as_eigen(box.min).array() + 1e-4F};
     ASSERT_TRUE(std::any_of(cells.begin(), cells.end(),
                             [&](const Aabb& cell) { return cell.overlaps(corner); }));
   }
 }
 
-TEST_P(DebugDrawing, names_the_axis_that_is_swept_or_runs_fastest) {
+TEST_P(DebugDrawing, drawn_axis_is_the_swept_or_fastest) {
   for (const int axis : {0, 1, 2}) {
     World world(config());
     world.insert(wall_boxes(700, axis));
@@ -184,9 +184,9 @@ TEST_P(DebugDrawing, names_the_axis_that_is_swept_or_runs_fastest) {
     ASSERT_EQ(sketch.texts.size(), 1U);
     ASSERT_FALSE(sketch.lines.empty());
     const std::string& text = sketch.texts[0].text;
-    EXPECT_NE(text[0], "xyz"[axis]) << "an axis that tells no objects apart";
+    EXPECT_NE(text[0], "xyz"[axis]) << "an axis that does not separate objects";
     EXPECT_NE(text.find(config().partition == "FlatGrid" ? "fastest" : "swept"), std::string::npos);
-    // The arrow runs along the axis it names.
+    // The arrow points along the axis that the text names.
     const Vec3f along = sketch.lines[0].to - sketch.lines[0].from;
     for (int other = 0; other < 3; ++other) {
       EXPECT_EQ(along[other] != 0.0F, "xyz"[other] == text[0]);
@@ -194,7 +194,7 @@ TEST_P(DebugDrawing, names_the_axis_that_is_swept_or_runs_fastest) {
   }
 }
 
-TEST_P(DebugDrawing, shows_as_many_levels_of_nodes_as_asked_for_each_within_the_one_above) {
+TEST_P(DebugDrawing, node_levels_are_nested_and_as_requested) {
   World world(config());
   world.insert(clustered_boxes(5000));
   const Sketch all = draw(world, kStructureOnly);
@@ -220,7 +220,7 @@ TEST_P(DebugDrawing, shows_as_many_levels_of_nodes_as_asked_for_each_within_the_
   }
 }
 
-TEST_P(DebugDrawing, labels_objects_with_their_client_data) {
+TEST_P(DebugDrawing, labels_show_the_client_data) {
   World world(config());
   const std::vector<Aabb> boxes = uniform_boxes(3);
   const std::vector<ClientData> data{7, 0, ~ClientData{0}};
@@ -233,7 +233,7 @@ TEST_P(DebugDrawing, labels_objects_with_their_client_data) {
   EXPECT_EQ(labels.texts, expected);
 }
 
-TEST_P(DebugDrawing, of_nothing_draws_nothing) {
+TEST_P(DebugDrawing, empty_partition_draws_nothing) {
   World world(config());
   const DebugDrawOptions everything{.labels = true};
   EXPECT_TRUE(draw(world, everything).is_empty());
@@ -244,7 +244,7 @@ TEST_P(DebugDrawing, of_nothing_draws_nothing) {
   EXPECT_TRUE(draw(world, everything).is_empty());
 }
 
-TEST_P(DebugDrawing, refuses_a_negative_depth) {
+TEST_P(DebugDrawing, negative_depth_is_refused) {
   World world(config());
   world.insert(uniform_boxes(100));
   Sketch sketch;
@@ -252,7 +252,7 @@ TEST_P(DebugDrawing, refuses_a_negative_depth) {
   EXPECT_TRUE(sketch.is_empty());
 }
 
-TEST_P(DebugDrawing, is_the_same_on_every_instruction_set_and_thread_count) {
+TEST_P(DebugDrawing, drawing_is_equal_on_all_isas_and_threads) {
   const std::vector<Aabb> boxes = mixed_boxes(1200);
   World world(config());
   world.insert(boxes);
@@ -266,7 +266,7 @@ TEST_P(DebugDrawing, is_the_same_on_every_instruction_set_and_thread_count) {
   EXPECT_EQ(here.texts, there.texts);
 }
 
-TEST_P(DebugDrawing, says_when_memory_is_refused_and_draws_nothing) {
+TEST_P(DebugDrawing, refused_memory_draws_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   World world(config(), &memory);
@@ -291,7 +291,7 @@ TEST_P(DebugDrawing, says_when_memory_is_refused_and_draws_nothing) {
   FAIL() << "the call never stopped asking for memory";
 }
 
-TEST_P(DebugDrawing, shows_spheres_as_spheres_and_k_dops_as_the_boxes_around_them) {
+TEST_P(DebugDrawing, spheres_are_drawn_as_spheres_kdops_as_boxes) {
   if (config().partition != "BoundsNSquared") return;
   const std::vector<Aabb> boxes = uniform_boxes(40);
   std::vector<Key> keys(boxes.size());

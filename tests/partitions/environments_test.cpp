@@ -1,4 +1,5 @@
-// Many small worlds in one partition: they never meet, and cost no more than each on its own.
+// Many small worlds in one partition: they do not collide with each other and cost no more than
+// separate partitions.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,7 @@
 namespace winnow::test {
 namespace {
 
-// Copies of one kind of world at the same place, told apart by their environments alone.
+// Copies of one kind of world at the same place, separated only by their environments.
 class Worlds {
  public:
   Worlds(const Config& config, std::size_t worlds, std::size_t objects)
@@ -20,7 +21,7 @@ class Worlds {
       for (const Aabb& box : uniform_boxes(objects, 1 + w)) boxes_.push_back(box);
       filters.resize(boxes_.size(), {1, ~0U, environment(w)});
     }
-    // Mixed in the order of insertion, as worlds that run at the same time insert.
+    // Shuffles the order of insertion, as worlds that run at the same time would.
     Random random(7);
     for (std::size_t i = boxes_.size(); i > 1; --i) {
       const std::size_t j = random.below(i);
@@ -38,7 +39,7 @@ class Worlds {
   [[nodiscard]] std::vector<Aabb>& boxes() { return boxes_; }
   [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
 
-  // Tests of a full query with each world in a partition of its own.
+  // Returns the tests of a full query if each world has its own partition.
   [[nodiscard]] std::uint64_t tests_apart(const Config& config) const {
     std::uint64_t sum = 0;
     for (std::size_t w = 0; w < worlds_; ++w) {
@@ -62,7 +63,7 @@ class Worlds {
 
 class Environments : public Conformance {};
 
-TEST_P(Environments, never_meet_while_everything_moves) {
+TEST_P(Environments, moving_worlds_never_pair_with_each_other) {
   Worlds worlds(config(), 12, 40);
   World& world = worlds.together();
   PairBuffer buffer;
@@ -75,7 +76,7 @@ TEST_P(Environments, never_meet_while_everything_moves) {
   }
 }
 
-TEST_P(Environments, come_go_and_take_objects_from_each_other) {
+TEST_P(Environments, objects_that_change_environment_pair_correctly) {
   World world(config());
   PairBuffer buffer;
   Random random(11);
@@ -103,7 +104,7 @@ TEST_P(Environments, come_go_and_take_objects_from_each_other) {
   }
 }
 
-TEST_P(Environments, all_meet_objects_of_every_environment) {
+TEST_P(Environments, object_of_every_environment_pairs_with_all) {
   Worlds worlds(config(), 8, 25);
   World& world = worlds.together();
   const Key ground = world.insert(Aabb{{-100, -100, -100}, {100, 100, 100}});
@@ -119,7 +120,7 @@ TEST_P(Environments, all_meet_objects_of_every_environment) {
 INSTANTIATE_TEST_SUITE_P(All, Environments, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-TEST(EnvironmentsOfSpheres, keep_apart_what_lies_on_each_other) {
+TEST(EnvironmentsOfSpheres, coincident_spheres_pair_only_within_environments) {
   Partition partition(bounds_n_squared(), {.volume = Volume::sphere});
   const std::vector<Sphere> spheres(60, Sphere{{1, 2, 3}, 1.0F});
   std::vector<Key> keys(spheres.size());
@@ -138,17 +139,18 @@ TEST(EnvironmentsOfSpheres, keep_apart_what_lies_on_each_other) {
       buffer, [](const Pair& pair) { return pair.first % 6 == pair.second % 6; }));
 }
 
-// Counted in tests of 16 boxes, never in time: one instruction set and one thread say what all do.
+// Counts tests of 16 boxes, never time: the count of one instruction set and one thread holds for
+// all.
 class EnvironmentWork : public Conformance {
  protected:
-  // Up to a twentieth for the few nodes that hold the end of one world and the start of the next,
-  // and for the levels above all worlds.
+  // Allows a twentieth more, for the few nodes that contain the end of one world and the start of
+  // the next, and for the levels above all worlds.
   void expect_no_more_than_apart(Worlds& worlds) {
     PairBuffer buffer;
     ASSERT_EQ(worlds.together().self_pairs(buffer, {.incremental = false}), Status::ok);
     const std::uint64_t together = worlds.together().partition().statistics().last_tests;
     Config tree = config();
-    // Worlds in one partition are pruned by its tree: that is what they are held against.
+    // The tree prunes worlds in one partition, so it is the reference.
     if (tree.partition != "NSquared" && tree.partition != "BoundsNSquared") {
       tree.partition = "LinearBvh";
     }
@@ -158,17 +160,17 @@ class EnvironmentWork : public Conformance {
   }
 };
 
-TEST_P(EnvironmentWork, of_many_worlds_is_their_sum) {
+TEST_P(EnvironmentWork, work_for_many_worlds_is_their_sum) {
   Worlds worlds(config(), 40, 160);
   expect_no_more_than_apart(worlds);
 }
 
-TEST_P(EnvironmentWork, stays_their_sum_after_objects_changed_worlds) {
+TEST_P(EnvironmentWork, work_stays_the_sum_after_environment_changes) {
   Worlds worlds(config(), 30, 128);
   World& world = worlds.together();
   PairBuffer buffer;
   ASSERT_EQ(world.self_pairs(buffer), Status::ok);
-  // Every object moves on to the next world: nothing in the order of rows is right any more.
+  // Every object moves on to the next world, which makes the whole row order wrong.
   for (std::size_t i = 0; i < worlds.keys().size(); ++i) {
     ObjectFilter filter = world.entries().at(worlds.keys()[i].id).filter;
     filter.environment =
@@ -178,7 +180,7 @@ TEST_P(EnvironmentWork, stays_their_sum_after_objects_changed_worlds) {
   expect_no_more_than_apart(worlds);
 }
 
-TEST_P(EnvironmentWork, of_worlds_of_three_objects_is_far_from_all_against_all) {
+TEST_P(EnvironmentWork, work_for_tiny_worlds_is_not_quadratic) {
   constexpr std::size_t kWorlds = 1500;
   Worlds worlds(config(), kWorlds, 3);
   PairBuffer buffer;

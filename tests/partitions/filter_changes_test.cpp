@@ -1,6 +1,5 @@
-// What a partition keeps of its objects' filters (in the nodes of its trees, and of all together)
-// follows them: whatever happened to filters, rows and ids, pairs, boxes and rays find what a
-// comparison with each object finds.
+// Summaries of object filters (in tree nodes and for the whole partition) follow the filters: after
+// any change of filters, rows and ids, pair, box and ray queries equal a test of each object.
 
 #include <algorithm>
 #include <array>
@@ -13,9 +12,10 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::uint32_t kOther = 2;  // a layer that nothing is in by default
+constexpr std::uint32_t kOther = 2;  // a layer that no object is in by default
 
-/// Some who ask: everybody's friend, of one layer, of another environment, and who wants nobody.
+/// Returns query filters: one that accepts all objects, one of a single layer, one of another
+/// environment, and one that accepts none.
 std::vector<Filter> askers() {
   const auto with = [](std::uint32_t layers, std::uint32_t mask, std::uint32_t environment) {
     Filter filter;
@@ -38,7 +38,7 @@ class FilterChanges : public Conformance {
  protected:
   FilterChanges() : world_(config()) {}
 
-  /// Pairs of all kinds, and what boxes and rays find, as a comparison with every object says.
+  /// Compares pairs of all kinds and the results of boxes and rays with a test of every object.
   void expect_right_answers() {
     ASSERT_TRUE(world_.agrees(pairs_));
     ASSERT_TRUE(world_.agrees(buffer_, {.incremental = false}));
@@ -74,7 +74,7 @@ class FilterChanges : public Conformance {
     }
   }
 
-  // Through the middles of objects: of all hits the least one that is wanted is the closest.
+  // Casts rays through object centres: the closest hit is the nearest of all accepted hits.
   void expect_right_rays(const Filter& filter) {
     HitBuffer unfiltered;
     HitBuffer hits;
@@ -109,14 +109,14 @@ class FilterChanges : public Conformance {
   PairBuffer buffer_;
 };
 
-TEST_P(FilterChanges, of_filters_alone_show_in_every_question) {
+TEST_P(FilterChanges, filter_change_shows_in_every_query) {
   const std::vector<Key> keys = world_.insert(uniform_boxes(scaled(400)));
   expect_right_answers();
   constexpr std::array<ObjectFilter, 5> kTurns{ObjectFilter{kOther, ~0U, 0}, ObjectFilter{},
                                                ObjectFilter{kOther, kOther, 0},
                                                ObjectFilter{1, ~kOther, 0}, ObjectFilter{1, 1, 0}};
   for (const ObjectFilter& filter : kTurns) {
-    // One alone, then a stretch, then all of them.
+    // One object, then a third of them, then all.
     for (const std::size_t count : {std::size_t{1}, keys.size() / 3, keys.size()}) {
       world_.set_filter(std::span(keys).first(count), std::vector<ObjectFilter>(count, filter));
       expect_right_answers();
@@ -124,7 +124,7 @@ TEST_P(FilterChanges, of_filters_alone_show_in_every_question) {
   }
 }
 
-TEST_P(FilterChanges, do_not_get_lost_where_objects_change_rows) {
+TEST_P(FilterChanges, filters_survive_changes_of_rows) {
   std::vector<Aabb> boxes = uniform_boxes(scaled(500));
   std::vector<Key> keys = world_.insert(boxes);
   for (std::size_t i = 0; i < keys.size(); i += 3) {
@@ -135,7 +135,7 @@ TEST_P(FilterChanges, do_not_get_lost_where_objects_change_rows) {
     SCOPED_TRACE(frame);
     move(kMotions[static_cast<std::size_t>(frame) % kMotions.size()], boxes, random_);
     world_.update(keys, boxes);
-    // Some go far away, to the tail, and some come back to others' ids.
+    // Some objects move far away, to the tail, and some new objects get ids of removed ones.
     for (int i = 0; i < 5; ++i) {
       const std::size_t at = random_.below(keys.size());
       world_.remove(keys[at]);
@@ -147,14 +147,14 @@ TEST_P(FilterChanges, do_not_get_lost_where_objects_change_rows) {
   }
 }
 
-TEST_P(FilterChanges, narrow_what_nodes_hold) {
+TEST_P(FilterChanges, removed_objects_narrow_the_node_summaries) {
   const std::vector<Aabb> boxes = uniform_boxes(scaled(300));
   std::vector<Key> keys = world_.insert(boxes);
   std::vector<Key> others;
   for (std::size_t i = 0; i < keys.size(); i += 2) others.push_back(keys[i]);
   world_.set_filter(others, std::vector<ObjectFilter>(others.size(), {kOther, ~0U, 0}));
   expect_right_answers();
-  // Half of the others go, then their layer, and whoever comes has their ids.
+  // Removes half of the other layer, then the rest; new objects get their ids.
   world_.remove(std::span(others).first(others.size() / 2));
   expect_right_answers();
   world_.remove(std::span(others).subspan(others.size() / 2));
@@ -164,7 +164,7 @@ TEST_P(FilterChanges, narrow_what_nodes_hold) {
   EXPECT_TRUE(world_.holds_its_objects());
 }
 
-TEST_P(FilterChanges, take_environments_in_after_layers) {
+TEST_P(FilterChanges, environments_set_after_layers_count) {
   std::vector<Aabb> boxes = uniform_boxes(scaled(300));
   const std::vector<Key> keys = world_.insert(boxes);
   for (std::size_t i = 0; i < keys.size(); i += 4) world_.set_filter(keys[i], {kOther, ~0U, 0});
@@ -181,7 +181,7 @@ TEST_P(FilterChanges, take_environments_in_after_layers) {
   }
 }
 
-TEST_P(FilterChanges, let_objects_of_every_environment_meet_who_asks_from_another) {
+TEST_P(FilterChanges, every_environment_pairs_across_partitions) {
   const std::vector<Key> keys = world_.insert(uniform_boxes(scaled(200)));
   world_.set_filter(keys[0], {1, ~0U, kEveryEnvironment});
   World other(config());
@@ -207,7 +207,7 @@ TEST_P(FilterChanges, let_objects_of_every_environment_meet_who_asks_from_anothe
   }
 }
 
-TEST_P(FilterChanges, begin_anew_in_a_partition_that_is_cleared) {
+TEST_P(FilterChanges, cleared_partition_forgets_its_filters) {
   const std::vector<Aabb> boxes = uniform_boxes(scaled(200));
   const std::vector<Key> keys = world_.insert(boxes);
   world_.set_filter(keys, std::vector<ObjectFilter>(keys.size(), {kOther, kOther, 0}));

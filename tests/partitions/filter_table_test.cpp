@@ -1,4 +1,4 @@
-// What a table of filters counts as it goes along is what a count over all filters says.
+// The incremental counts of a filter table equal a count over all filters.
 
 #include "partitions/rows/filter_table.h"
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kObjects = 6;
 
-// All filters, and a walk over them for each answer.
+// Reference: all filters, and a loop over them for each result.
 struct FilterTwin {
   std::vector<ObjectFilter> filters = std::vector<ObjectFilter>(kObjects);
   std::size_t changed = 0;
@@ -37,7 +37,7 @@ ObjectFilter of_environment(std::uint32_t environment) {
   return filter;
 }
 
-TEST(FilterTable, has_environments_as_long_as_an_object_is_in_one) {
+TEST(FilterTable, table_has_environments_while_an_object_has_one) {
   FilterTable table(std::pmr::get_default_resource());
   FilterTwin twin;
   ASSERT_TRUE(table.reserve(kObjects));
@@ -71,7 +71,7 @@ ObjectFilter any_of_few(Random& random) {
   return {bits(), mask, kEnvironments[random.below(8)]};
 }
 
-TEST(FilterSpans, that_surely_meet_are_of_filters_that_all_meet) {
+TEST(FilterSpans, surely_meet_is_true_only_if_all_meet) {
   Random random(5);
   int sure = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -90,7 +90,8 @@ TEST(FilterSpans, that_surely_meet_are_of_filters_that_all_meet) {
     const bool said = surely_meet(spans[0], spans[1]);
     ASSERT_TRUE(all || !said) << round;
     ASSERT_EQ(said, surely_meet(spans[1], spans[0])) << round;
-    // Of one filter each, but for objects of one environment of their own, nothing is left open.
+    // With a single filter on each side the result is exact, unless both have an environment of
+    // their own.
     const bool single = sides[0].size() == 1 && sides[1].size() == 1;
     if (single && !(spans[0].apart && spans[1].apart)) {
       ASSERT_EQ(said, all) << round;
@@ -100,7 +101,7 @@ TEST(FilterSpans, that_surely_meet_are_of_filters_that_all_meet) {
   EXPECT_GT(sure, 1000);
 }
 
-TEST(FilterTable, has_a_span_of_every_object_and_after_a_build_of_nothing_else) {
+TEST(FilterTable, span_covers_every_object_exactly_after_a_build) {
   FilterTable table(std::pmr::get_default_resource());
   ASSERT_TRUE(table.reserve(kObjects));
   ASSERT_TRUE(table.begin_use());
@@ -148,7 +149,7 @@ TEST(FilterTable, has_a_span_of_every_object_and_after_a_build_of_nothing_else) 
   }
 }
 
-TEST(FilterTable, that_is_cleared_knows_no_environment) {
+TEST(FilterTable, cleared_table_has_no_environment) {
   FilterTable table(std::pmr::get_default_resource());
   ASSERT_TRUE(table.reserve(kObjects));
   ASSERT_TRUE(table.begin_use());
@@ -158,7 +159,7 @@ TEST(FilterTable, that_is_cleared_knows_no_environment) {
   EXPECT_FALSE(table.has_environments());
   EXPECT_FALSE(table.in_use());
   EXPECT_EQ(table.changed_environments(), 0U);
-  // What comes later finds the default.
+  // A new object gets the default filter.
   ASSERT_TRUE(table.begin_use());
   EXPECT_EQ(table.of(3).environment, 0U);
 }

@@ -1,5 +1,5 @@
-// Filters of objects: pairs are those whose filters let them meet, whatever happened to the
-// filters; where none is set none is paid for.
+// Object filters: exactly the pairs that pass the filters are reported, after any change of
+// filters; without filters there is no cost.
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ std::vector<ObjectFilter> any_filters(std::size_t count, Random& random) {
 
 class Filters : public Conformance {
  protected:
-  // Partitions that report pairs that do not touch report too many of them in large scenes.
+  // Partitions that report false pairs report too many of them in large scenes.
   [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
     return config().make().is_exact() ? wanted : std::min<std::size_t>(wanted, 120);
   }
@@ -41,7 +41,7 @@ class Filters : public Conformance {
   CountingMemory memory_;
 };
 
-TEST_P(Filters, say_who_pairs_in_any_scene) {
+TEST_P(Filters, pairs_pass_the_filters_in_any_scene) {
   for (const auto* scenes : {&degenerate_scenes(), &infinite_scenes(), &extreme_float_scenes()}) {
     for (const Scene& scene : *scenes) {
       SCOPED_TRACE(scene.name);
@@ -55,7 +55,7 @@ TEST_P(Filters, say_who_pairs_in_any_scene) {
   }
 }
 
-TEST_P(Filters, hold_while_everything_changes) {
+TEST_P(Filters, filters_hold_while_everything_changes) {
   World world(config(), &memory_);
   PairBuffer buffer;
   Random random(5);
@@ -81,7 +81,7 @@ TEST_P(Filters, hold_while_everything_changes) {
   }
 }
 
-TEST_P(Filters, that_change_alone_change_the_pairs_of_the_next_frame) {
+TEST_P(Filters, changed_filters_change_the_next_pairs) {
   World world(config());
   PairBuffer buffer;
   const std::vector<Key> keys = world.insert(uniform_boxes(scene_size(600)));
@@ -99,7 +99,7 @@ TEST_P(Filters, that_change_alone_change_the_pairs_of_the_next_frame) {
   EXPECT_TRUE(world.agrees(buffer));
 }
 
-TEST_P(Filters, of_both_partitions_count_between_two) {
+TEST_P(Filters, pairs_with_applies_filters_of_both_partitions) {
   PairBuffer buffer;
   for (const bool mine_filtered : {false, true}) {
     for (const bool other_filtered : {false, true}) {
@@ -131,7 +131,7 @@ TEST_P(Filters, of_both_partitions_count_between_two) {
   }
 }
 
-TEST_P(Filters, of_an_id_do_not_outlive_its_object) {
+TEST_P(Filters, reused_id_does_not_keep_the_filter) {
   World world(config());
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
   const Key first = world.insert(box);
@@ -149,7 +149,7 @@ TEST_P(Filters, of_an_id_do_not_outlive_its_object) {
   EXPECT_TRUE(world.agrees());
 }
 
-TEST_P(Filters, are_refused_for_a_stale_key_and_then_nothing_changes) {
+TEST_P(Filters, set_filter_of_a_stale_key_is_refused) {
   World world(config());
   const std::vector<Key> keys = world.insert(uniform_boxes(20));
   const Key stale = world.insert(uniform_boxes(1)[0]);
@@ -167,7 +167,7 @@ TEST_P(Filters, are_refused_for_a_stale_key_and_then_nothing_changes) {
   EXPECT_TRUE(world.agrees());
 }
 
-TEST_P(Filters, cost_no_byte_and_no_request_before_one_is_set) {
+TEST_P(Filters, default_filters_take_no_memory) {
   World world(config(), &memory_);
   const std::vector<Key> keys = world.insert(uniform_boxes(200));
   ASSERT_TRUE(world.agrees());
@@ -179,7 +179,7 @@ TEST_P(Filters, cost_no_byte_and_no_request_before_one_is_set) {
   EXPECT_EQ(world.partition().footprint().total().reserved, memory_.outstanding());
 }
 
-TEST_P(Filters, that_memory_is_refused_for_leave_everything_as_it_was) {
+TEST_P(Filters, refused_memory_leaves_filters_unchanged) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   World world(config(), &memory_);
   const std::vector<Key> keys = world.insert(uniform_boxes(100));
@@ -192,14 +192,15 @@ TEST_P(Filters, that_memory_is_refused_for_leave_everything_as_it_was) {
   EXPECT_TRUE(world.holds_its_objects());
   EXPECT_TRUE(world.agrees());
   world.set_filter(keys, filters);
-  // The tree cannot grow by what its nodes hold of filters: the query says so and succeeds later.
+  // The tree cannot allocate the filter summaries of its nodes: the query returns an error and
+  // succeeds later.
   memory_.refuse_after(0);
   PairBuffer buffer;
   const Status refused = world.self_pairs(buffer);
   memory_.grant_all();
   EXPECT_TRUE(refused == Status::out_of_memory || refused == Status::ok);
   EXPECT_TRUE(world.agrees(buffer));
-  // Growing with filters in use fails as a whole or not at all.
+  // Growth with filters in use fails as a whole or not at all.
   const std::vector<Aabb> more = uniform_boxes(3000);
   std::vector<Key> more_keys(more.size());
   for (std::size_t granted = 0;; ++granted) {
@@ -212,7 +213,7 @@ TEST_P(Filters, that_memory_is_refused_for_leave_everything_as_it_was) {
   }
 }
 
-TEST_P(Filters, give_their_memory_back_with_an_empty_partition) {
+TEST_P(Filters, empty_partition_releases_filter_memory) {
   World world(config(), &memory_);
   const std::vector<Key> keys = world.insert(uniform_boxes(500));
   world.set_filter(keys, std::vector<ObjectFilter>(keys.size(), ObjectFilter{2, 2, 1}));
@@ -223,7 +224,7 @@ TEST_P(Filters, give_their_memory_back_with_an_empty_partition) {
   EXPECT_EQ(world.partition().footprint().total().reserved, memory_.outstanding());
 }
 
-TEST_P(Filters, allocate_nothing_in_steady_frames) {
+TEST_P(Filters, steady_frames_do_not_allocate) {
   World world(config(), &memory_);
   CountingMemory results;
   PairBuffer buffer(&results);
@@ -248,7 +249,7 @@ INSTANTIATE_TEST_SUITE_P(All, Filters, testing::ValuesIn(all_configs()),
 
 class FiltersOfVolumes : public Conformance {
  protected:
-  /// A partition of volumes around boxes, some of which move from question to question.
+  /// A partition of volumes around boxes, some of which move from query to query.
   struct Volumes {
     Partition partition;
     std::vector<Key> keys;
@@ -273,7 +274,7 @@ class FiltersOfVolumes : public Conformance {
   };
 };
 
-TEST_P(FiltersOfVolumes, leave_the_pairs_of_those_that_may_meet) {
+TEST_P(FiltersOfVolumes, volumes_pair_only_if_filters_allow) {
   const Config all_with_all{"BoundsNSquared", config().isa, 1};
   for (const Volume volume : {Volume::sphere, Volume::kdop14, Volume::kdop18, Volume::kdop26}) {
     SCOPED_TRACE(static_cast<int>(volume));
@@ -299,16 +300,16 @@ TEST_P(FiltersOfVolumes, leave_the_pairs_of_those_that_may_meet) {
 INSTANTIATE_TEST_SUITE_P(All, FiltersOfVolumes, testing::ValuesIn(exact_configs()),
                          testing::PrintToStringParamName());
 
-// Counted in tests of 16 boxes: one instruction set and one thread say what all do.
+// Counts tests of 16 boxes: the count of one instruction set and one thread holds for all.
 class FilterWork : public Conformance {};
 
-TEST_P(FilterWork, is_not_done_below_nodes_that_nothing_may_meet) {
+TEST_P(FilterWork, nodes_without_accepted_objects_are_skipped) {
   World world(config());
   const std::vector<Key> keys = world.insert(uniform_boxes(4000));
   PairBuffer buffer;
   ASSERT_EQ(world.self_pairs(buffer), Status::ok);
   const std::uint64_t all = world.partition().statistics().last_tests;
-  // Objects that want to meet nobody, but for a few.
+  // The filters reject all other objects, except for a few objects.
   std::vector<ObjectFilter> filters(keys.size(), ObjectFilter{2, 1, 0});
   for (std::size_t i = 0; i < 10; ++i) filters[i * 400] = {1, 3, 0};
   world.set_filter(keys, filters);

@@ -1,4 +1,4 @@
-// Motion over many frames: with one buffer carried along, and with everything a caller may do to
+// Motion over many frames with one reused pair buffer, including everything that a caller may do to
 // that buffer in between.
 
 #include <algorithm>
@@ -13,16 +13,17 @@ namespace winnow::test {
 namespace {
 
 constexpr int kFrames = 30;
-// No multiple of a block of 16 rows, so that the last block is one in part.
+// Not a multiple of a block of 16 rows, so that the last block is partial.
 constexpr std::size_t kObjects = 405;
 constexpr std::size_t kFew = 133;
 
 class Frames : public Conformance {
  protected:
-  // Runs a test on scenes that fill the regular part of every partition and on one that does not.
+  // Calls `body` with scenes that fill the regular part of every partition and with one that does
+  // not.
   template <typename Body>
   void from_each_start(std::size_t wanted, const Body& body) {
-    // What reports every pair is judged by every pair.
+    // Partitions that report every pair are compared with every pair.
     const std::size_t count = config().make().is_exact() ? wanted : std::min(wanted, kFew);
     for (const auto& [name, boxes] :
          {std::pair{"uniform", uniform_boxes(count)}, std::pair{"mixed", mixed_boxes(count)},
@@ -36,7 +37,7 @@ class Frames : public Conformance {
     }
   }
 
-  // Moves the boxes and tells the partition of those that changed.
+  // Moves the boxes and updates the partition with the changed ones.
   void step(Motion motion) {
     std::vector<Key> keys;
     std::vector<Aabb> boxes;
@@ -47,7 +48,7 @@ class Frames : public Conformance {
     world_->update(keys, boxes);
   }
 
-  // Removes some objects and inserts as many others.
+  // Removes some objects and inserts the same number of new ones.
   void exchange(std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) {
       const std::size_t i = random_.below(keys_.size());
@@ -63,7 +64,7 @@ class Frames : public Conformance {
   Random random_{99};
 };
 
-TEST_P(Frames, with_one_buffer_are_right_for_every_kind_of_motion) {
+TEST_P(Frames, one_buffer_is_right_for_every_motion) {
   from_each_start(kObjects, [&] {
     for (const Motion motion : kMotions) {
       PairBuffer buffer;
@@ -75,7 +76,7 @@ TEST_P(Frames, with_one_buffer_are_right_for_every_kind_of_motion) {
   });
 }
 
-TEST_P(Frames, in_canonical_order_are_right_for_every_kind_of_motion) {
+TEST_P(Frames, canonical_order_is_right_for_every_motion) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -87,7 +88,7 @@ TEST_P(Frames, in_canonical_order_are_right_for_every_kind_of_motion) {
   });
 }
 
-TEST_P(Frames, that_change_order_and_increment_from_frame_to_frame_are_right) {
+TEST_P(Frames, changed_query_options_between_frames_are_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -99,7 +100,7 @@ TEST_P(Frames, that_change_order_and_increment_from_frame_to_frame_are_right) {
   });
 }
 
-TEST_P(Frames, with_other_buffers_in_between_are_right) {
+TEST_P(Frames, several_buffers_at_different_rates_are_right) {
   from_each_start(kObjects, [&] {
     PairBuffer every_frame;
     PairBuffer every_third;
@@ -117,7 +118,7 @@ TEST_P(Frames, with_other_buffers_in_between_are_right) {
   });
 }
 
-TEST_P(Frames, with_the_buffer_lent_to_another_partition_are_right) {
+TEST_P(Frames, buffer_used_by_another_partition_is_right) {
   from_each_start(kObjects, [&] {
     for (const std::string_view name : structure_names()) {
       World other({std::string(name), config().isa, config().threads});
@@ -135,7 +136,7 @@ TEST_P(Frames, with_the_buffer_lent_to_another_partition_are_right) {
   });
 }
 
-TEST_P(Frames, with_the_buffer_used_for_pairs_with_in_between_are_right) {
+TEST_P(Frames, buffer_used_for_pairs_with_is_right) {
   from_each_start(kObjects, [&] {
     World other(config());
     other.insert(uniform_boxes(200));
@@ -148,7 +149,7 @@ TEST_P(Frames, with_the_buffer_used_for_pairs_with_in_between_are_right) {
   });
 }
 
-TEST_P(Frames, with_the_buffer_cleared_or_edited_in_between_are_right) {
+TEST_P(Frames, cleared_or_edited_buffer_is_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -161,7 +162,7 @@ TEST_P(Frames, with_the_buffer_cleared_or_edited_in_between_are_right) {
   });
 }
 
-TEST_P(Frames, with_objects_coming_and_going_are_right) {
+TEST_P(Frames, objects_that_come_and_go_are_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -173,7 +174,7 @@ TEST_P(Frames, with_objects_coming_and_going_are_right) {
   });
 }
 
-TEST_P(Frames, with_a_clear_in_between_are_right) {
+TEST_P(Frames, clear_between_frames_is_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     for (int round = 0; round < 4; ++round) {
@@ -189,8 +190,8 @@ TEST_P(Frames, with_a_clear_in_between_are_right) {
   });
 }
 
-// A box that says the same again has not moved; one that moves away and back has not either.
-TEST_P(Frames, in_which_boxes_return_to_where_they_were_are_right) {
+// An update with an equal box, or a move away and back, changes nothing.
+TEST_P(Frames, boxes_that_return_are_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     const std::vector<Aabb> start = boxes_;
@@ -207,8 +208,8 @@ TEST_P(Frames, in_which_boxes_return_to_where_they_were_are_right) {
   });
 }
 
-// Structure that is kept from frame to frame must follow when the scene turns into another.
-TEST_P(Frames, that_turn_one_scene_into_another_are_right) {
+// A structure that is kept from frame to frame must follow if the scene changes completely.
+TEST_P(Frames, scene_that_turns_into_another_is_right) {
   from_each_start(kObjects, [&] {
     PairBuffer buffer;
     const std::size_t n = boxes_.size();
@@ -228,7 +229,7 @@ TEST_P(Frames, that_turn_one_scene_into_another_are_right) {
 
 class LargeFrames : public Frames {};
 
-TEST_P(LargeFrames, are_right_for_every_kind_of_motion) {
+TEST_P(LargeFrames, large_scenes_are_right_for_every_motion) {
   from_each_start(scaled(2504) + 1, [&] {
     PairBuffer buffer;
     for (const Motion motion : kMotions) {

@@ -1,4 +1,4 @@
-// HierarchicalGrid: what the conformance suite cannot know of its levels and cells.
+// HierarchicalGrid: tests of levels and cells beyond the conformance suite.
 
 #include <winnow/core/eigen.h>
 #include <winnow/partitions/partition.h>
@@ -31,8 +31,8 @@ Vec3d point(Random& random, double side) {
   return {random.uniform(-side, side), random.uniform(-side, side), random.uniform(-side, side)};
 }
 
-// Edges over `ratio`, each at a distance from the origin of a few of its own size: objects of every
-// size meet those of every other.
+// Returns boxes with edges over a range of `ratio`, each at a distance of a few edges from the
+// origin: objects of every size overlap objects of every other size.
 std::vector<Aabb> nested_boxes(std::size_t count, double ratio, Random& random) {
   std::vector<Aabb> boxes(count);
   for (Aabb& box : boxes) {
@@ -47,14 +47,14 @@ std::size_t levels_of(World& world) {
   return world.partition().statistics().levels;
 }
 
-TEST(HierarchicalGrid, has_one_level_for_objects_of_one_size) {
+TEST(HierarchicalGrid, objects_of_one_size_have_one_level) {
   World world(kConfig);
   world.insert(uniform_boxes(3000));
   EXPECT_EQ(levels_of(world), 1U);
 }
 
-// Scenes of few lines, whose number varies the most from build to build.
-TEST(HierarchicalGrid, asks_for_no_memory_where_frames_repeat_each_other) {
+// Scenes of few grid lines, whose number varies most from build to build.
+TEST(HierarchicalGrid, repeated_frames_do_not_allocate) {
   for (std::uint64_t stream = 0; stream < 40; ++stream) {
     SCOPED_TRACE(stream);
     CountingMemory memory;
@@ -78,7 +78,7 @@ TEST(HierarchicalGrid, asks_for_no_memory_where_frames_repeat_each_other) {
   }
 }
 
-TEST(HierarchicalGrid, meets_each_pair_once_whatever_the_sizes) {
+TEST(HierarchicalGrid, pairs_of_any_sizes_are_found_once) {
   Random random(61);
   for (const double ratio : {10.0, 1e3, 1e6, 1e12}) {
     SCOPED_TRACE(ratio);
@@ -89,7 +89,7 @@ TEST(HierarchicalGrid, meets_each_pair_once_whatever_the_sizes) {
   }
 }
 
-TEST(HierarchicalGrid, gives_sizes_far_apart_levels_of_their_own) {
+TEST(HierarchicalGrid, very_different_sizes_get_their_own_levels) {
   Random random(62);
   std::vector<Aabb> boxes;
   for (const double edge : {1e-6, 1.0, 1e6}) {
@@ -101,7 +101,7 @@ TEST(HierarchicalGrid, gives_sizes_far_apart_levels_of_their_own) {
   EXPECT_TRUE(world.agrees());
 }
 
-TEST(HierarchicalGrid, holds_every_size_at_one_point) {
+TEST(HierarchicalGrid, objects_of_all_sizes_at_one_point_pair) {
   Random random(63);
   std::vector<Aabb> boxes(700);
   for (Aabb& box : boxes) box = box_at(Vec3d{}, random.log_uniform(1e-6, 1e6));
@@ -112,7 +112,7 @@ TEST(HierarchicalGrid, holds_every_size_at_one_point) {
   EXPECT_EQ(pairs.size(), boxes.size() * (boxes.size() - 1) / 2);
 }
 
-TEST(HierarchicalGrid, needs_memory_for_its_objects_and_not_for_the_world) {
+TEST(HierarchicalGrid, memory_depends_on_objects_not_on_the_world) {
   const auto bytes_of = [](double world_side) {
     Random random(64);
     std::vector<Aabb> boxes;
@@ -131,7 +131,7 @@ TEST(HierarchicalGrid, needs_memory_for_its_objects_and_not_for_the_world) {
   EXPECT_LE(bytes_of(1e6), 2 * bytes_of(10.0));
 }
 
-TEST(HierarchicalGrid, follows_objects_that_grow_and_shrink_through_its_levels) {
+TEST(HierarchicalGrid, objects_that_grow_and_shrink_change_levels) {
   Random random(65);
   World world(kConfig);
   std::vector<Aabb> boxes = nested_boxes(900, 1e4, random);
@@ -139,7 +139,7 @@ TEST(HierarchicalGrid, follows_objects_that_grow_and_shrink_through_its_levels) 
   PairBuffer pairs;
   ASSERT_TRUE(world.agrees(pairs));
   for (int frame = 0; frame < 6; ++frame) {
-    // At first a few, then all of them.
+    // At first a few objects, then all.
     for (std::size_t i = 0; i < boxes.size(); i += frame < 4 ? 30 : 1) {
       const Vec3d centre = (0.5F * (boxes[i].min + boxes[i].max)).cast<double>();
       const double edge = static_cast<double>(boxes[i].max[0] - boxes[i].min[0]);
@@ -150,7 +150,7 @@ TEST(HierarchicalGrid, follows_objects_that_grow_and_shrink_through_its_levels) 
   }
 }
 
-TEST(HierarchicalGrid, keeps_its_order_while_objects_drift_within_their_cells) {
+TEST(HierarchicalGrid, drift_within_cells_keeps_the_row_order) {
   World world(kConfig);
   std::vector<Aabb> boxes = uniform_boxes(2000);
   const std::vector<Key> keys = world.insert(boxes);
@@ -176,7 +176,7 @@ class CellColours final : public DebugDraw {
   static std::uint32_t pack(Colour c) { return c.r * 65536U + c.g * 256U + c.b; }
 };
 
-TEST(HierarchicalGrid, draws_the_cells_of_each_level_in_a_colour_of_their_own) {
+TEST(HierarchicalGrid, each_level_is_drawn_in_its_own_colour) {
   Random random(66);
   World world(kConfig);
   world.insert(nested_boxes(1500, 1e6, random));
@@ -184,7 +184,7 @@ TEST(HierarchicalGrid, draws_the_cells_of_each_level_in_a_colour_of_their_own) {
   ASSERT_GT(levels, 1U);
   CellColours colours;
   ASSERT_EQ(world.partition().debug_draw(colours, {.objects = false}), Status::ok);
-  EXPECT_EQ(colours.seen.size(), levels + 1);  // and one for what cells hold
+  EXPECT_EQ(colours.seen.size(), levels + 1);  // and one for the contents of cells
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Partitions on a program's own threads: what a host may do to them, and what they must not notice.
+// Partitions on the threads of a host program: the calls that a host may make, and results that do
+// not depend on the host.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ namespace {
 
 using Frames = std::vector<std::vector<Pair>>;
 
-// Enough objects that builds, updates and pairs are shared among threads.
+// Enough objects that builds, updates and pairs are distributed over threads.
 Frames play(std::string_view name, const Execution& execution) {
   Random random(3);
   Partition partition(structure_named(name), {.execution = execution});
@@ -38,15 +39,15 @@ Frames play(std::string_view name, const Execution& execution) {
 
 class Hosts : public testing::TestWithParam<std::string_view> {};
 
-TEST_P(Hosts, get_the_pairs_and_the_order_of_one_thread) {
+TEST_P(Hosts, host_gets_the_pairs_of_one_thread) {
   const Frames serial = play(GetParam(), Execution::serial());
   for (const std::string_view host : kHosts) {
     EXPECT_TRUE(play(GetParam(), Execution::on(jobs_of(host, 3))) == serial) << host;
   }
 }
 
-// As where every world of many is a task.
-TEST_P(Hosts, may_call_from_tasks_of_their_own) {
+// For example, each of many worlds runs in its own task.
+TEST_P(Hosts, host_may_call_from_its_own_tasks) {
   const Frames serial = play(GetParam(), Execution::serial());
   for (const std::string_view host : kHosts) {
     const Execution execution = Execution::on(jobs_of(host, 3));
@@ -57,7 +58,7 @@ TEST_P(Hosts, may_call_from_tasks_of_their_own) {
   }
 }
 
-/// What a rounded sum is here.
+/// Returns a sum that depends on the rounding mode of this thread.
 float sum_here() {
   const volatile float one = 1.0F;
   const volatile float less = 1e-9F;
@@ -65,8 +66,8 @@ float sum_here() {
 }
 
 #ifdef FE_UPWARD
-// What else a host does while it waits for tasks is not winnow's; nor is what it does afterwards.
-TEST_P(Hosts, run_in_the_mode_that_they_set) {
+// The host may change the mode while it waits for tasks and afterwards.
+TEST_P(Hosts, tasks_run_in_the_mode_of_the_caller) {
   struct Host {
     JobSystem jobs = jobs_of("reversed", 2);
     std::vector<float> sums;
@@ -82,15 +83,15 @@ TEST_P(Hosts, run_in_the_mode_that_they_set) {
   const float expected = sum_here();
   ASSERT_GT(expected, 1.0F);
   static_cast<void>(play(GetParam(), execution));
-  // Every structure but one of few objects, which has no work to share.
+  // Only the structure for few objects has no work to share.
   EXPECT_TRUE(!host.sums.empty() || GetParam() == "NSquared");
   for (const float sum : host.sums) EXPECT_EQ(sum, expected);
   EXPECT_EQ(sum_here(), expected);
 }
 #endif
 
-// Readers that all find the partition stale wait for the one that brings it up to date.
-TEST_P(Hosts, may_ask_from_many_tasks_at_once) {
+// Readers that find the partition stale wait for the reader that refreshes it.
+TEST_P(Hosts, host_may_query_from_many_tasks) {
   for (const std::string_view host : kHosts) {
     const Execution execution = Execution::on(jobs_of(host, 3));
     Partition partition(structure_named(GetParam()), {.execution = execution});

@@ -1,4 +1,4 @@
-// Boxes and client data as they go in: what is refused, and the forms in which boxes may come.
+// Boxes and client data as input: which are refused, and in which layouts boxes may come.
 
 #include <winnow/core/eigen.h>
 #include <cmath>
@@ -19,7 +19,7 @@ float& coordinate(Aabb& box, int i) {
   return i < 3 ? box.min[i] : box.max[i - 3];
 }
 
-// One of each way to be invalid.
+// Returns one box for each way to be invalid.
 std::vector<Aabb> invalid_boxes() {
   const Aabb good{{0, 0, 0}, {1, 1, 1}};
   std::vector<Aabb> bad{Aabb{}};
@@ -52,7 +52,7 @@ class Input : public Conformance {
   std::vector<Key> keys_;
 };
 
-TEST_P(Input, that_is_an_invalid_box_changes_nothing) {
+TEST_P(Input, invalid_box_changes_nothing) {
   Snapshot before(world_);
   Partition& p = world_.partition();
   for (const Aabb& bad : invalid_boxes()) {
@@ -65,7 +65,7 @@ TEST_P(Input, that_is_an_invalid_box_changes_nothing) {
   }
 }
 
-TEST_P(Input, with_one_invalid_box_among_good_ones_changes_nothing) {
+TEST_P(Input, one_invalid_box_among_good_ones_changes_nothing) {
   Snapshot before(world_);
   Partition& p = world_.partition();
   for (const Aabb& bad : invalid_boxes()) {
@@ -81,7 +81,7 @@ TEST_P(Input, with_one_invalid_box_among_good_ones_changes_nothing) {
   }
 }
 
-TEST_P(Input, of_spans_that_differ_in_length_changes_nothing) {
+TEST_P(Input, spans_of_different_lengths_change_nothing) {
   Snapshot before(world_);
   Partition& p = world_.partition();
   const std::span<const Aabb> boxes(boxes_);
@@ -98,7 +98,7 @@ TEST_P(Input, of_spans_that_differ_in_length_changes_nothing) {
                              Status::size_mismatch));
 }
 
-TEST_P(Input, that_is_empty_is_accepted) {
+TEST_P(Input, empty_input_is_accepted) {
   Snapshot before(world_);
   Partition& p = world_.partition();
   EXPECT_TRUE(before.refused(p.insert(BoxView{}, {}, {}), Status::ok));
@@ -106,7 +106,7 @@ TEST_P(Input, that_is_empty_is_accepted) {
   EXPECT_TRUE(before.refused(p.remove(std::span<const Key>{}), Status::ok));
 }
 
-TEST_P(Input, may_be_columns_or_members_of_a_struct) {
+TEST_P(Input, columns_and_struct_members_are_read) {
   struct Body {
     double mass = 0.0;
     float low[3];
@@ -131,7 +131,7 @@ TEST_P(Input, may_be_columns_or_members_of_a_struct) {
   for (const BoxView& view : {members, soa}) {
     World world(config());
     const std::vector<Key> keys = world.insert(std::vector<Aabb>(boxes_.rbegin(), boxes_.rend()));
-    // The model is told in the plain form; the partition in this one.
+    // The model gets an array of boxes; the partition gets this layout.
     world.update(keys, boxes_);
     ASSERT_EQ(world.partition().update(keys, view), Status::ok);
     EXPECT_TRUE(world.holds_its_objects());
@@ -147,9 +147,9 @@ TEST_P(Input, may_be_columns_or_members_of_a_struct) {
   }
 }
 
-// Of columns that hold all objects an update may be about some, by list or by mask, in any share
+// If columns hold all objects, an update may select some of them, by list or by mask, in any share
 // and with any gaps.
-TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
+TEST_P(Input, entries_may_select_from_columns_of_all) {
   std::vector<Aabb> boxes = uniform_boxes(700);
   for (const bool fat : {false, true}) {
     Partition listed(structure_named(config().partition),
@@ -168,7 +168,7 @@ TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
     for (const double share : {0.0, 0.01, 0.3, 0.6, 0.99, 1.0}) {
       std::vector<std::uint32_t> numbers;
       std::vector<std::uint64_t> words((boxes.size() + 63) / 64);
-      words.back() = ~std::uint64_t{0} << boxes.size() % 64;  // behind the last entry
+      words.back() = ~std::uint64_t{0} << boxes.size() % 64;  // beyond the last entry
       std::vector<Key> some_keys;
       std::vector<Aabb> some_boxes;
       const std::vector<Aabb> next = uniform_boxes(boxes.size(), random.bits());
@@ -195,15 +195,15 @@ TEST_P(Input, may_be_some_entries_of_columns_that_hold_all) {
         }
       }
     }
-    // In any order; of a repeated entry the last, which is the same, counts.
+    // Entries may be in any order; the last of repeated entries counts, which is equal here.
     const std::vector<std::uint32_t> back{9, 3, 9, 1};
     EXPECT_EQ(listed.update(keys[0], boxes, Entries::listed(back)), Status::ok);
   }
 }
 
-// As many entries as objects, of which one has two and another none; all jump, so that no order of
-// rows is worth keeping.
-TEST_P(Input, of_one_object_twice_beside_the_others_takes_its_last_box) {
+// There are as many entries as objects, but one object has two entries and another none; all
+// objects jump, so that no row order is worth keeping.
+TEST_P(Input, object_given_twice_takes_its_last_box) {
   const std::vector<Aabb> boxes = uniform_boxes(700);
   const std::vector<Aabb> next = uniform_boxes(700, 8);
   Partition partition(structure_named(config().partition), {.execution = config().execution()});
@@ -221,8 +221,8 @@ TEST_P(Input, of_one_object_twice_beside_the_others_takes_its_last_box) {
   }
 }
 
-// Runs of entries need not follow each other, whatever each of them says about its keys.
-TEST_P(Input, of_runs_in_any_order_is_that_of_one_entry_after_the_other) {
+// Runs of consecutive entries may come in any order.
+TEST_P(Input, runs_of_entries_in_any_order_are_right) {
   constexpr std::uint32_t kRuns[][2] = {{100, 250}, {300, 700}, {251, 299}, {0, 90}, {290, 310}};
   const std::vector<Aabb> boxes = uniform_boxes(700);
   const std::vector<Aabb> next = uniform_boxes(700, 8);
@@ -256,7 +256,7 @@ TEST_P(Input, of_runs_in_any_order_is_that_of_one_entry_after_the_other) {
   }
 }
 
-TEST_P(Input, of_entries_that_are_none_changes_nothing) {
+TEST_P(Input, invalid_entries_change_nothing) {
   World world(config());
   const std::vector<Key> keys = world.insert(boxes_);
   std::vector<Aabb> next(boxes_.rbegin(), boxes_.rend());
@@ -275,11 +275,11 @@ TEST_P(Input, of_entries_that_are_none_changes_nothing) {
   EXPECT_TRUE(world.agrees());
 }
 
-TEST_P(Input, of_an_illegal_box_anywhere_in_a_list_changes_nothing) {
+TEST_P(Input, invalid_box_anywhere_in_a_list_changes_nothing) {
   World world(config());
   const std::vector<Aabb> boxes = uniform_boxes(3 * 37, 7);
   const std::vector<Key> keys = world.insert(boxes);
-  // Every third entry, whose neighbours in the list are no neighbours in memory.
+  // Selects every third entry, so that list neighbours are not memory neighbours.
   std::vector<std::uint32_t> every_third;
   for (std::uint32_t i = 0; i < 37; ++i) every_third.push_back(3 * i);
   constexpr float inf = std::numeric_limits<float>::infinity();
@@ -295,7 +295,7 @@ TEST_P(Input, of_an_illegal_box_anywhere_in_a_list_changes_nothing) {
       ASSERT_EQ(world.partition().update(keys, next, Entries::listed(every_third)),
                 Status::invalid_bounds);
     }
-    // Nobody asks for the box that no entry names.
+    // A box that no entry selects is not read.
     std::vector<Aabb> next = boxes;
     next[1] = wrong;
     EXPECT_EQ(world.partition().update(keys, next, Entries::listed(every_third)), Status::ok);
@@ -304,7 +304,7 @@ TEST_P(Input, of_an_illegal_box_anywhere_in_a_list_changes_nothing) {
   EXPECT_TRUE(world.agrees());
 }
 
-TEST_P(Input, of_duplicate_client_data_makes_two_objects) {
+TEST_P(Input, duplicate_client_data_makes_two_objects) {
   World world(config());
   const std::vector<ClientData> data(boxes_.size(), 42);
   const std::vector<Key> keys = world.insert(boxes_, data);
@@ -315,7 +315,7 @@ TEST_P(Input, of_duplicate_client_data_makes_two_objects) {
   EXPECT_TRUE(world.holds_its_objects());
 }
 
-TEST_P(Input, comes_back_bit_by_bit) {
+TEST_P(Input, boxes_and_data_read_back_bit_identical) {
   World world(config());
   for (const std::vector<Scene>* scenes : {&infinite_scenes(), &extreme_float_scenes()}) {
     for (const Scene& scene : *scenes) {
@@ -330,7 +330,7 @@ TEST_P(Input, comes_back_bit_by_bit) {
   EXPECT_TRUE(world.holds_its_objects()) << "after the structure was made";
 }
 
-TEST_P(Input, that_was_reserved_for_is_taken_in_any_number) {
+TEST_P(Input, reserve_does_not_limit_the_object_count) {
   World world(config());
   ASSERT_EQ(world.partition().reserve(1000), Status::ok);
   EXPECT_EQ(world.partition().size(), 0U);

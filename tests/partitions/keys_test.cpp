@@ -1,4 +1,4 @@
-// Keys: what is handed out, and what is answered to keys that are not, or no longer, valid.
+// Keys: which keys are handed out, and how calls refuse invalid and stale keys.
 
 #include <winnow/core/eigen.h>
 #include <algorithm>
@@ -14,7 +14,8 @@ class Keys : public Conformance {
  protected:
   Keys() : boxes_(uniform_boxes(60)), world_(config()) { keys_ = world_.insert(boxes_); }
 
-  // Every call that takes a key refuses this one, alone and among good ones, and changes nothing.
+  // Expects that every call that takes a key refuses this one, singly and among good ones, and
+  // changes nothing.
   void expect_refused(Key bad) {
     Snapshot before(world_);
     Partition& p = world_.partition();
@@ -37,7 +38,7 @@ class Keys : public Conformance {
     }
   }
 
-  // Takes an object out of the tests' list, so that the list stays one of live objects.
+  // Removes an object, also from the test's list of live objects.
   Key remove_one(std::size_t i) {
     const Key key = keys_[i];
     world_.remove(key);
@@ -51,12 +52,12 @@ class Keys : public Conformance {
   std::vector<Key> keys_;
 };
 
-TEST_P(Keys, of_a_fresh_partition_number_the_objects) {
+TEST_P(Keys, fresh_partition_numbers_the_objects) {
   for (std::size_t i = 0; i < keys_.size(); ++i) EXPECT_EQ(keys_[i].id, i);
   EXPECT_TRUE(world_.holds_its_objects());
 }
 
-TEST_P(Keys, are_never_null_and_never_handed_out_twice) {
+TEST_P(Keys, keys_are_never_null_and_never_repeated) {
   std::set<std::pair<ObjectId, std::uint32_t>> seen;
   for (int round = 0; round < 50; ++round) {
     const Key key = world_.insert(boxes_[0]);
@@ -66,7 +67,7 @@ TEST_P(Keys, are_never_null_and_never_handed_out_twice) {
   }
 }
 
-TEST_P(Keys, that_are_stale_change_nothing) {
+TEST_P(Keys, stale_key_is_refused) {
   const Key stale = remove_one(20);
   expect_refused(stale);
   const Key reused = world_.insert(Aabb{{0, 0, 0}, {1, 1, 1}});
@@ -74,18 +75,18 @@ TEST_P(Keys, that_are_stale_change_nothing) {
   expect_refused(stale);
 }
 
-TEST_P(Keys, that_are_default_change_nothing) {
+TEST_P(Keys, default_key_is_refused) {
   expect_refused(Key{});
 }
 
-TEST_P(Keys, that_are_foreign_change_nothing) {
+TEST_P(Keys, foreign_key_is_refused) {
   World other(config());
   const std::vector<Key> foreign = other.insert(boxes_);
   expect_refused(foreign[0]);
   expect_refused(foreign[59]);
 }
 
-TEST_P(Keys, that_are_forged_change_nothing) {
+TEST_P(Keys, forged_key_is_refused) {
   const Key good = keys_[30];
   for (const std::uint32_t stamp : {0U, 1U, good.stamp + 1, good.stamp + 2, good.stamp - 1,
                                     good.stamp ^ 0x80000000U, good.stamp ^ 0x00100000U, ~0U}) {
@@ -97,13 +98,13 @@ TEST_P(Keys, that_are_forged_change_nothing) {
   }
 }
 
-// A free slot must not answer to any stamp, whatever it keeps there.
-TEST_P(Keys, forged_for_a_free_slot_change_nothing) {
+// A free slot must not accept any stamp, whatever is stored in it.
+TEST_P(Keys, forged_key_of_a_free_slot_is_refused) {
   const Key stale = remove_one(10);
   for (std::uint32_t delta = 0; delta < 4; ++delta) expect_refused({stale.id, stale.stamp + delta});
 }
 
-TEST_P(Keys, are_stale_after_clear) {
+TEST_P(Keys, clear_makes_keys_stale) {
   const std::vector<Key> before = keys_;
   world_.clear();
   keys_ = world_.insert(boxes_);
@@ -112,7 +113,7 @@ TEST_P(Keys, are_stale_after_clear) {
   expect_refused(before[59]);
 }
 
-TEST_P(Keys, that_occur_twice_in_a_removal_change_nothing) {
+TEST_P(Keys, repeated_key_in_a_removal_is_refused) {
   Snapshot before(world_);
   for (const std::size_t at : {std::size_t{1}, keys_.size() / 2, keys_.size() - 1}) {
     std::vector<Key> keys = keys_;
@@ -123,7 +124,7 @@ TEST_P(Keys, that_occur_twice_in_a_removal_change_nothing) {
   EXPECT_TRUE(world_.agrees());
 }
 
-TEST_P(Keys, that_occur_twice_in_an_update_leave_the_last_box) {
+TEST_P(Keys, repeated_key_in_an_update_takes_last_box) {
   const std::vector<Key> twice{keys_[3], keys_[4], keys_[3]};
   const std::vector<Aabb> boxes{boxes_[10], boxes_[11], boxes_[12]};
   world_.update(twice, boxes);
@@ -131,8 +132,8 @@ TEST_P(Keys, that_occur_twice_in_an_update_leave_the_last_box) {
   EXPECT_TRUE(world_.agrees());
 }
 
-// Of nearly all objects rows are written in their own order, whatever that of the keys.
-TEST_P(Keys, may_come_in_any_order_and_twice_among_all_in_an_update) {
+// If nearly all objects are updated, rows are written in row order, whatever the order of the keys.
+TEST_P(Keys, update_of_all_accepts_keys_in_any_order) {
   for (const std::size_t gone : {std::size_t{0}, std::size_t{5}}) {
     for (std::size_t i = 0; i < gone; ++i) remove_one(3 * i);
     std::vector<Key> keys(keys_.rbegin(), keys_.rend());
@@ -149,7 +150,7 @@ TEST_P(Keys, may_come_in_any_order_and_twice_among_all_in_an_update) {
   }
 }
 
-TEST_P(Keys, of_ids_without_an_object_are_null) {
+TEST_P(Keys, id_without_an_object_has_a_null_key) {
   const Key gone = remove_one(5);
   for (const ObjectId id : {gone.id, ObjectId{60}, ObjectId{1U << 31U}, kNoObject}) {
     EXPECT_EQ(world_.partition().key_of(id), Key{});
@@ -157,7 +158,7 @@ TEST_P(Keys, of_ids_without_an_object_are_null) {
   }
 }
 
-TEST_P(Keys, survive_removal_of_any_others) {
+TEST_P(Keys, keys_survive_the_removal_of_others) {
   for (const std::size_t i : {std::size_t{0}, std::size_t{57}, std::size_t{30}, std::size_t{0}}) {
     remove_one(i);
     EXPECT_TRUE(world_.holds_its_objects());

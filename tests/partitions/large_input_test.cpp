@@ -1,5 +1,4 @@
-// So many boxes at once that several tasks take them in: what comes of it is that of one after the
-// other.
+// Inputs that are split into several tasks: the result equals single calls in order.
 
 #include <winnow/partitions/partition.h>
 
@@ -16,7 +15,7 @@ namespace {
 
 constexpr std::size_t kObjects = 20000;
 
-/// Two partitions with the same objects: one is told of them together, the other one by one.
+/// Two partitions with the same objects: one gets batches, the other single calls.
 struct Twins {
   Partition together;
   Partition alone;
@@ -35,7 +34,7 @@ struct Twins {
     }
   }
 
-  /// Entries `which` of the boxes; in the twin in their order.
+  /// Updates entries `which` of the boxes, in the second partition one by one in their order.
   void update(const std::vector<std::size_t>& which, const std::vector<Aabb>& boxes) {
     std::vector<Key> some;
     std::vector<Aabb> their;
@@ -68,7 +67,7 @@ std::vector<PartitionOptions> all_options() {
   return all;
 }
 
-TEST(LargeInput, gives_each_object_its_box) {
+TEST(LargeInput, batch_insert_equals_single_inserts) {
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);
   std::vector<float> columns;
   for (int c = 0; c < 6; ++c) {
@@ -85,7 +84,7 @@ TEST(LargeInput, gives_each_object_its_box) {
   }
 }
 
-TEST(LargeInput, moves_each_object_to_its_box) {
+TEST(LargeInput, batch_update_equals_single_updates) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
     Twins twins(options);
@@ -93,7 +92,7 @@ TEST(LargeInput, moves_each_object_to_its_box) {
     std::uint64_t seed = 2;
     const auto update = [&](std::vector<std::size_t> which, const char* what) {
       SCOPED_TRACE(what);
-      // Some move far, some within a margin.
+      // Some boxes move far, some within the margin.
       const std::vector<Aabb> next = uniform_boxes(kObjects, seed++);
       for (std::size_t i = 0; i < kObjects; ++i) {
         if (i % 3 == 0) boxes[i] = next[i];
@@ -121,7 +120,7 @@ TEST(LargeInput, moves_each_object_to_its_box) {
   }
 }
 
-TEST(LargeInput, with_one_illegal_box_changes_nothing) {
+TEST(LargeInput, one_invalid_box_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
     Twins twins(options);

@@ -1,4 +1,4 @@
-// More than machines that run tests hold, on memory that is refused.
+// Sizes beyond the memory of test machines, with memory that is refused.
 
 #include "tests/support/counting_memory.h"
 #include "tests/support/scenes.h"
@@ -9,7 +9,7 @@ namespace {
 
 class ObjectLimits : public Conformance {};
 
-TEST_P(ObjectLimits, that_memory_is_refused_for_change_nothing) {
+TEST_P(ObjectLimits, reserve_of_too_many_objects_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   World world(config(), &memory);

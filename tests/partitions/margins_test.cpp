@@ -1,5 +1,5 @@
-// Volumes stored larger by a margin: nothing true is missed, and what stays within its margin does
-// not count as moved.
+// Fat volumes: no true pair is missed, and an object that stays within its margin does not count as
+// moved.
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/hits.h>
@@ -60,7 +60,7 @@ class Margins : public Conformance {
     return boxes;
   }
 
-  // The pairs of the stored boxes, which hold the given ones.
+  // Expects the pairs of the stored boxes, each of which contains the given box.
   void expect_right(const Partition& partition, const std::vector<Aabb>& given) {
     (void)after_query(partition);
     const std::vector<Aabb> boxes = stored(partition);
@@ -75,7 +75,7 @@ class Margins : public Conformance {
   Threads threads_{config().threads};
 };
 
-TEST_P(Margins, miss_no_pair_however_boxes_move) {
+TEST_P(Margins, moving_fat_boxes_miss_no_pair) {
   for (const Margin margin : {Margin{.distance = 0.05F}, Margin{.share = 0.2F},
                               Margin{.distance = 0.01F, .share = 0.01F}, Margin{.share = 1e38F}}) {
     const std::size_t count = margin.share < 1 ? 150 : 30;
@@ -87,7 +87,7 @@ TEST_P(Margins, miss_no_pair_however_boxes_move) {
         (void)move(motion, boxes, random);
         update(partition, keys_, boxes);
         expect_right(partition, boxes);
-        // Some of them in an order that is none.
+        // Updates some of them in arbitrary order.
         const std::vector<Key> some{keys_[3], keys_[1], keys_[2]};
         for (const std::size_t i : {1U, 2U, 3U}) boxes[i] = moved(boxes[i], 0.03F);
         update(partition, some, {boxes[3], boxes[1], boxes[2]});
@@ -99,7 +99,7 @@ TEST_P(Margins, miss_no_pair_however_boxes_move) {
   }
 }
 
-TEST_P(Margins, miss_no_pair_of_infinite_huge_and_tiny_boxes) {
+TEST_P(Margins, infinite_huge_and_tiny_boxes_miss_no_pair) {
   std::vector<Aabb> boxes = exponential_boxes(60);
   boxes.push_back({{-kInf, -kInf, -kInf}, {kInf, kInf, 0.0F}});
   boxes.push_back({{0.0F, 0.0F, 0.0F}, {kInf, 1.0F, 1.0F}});
@@ -110,7 +110,7 @@ TEST_P(Margins, miss_no_pair_of_infinite_huge_and_tiny_boxes) {
                               Margin{.distance = 3e38F}, Margin{.distance = kInf, .share = kInf}}) {
     auto partition = with_margin(margin, boxes);
     expect_right(partition, boxes);
-    // At rest nothing changes, be the margin lost in rounding or reach to infinity.
+    // At rest nothing changes, even if the margin is lost in rounding or is infinite.
     const std::vector<Aabb> before = stored(partition);
     update(partition, keys_, boxes);
     EXPECT_EQ(after_query(partition).last_tests, 0U);
@@ -118,7 +118,7 @@ TEST_P(Margins, miss_no_pair_of_infinite_huge_and_tiny_boxes) {
   }
 }
 
-TEST_P(Margins, cost_nothing_while_objects_stay_within_them) {
+TEST_P(Margins, motion_within_the_margin_costs_no_test) {
   const std::vector<Aabb> boxes = uniform_boxes(400);
   auto partition = with_margin({.distance = 0.1F}, boxes);
   (void)after_query(partition);
@@ -131,7 +131,7 @@ TEST_P(Margins, cost_nothing_while_objects_stay_within_them) {
     EXPECT_EQ(now.builds, before.builds);
     EXPECT_EQ(now.refits, before.refits);
   }
-  // One that leaves costs what one object costs.
+  // One object that leaves its margin costs the work of one object.
   std::vector<Aabb> next = boxes;
   next[7] = moved(next[7], 0.2F);
   update(partition, keys_, next);
@@ -142,7 +142,7 @@ TEST_P(Margins, cost_nothing_while_objects_stay_within_them) {
   expect_right(partition, next);
 }
 
-TEST_P(Margins, are_as_large_as_asked_and_shrink_with_the_object) {
+TEST_P(Margins, margin_has_the_given_size_and_shrinks) {
   const Aabb large{{0, 0, 0}, {8, 2, 4}};
   auto partition = with_margin({.distance = 0.5F, .share = 0.25F}, {large});
   Aabb box;
@@ -156,8 +156,8 @@ TEST_P(Margins, are_as_large_as_asked_and_shrink_with_the_object) {
   EXPECT_EQ(box, (Aabb{{0.25F, 0.25F, 0.25F}, {2.75F, 2.75F, 2.75F}})) << "much smaller";
 }
 
-// Judged each against the stored box on its own, the last of the two would seem to change nothing.
-TEST_P(Margins, take_the_last_box_of_a_repeated_key) {
+// Comparing each of the two boxes with the stored box would make the last one look unchanged.
+TEST_P(Margins, repeated_key_takes_the_last_box) {
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
   auto partition = with_margin({.distance = 0.5F}, {box});
   const Key key = keys_[0];
@@ -167,7 +167,7 @@ TEST_P(Margins, take_the_last_box_of_a_repeated_key) {
   EXPECT_TRUE(holds(now, box));
 }
 
-TEST_P(Margins, are_seen_by_every_other_query) {
+TEST_P(Margins, all_queries_read_the_fat_boxes) {
   const std::vector<Aabb> boxes = uniform_boxes(300);
   auto partition = with_margin({.share = 0.1F}, boxes);
   const std::vector<Aabb> given = all_moved(boxes, 0.05F);
@@ -220,13 +220,13 @@ void expect_fat_kdops(Volume volume) {
   EXPECT_TRUE(right_pairs(buffer.pairs(), truth, false));
 }
 
-TEST(FatVolumes, that_are_kdops_hold_what_moves_within_the_margin) {
+TEST(FatVolumes, fat_kdop_contains_motion_within_the_margin) {
   expect_fat_kdops<14>(Volume::kdop14);
   expect_fat_kdops<18>(Volume::kdop18);
   expect_fat_kdops<26>(Volume::kdop26);
 }
 
-TEST(FatVolumes, that_are_spheres_hold_what_moves_within_the_margin) {
+TEST(FatVolumes, fat_sphere_contains_motion_within_the_margin) {
   Partition partition(
       bounds_n_squared(),
       {.execution = Execution::serial(), .volume = Volume::sphere, .margin = {.share = 0.25F}});

@@ -1,5 +1,5 @@
-// Memory: what the footprint says is what was asked for, to the byte, and a steady frame asks for
-// nothing.
+// Memory: the footprint equals the allocated memory, to the byte, and a steady frame does not
+// allocate.
 
 #include <winnow/core/eigen.h>
 
@@ -22,13 +22,13 @@ class Memory : public Conformance {
     const Footprint footprint = world.partition().footprint();
     const Bytes total = footprint.total();
     if (total.reserved != memory_.outstanding()) {
-      return testing::AssertionFailure() << "the footprint says " << total.reserved << " bytes, "
+      return testing::AssertionFailure() << "the footprint has " << total.reserved << " bytes, "
                                          << memory_.outstanding() << " are outstanding";
     }
     for (const Bytes* part : {&footprint.bounds, &footprint.keys, &footprint.client_data,
                               &footprint.structure, &footprint.scratch, &footprint.results}) {
       if (part->used > part->reserved) {
-        return testing::AssertionFailure() << "more is used than reserved";
+        return testing::AssertionFailure() << "used exceeds reserved";
       }
     }
     return testing::AssertionSuccess();
@@ -37,7 +37,7 @@ class Memory : public Conformance {
   CountingMemory memory_;
 };
 
-TEST_P(Memory, footprint_is_exact_after_every_kind_of_call) {
+TEST_P(Memory, footprint_is_exact_after_every_call) {
   World world(config(), &memory_);
   PairBuffer buffer;
   std::vector<Aabb> boxes = mixed_boxes(700);
@@ -73,7 +73,7 @@ TEST_P(Memory, footprint_is_exact_after_every_kind_of_call) {
   EXPECT_TRUE(footprint_is_exact(world)) << "clear";
 }
 
-TEST_P(Memory, of_an_empty_partition_is_given_back) {
+TEST_P(Memory, empty_partition_releases_its_memory) {
   for (const bool filtered : {false, true}) {
     World world(config(), &memory_);
     const std::vector<Key> keys = world.insert(uniform_boxes(2000));
@@ -85,8 +85,8 @@ TEST_P(Memory, of_an_empty_partition_is_given_back) {
     world.clear();
     world.partition().release_memory();
     EXPECT_TRUE(footprint_is_exact(world));
-    // Slots remember which keys they have handed out: at most 4 bytes each need stay for that, and
-    // their row and client data may stay beside them.
+    // Slots store which keys they have handed out, at most 4 bytes each, and their row and client
+    // data may stay as well.
     EXPECT_LE(memory_.outstanding(), 20 * 2048U);
     EXPECT_LT(memory_.outstanding(), full / 2);
     const World fresh(config());
@@ -101,7 +101,7 @@ TEST_P(Memory, of_an_empty_partition_is_given_back) {
   }
 }
 
-TEST_P(Memory, of_another_structure_is_given_back) {
+TEST_P(Memory, exchanged_structure_releases_its_memory) {
   World world(config(), &memory_);
   world.insert(uniform_boxes(2000));
   PairBuffer pairs;
@@ -109,13 +109,13 @@ TEST_P(Memory, of_another_structure_is_given_back) {
   for (const StructureKind next : {linear_bvh(), bounds_n_squared()}) {
     ASSERT_EQ(world.partition().set_structure(next), Status::ok);
     EXPECT_TRUE(footprint_is_exact(world));
-    // What a sample of 64 objects takes may stay.
+    // The memory of a sample of 64 objects may stay.
     EXPECT_LE(world.partition().footprint().scratch.reserved, 64 * 16U);
     ASSERT_EQ(world.self_pairs(pairs), Status::ok);
   }
 }
 
-TEST_P(Memory, that_the_bounds_need_is_used_and_reserved) {
+TEST_P(Memory, footprint_contains_bounds_data_and_keys) {
   World world(config(), &memory_);
   world.insert(uniform_boxes(1000));
   const Footprint footprint = world.partition().footprint();
@@ -124,7 +124,7 @@ TEST_P(Memory, that_the_bounds_need_is_used_and_reserved) {
   EXPECT_GE(footprint.keys.used, 1000 * sizeof(std::uint32_t));
 }
 
-TEST_P(Memory, of_the_pair_buffer_is_exact) {
+TEST_P(Memory, pair_buffer_footprint_is_exact) {
   CountingMemory results;
   PairBuffer buffer(&results);
   World world(config(), &memory_);
@@ -141,7 +141,7 @@ TEST_P(Memory, of_the_pair_buffer_is_exact) {
   }
 }
 
-TEST_P(Memory, that_was_reserved_lasts_for_that_many_inserts) {
+TEST_P(Memory, inserts_within_the_reserve_do_not_allocate) {
   World world(config(), &memory_);
   ASSERT_EQ(world.partition().reserve(500), Status::ok);
   const std::size_t requests = memory_.requests();
@@ -151,7 +151,7 @@ TEST_P(Memory, that_was_reserved_lasts_for_that_many_inserts) {
   EXPECT_EQ(memory_.requests(), requests);
 }
 
-TEST_P(Memory, that_was_reserved_lasts_for_a_first_frame) {
+TEST_P(Memory, first_frame_within_the_reserve_does_not_allocate) {
   World world(config(), &memory_);
   CountingMemory results;
   PairBuffer buffer(&results);
@@ -165,7 +165,7 @@ TEST_P(Memory, that_was_reserved_lasts_for_a_first_frame) {
   EXPECT_TRUE(footprint_is_exact(world));
 }
 
-TEST_P(Memory, that_was_reserved_for_events_lasts_for_frames_of_so_many_pairs) {
+TEST_P(Memory, events_within_the_reserve_do_not_allocate) {
   constexpr std::size_t kObjects = 60;
   constexpr std::size_t kPairs = kObjects * (kObjects - 1) / 2;
   World world(config(), &memory_);
@@ -182,7 +182,7 @@ TEST_P(Memory, that_was_reserved_for_events_lasts_for_frames_of_so_many_pairs) {
   const std::vector<Key> keys = world.insert(boxes);
   std::size_t told = 0;
   for (int frame = 0; frame < 6; ++frame) {
-    // Spread, and all in one place.
+    // Alternately spread boxes, and all boxes at one place.
     const std::vector<Aabb> next = frame % 2 == 0 ? boxes : std::vector<Aabb>(kObjects, boxes[0]);
     ASSERT_EQ(world.partition().update(keys, next), Status::ok);
     ASSERT_EQ(world.partition().self_pairs(buffer, events), Status::ok);
@@ -194,7 +194,7 @@ TEST_P(Memory, that_was_reserved_for_events_lasts_for_frames_of_so_many_pairs) {
   EXPECT_EQ(results.requests(), requests);
 }
 
-TEST(EventsMemory, that_is_refused_can_be_reserved_later) {
+TEST(EventsMemory, refused_reserve_of_events_succeeds_later) {
   CountingMemory memory;
   Partition partition(linear_bvh(), {.execution = Execution::serial()});
   ASSERT_EQ(partition.reserve(10), Status::ok);
@@ -209,8 +209,8 @@ TEST(EventsMemory, that_is_refused_can_be_reserved_later) {
   EXPECT_GT(refused, 10U);
 }
 
-// A tree has room for more blocks, but for those of another level.
-TEST(TreeMemory, that_was_reserved_is_enough_for_fewer_beside_another_level) {
+// A tree has room for more blocks, but not for more blocks and another level.
+TEST(TreeMemory, reserve_suffices_for_smaller_trees_of_other_depth) {
   constexpr std::size_t kObjects = 3900 * 16;
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const std::size_t blocks : {3700U, 3854U, 3855U, 3899U}) {
@@ -225,7 +225,8 @@ TEST(TreeMemory, that_was_reserved_is_enough_for_fewer_beside_another_level) {
   }
 }
 
-// As many cells as there may be, lines and nodes of one object each, crowds, all in the tree.
+// Returns scenes with as many cells as possible, with lines and nodes of one object each, with
+// crowds, and with all objects in the tree.
 std::vector<std::vector<Aabb>> scenes_to_reserve_for(std::size_t count) {
   std::vector<std::vector<Aabb>> scenes{
       uniform_boxes(count),   clustered_boxes(count), mixed_boxes(count),
@@ -244,7 +245,7 @@ std::vector<std::vector<Aabb>> scenes_to_reserve_for(std::size_t count) {
   return scenes;
 }
 
-TEST_P(Memory, that_was_reserved_is_enough_wherever_objects_lie_and_for_fewer) {
+TEST_P(Memory, reserve_suffices_for_any_placement_of_objects) {
   const std::size_t count = config().make().is_exact() ? 2500 : 300;
   for (const std::vector<Aabb>& boxes : scenes_to_reserve_for(count)) {
     SCOPED_TRACE(testing::Message() << "from " << as_eigen(boxes[0].min).transpose() << " to "
@@ -268,9 +269,9 @@ TEST_P(Memory, that_was_reserved_is_enough_wherever_objects_lie_and_for_fewer) {
   }
 }
 
-// With others than the usual boxes in the padding, or nodes and cells left behind where they were,
-// a query that has nothing to refresh would tell.
-TEST_P(Memory, that_is_reserved_moves_what_there_is_as_it_was) {
+// Wrong values in the padding, or nodes and cells that were left behind, would show in a query that
+// has nothing to refresh.
+TEST_P(Memory, reserve_keeps_the_content) {
   for (const Pages pages : {Pages::untouched, Pages::touched}) {
     World world(config(), &memory_);
     PairBuffer buffer;
@@ -292,7 +293,7 @@ TEST_P(Memory, that_is_reserved_moves_what_there_is_as_it_was) {
   }
 }
 
-TEST_P(Memory, that_was_reserved_is_given_back) {
+TEST_P(Memory, release_memory_returns_the_reserve) {
   World world(config(), &memory_);
   const std::size_t empty = memory_.outstanding();
   ASSERT_EQ(world.partition().reserve(3000, Pages::touched), Status::ok);
@@ -303,8 +304,8 @@ TEST_P(Memory, that_was_reserved_is_given_back) {
   EXPECT_EQ(memory_.outstanding(), empty);
 }
 
-// Boxes that many others overlap, more than a fresh buffer has room for.
-TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
+// Boxes that overlap many others: more pairs than a fresh buffer has room for.
+TEST_P(Memory, many_pairs_cause_few_requests_and_tests) {
   std::vector<Aabb> boxes = uniform_boxes(2000);
   for (Aabb& box : boxes) as_eigen(box.max).array() += 4.0F;
   World world(config(), &memory_);
@@ -323,8 +324,9 @@ TEST_P(Memory, of_many_pairs_is_asked_for_seldom_and_no_pair_is_found_often) {
   EXPECT_LE(asked, 2 * buffer.size());
 }
 
-// All boxes overlap each other: what a predicate rejects takes up no room, however much it is.
-TEST_P(Memory, of_pairs_follows_those_that_the_predicate_accepts) {
+// All boxes overlap each other: pairs that a predicate rejects take no memory, however many there
+// are.
+TEST_P(Memory, pair_memory_follows_the_accepted_pairs) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   constexpr std::size_t kObjects = 1500;
   World world(config());
@@ -357,8 +359,8 @@ TEST_P(Memory, of_pairs_follows_those_that_the_predicate_accepts) {
   }
 }
 
-// The same for pairs of boxes that are asked about and objects.
-TEST_P(Memory, of_overlaps_follows_those_that_the_predicate_accepts) {
+// As above, for pairs of query boxes and objects.
+TEST_P(Memory, overlap_memory_follows_the_accepted_pairs) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   constexpr std::size_t kObjects = 1000;
   World world(config());
@@ -381,7 +383,7 @@ TEST_P(Memory, of_overlaps_follows_those_that_the_predicate_accepts) {
   }
 }
 
-TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {
+TEST_P(Memory, only_the_calling_thread_allocates) {
   CountingMemory results;
   PairBuffer buffer(&results);
   World world(config(), &memory_);
@@ -399,7 +401,7 @@ TEST_P(Memory, is_asked_for_only_by_the_calling_thread) {
   EXPECT_EQ(results.requests_from_elsewhere(), 0U);
 }
 
-// The same few frames over and over, as a scene at rest or in steady flow repeats itself.
+// Repeats a few frames, as a scene at rest or in steady flow does.
 class SteadyFrames : public Memory {
  protected:
   void expect_no_requests(Motion motion, std::size_t count, const PairOptions& options) {
@@ -426,26 +428,26 @@ class SteadyFrames : public Memory {
     EXPECT_EQ(memory_.requests(), structure);
     EXPECT_EQ(results.requests(), pairs);
     if (config().threads == 1) {
-      // The model of World allocates nothing on update either; TBB has its own small heap.
+      // The model of World does not allocate in updates either; TBB has its own small heap.
       EXPECT_EQ(heap_requests(), heap) << "allocated behind the memory resource";
     }
   }
 };
 
-TEST_P(SteadyFrames, allocate_nothing) {
+TEST_P(SteadyFrames, steady_frames_do_not_allocate) {
   for (const Motion motion : kMotions) expect_no_requests(motion, 800, {});
 }
 
-TEST_P(SteadyFrames, allocate_nothing_in_canonical_order) {
+TEST_P(SteadyFrames, steady_canonical_frames_do_not_allocate) {
   expect_no_requests(Motion::little, 800, {.order = Order::canonical});
   expect_no_requests(Motion::few, 800, {.order = Order::canonical});
 }
 
-TEST_P(SteadyFrames, allocate_nothing_when_everything_is_asked_anew) {
+TEST_P(SteadyFrames, steady_full_queries_do_not_allocate) {
   expect_no_requests(Motion::few, 800, {.incremental = false});
 }
 
-TEST_P(SteadyFrames, allocate_nothing_in_pairs_with) {
+TEST_P(SteadyFrames, steady_pairs_with_does_not_allocate) {
   World a(config(), &memory_);
   World b(config(), &memory_);
   const std::vector<Aabb> boxes = mixed_boxes(500);

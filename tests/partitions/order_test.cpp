@@ -1,4 +1,4 @@
-// The order of results: the same bytes on any number of threads and any instruction set.
+// The order of results: identical bytes on any number of threads and any instruction set.
 
 #include <algorithm>
 #include <optional>
@@ -13,7 +13,7 @@ namespace {
 
 using Frames = std::vector<std::vector<Pair>>;
 
-// One fixed history of inserts, moves, removals and queries; what every query wrote.
+// Runs a fixed history of inserts, moves, removals and queries; returns the results of every query.
 Frames play(const Config& config, Order order) {
   const IsaScope isa(config.isa);
   World world(config);
@@ -60,15 +60,15 @@ class ResultOrder : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(ResultOrder, is_the_same_on_every_thread_count_and_instruction_set) {
+TEST_P(ResultOrder, fast_order_is_equal_in_every_config) {
   expect_one_result_on_every_config(Order::fast);
 }
 
-TEST_P(ResultOrder, is_the_same_everywhere_when_canonical) {
+TEST_P(ResultOrder, canonical_order_is_equal_in_every_config) {
   expect_one_result_on_every_config(Order::canonical);
 }
 
-TEST_P(ResultOrder, of_pairs_with_is_the_same_on_every_thread_count_and_instruction_set) {
+TEST_P(ResultOrder, pairs_with_order_is_equal_in_every_config) {
   std::vector<Pair> first;
   for (const Config& config : all_configs()) {
     if (config.partition != GetParam()) continue;
@@ -93,8 +93,8 @@ std::vector<std::string> names() {
 INSTANTIATE_TEST_SUITE_P(All, ResultOrder, testing::ValuesIn(names()),
                          [](const auto& name) { return name.param; });
 
-// All exact partitions give identical bytes when asked for the canonical order.
-TEST(CanonicalOrder, is_identical_for_all_exact_partitions) {
+// All exact partitions return identical bytes in canonical order.
+TEST(CanonicalOrder, canonical_order_is_identical_for_exact_partitions) {
   for (const std::vector<Scene>* scenes : {&random_scenes(), &infinite_scenes()}) {
     for (const Scene& scene : *scenes) {
       for (const std::string& name : names()) {

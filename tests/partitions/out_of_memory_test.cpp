@@ -1,5 +1,5 @@
-// A memory resource that refuses, at every request in turn: the call says so, nothing is lost, and
-// the same call succeeds once memory is there again.
+// A memory resource that refuses each request in turn: the call returns an error, nothing is lost,
+// and the same call succeeds once memory is available again.
 
 #include <winnow/core/eigen.h>
 #include <functional>
@@ -18,7 +18,7 @@ class OutOfMemory : public Conformance {
   void SetUp() override { WINNOW_TEST_NEEDS_EXCEPTIONS(); }
 
   // Calls with the n-th request refused, for n = 0, 1, ..., until a call makes fewer than n. A call
-  // may also get by with less than it asked for. `prepare` makes the call have work again.
+  // may also succeed with less than it requested. `prepare` ensures that the call has work to do.
   void refuse_each_request(const std::function<void()>& prepare,
                            const std::function<Status()>& call,
                            const std::function<void()>& expect_intact) {
@@ -53,7 +53,7 @@ class OutOfMemory : public Conformance {
     EXPECT_EQ(world_.partition().footprint().total().reserved, memory_.outstanding());
   }
 
-  // Boxes that are up to date, in no more memory than they take.
+  // Fills the partition and refreshes it, in no more memory than it needs.
   void fill_anew(std::span<const Aabb> boxes) {
     world_.clear();
     world_.partition().release_memory();
@@ -65,12 +65,12 @@ class OutOfMemory : public Conformance {
   World world_;
 };
 
-TEST_P(OutOfMemory, during_a_bulk_insert_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_bulk_insert_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(120);
   std::vector<Key> keys(boxes.size());
   world_.insert(boxes);
-  // Each accepted insert is taken back, so that the model stays right; growth is provoked by
-  // giving the memory back.
+  // Each successful insert is undone, so that the model stays right; releasing the memory forces
+  // growth.
   refuse_each_request(
       [&] {
         world_.clear();
@@ -91,7 +91,7 @@ TEST_P(OutOfMemory, during_a_bulk_insert_leaves_everything_as_it_was) {
   EXPECT_TRUE(world_.agrees());
 }
 
-TEST_P(OutOfMemory, during_single_inserts_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_single_insert_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(600);
   for (const Aabb& box : boxes) {
     Key key;
@@ -111,19 +111,19 @@ TEST_P(OutOfMemory, during_single_inserts_leaves_everything_as_it_was) {
   EXPECT_TRUE(world_.agrees());
 }
 
-TEST_P(OutOfMemory, during_reserve_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_reserve_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(90);
   refuse_each_request([&] { fill_anew(boxes); },
                       [&] { return world_.partition().reserve(1000, Pages::touched); },
                       [&] {
                         expect_intact();
-                        // There is nothing to be refreshed.
+                        // There is nothing to refresh.
                         ASSERT_TRUE(world_.agrees());
                       });
   EXPECT_TRUE(world_.agrees());
 }
 
-TEST_P(OutOfMemory, during_an_insert_leaves_what_is_up_to_date_as_it_was) {
+TEST_P(OutOfMemory, refused_insert_keeps_refreshed_objects_up_to_date) {
   const std::vector<Aabb> boxes = uniform_boxes(90);
   std::vector<Key> keys(300);
   refuse_each_request([&] { fill_anew(boxes); },
@@ -138,7 +138,7 @@ TEST_P(OutOfMemory, during_an_insert_leaves_what_is_up_to_date_as_it_was) {
                       });
 }
 
-TEST_P(OutOfMemory, during_reserve_of_pairs_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_reserve_of_pairs_changes_nothing) {
   world_.insert(mixed_boxes(500));
   auto buffer = std::make_unique<PairBuffer>(&memory_);
   refuse_each_request(
@@ -151,7 +151,7 @@ TEST_P(OutOfMemory, during_reserve_of_pairs_leaves_everything_as_it_was) {
   EXPECT_TRUE(world_.agrees(*buffer));
 }
 
-TEST_P(OutOfMemory, during_bulk_update_and_removal_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_bulk_update_and_removal_change_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(200);
   std::vector<Key> keys = world_.insert(boxes);
   const std::vector<Aabb> moved = uniform_boxes(200, 2);
@@ -181,21 +181,21 @@ TEST_P(OutOfMemory, during_bulk_update_and_removal_leaves_everything_as_it_was) 
       });
 }
 
-TEST_P(OutOfMemory, during_refresh_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_refresh_changes_nothing) {
   world_.insert(mixed_boxes(700));
   refuse_each_request([&] { world_.partition().release_memory(); },
                       [&] { return world_.partition().refresh(); }, [&] { expect_intact(); });
   EXPECT_TRUE(world_.agrees());
 }
 
-TEST_P(OutOfMemory, during_a_pair_query_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_pair_query_changes_nothing) {
   std::vector<Aabb> boxes = mixed_boxes(700);
   const std::vector<Key> keys = world_.insert(boxes);
   Random random(11);
   for (const Order order : {Order::fast, Order::canonical}) {
     for (const Motion motion : {Motion::few, Motion::much}) {
       SCOPED_TRACE(to_string(motion));
-      // The buffer's memory is refused as the partition's is.
+      // The buffer uses the same memory resource, so its requests are refused as well.
       auto buffer = std::make_unique<PairBuffer>(&memory_);
       refuse_each_request(
           [&] {
@@ -214,8 +214,8 @@ TEST_P(OutOfMemory, during_a_pair_query_leaves_everything_as_it_was) {
   }
 }
 
-// After a refusal the buffer must not pass for a complete result of an earlier frame.
-TEST_P(OutOfMemory, never_leaves_a_buffer_that_later_frames_build_on) {
+// After a refusal the buffer must not count as the complete result of an earlier frame.
+TEST_P(OutOfMemory, refused_query_leaves_a_buffer_that_recovers) {
   std::vector<Aabb> boxes = uniform_boxes(500);
   const std::vector<Key> keys = world_.insert(boxes);
   Random random(12);
@@ -237,7 +237,7 @@ TEST_P(OutOfMemory, never_leaves_a_buffer_that_later_frames_build_on) {
   }
 }
 
-TEST_P(OutOfMemory, during_pairs_with_leaves_everything_as_it_was) {
+TEST_P(OutOfMemory, refused_pairs_with_changes_nothing) {
   world_.insert(mixed_boxes(500));
   World other(config(), &memory_);
   other.insert(mixed_boxes(300, 2));

@@ -1,5 +1,4 @@
-// Memory as pages of the system: which of them have been written to, and more addresses than there
-// is memory.
+// Pages of the system: which pages reserve touches, and sizes with more addresses than memory.
 
 #include <sys/mman.h>
 
@@ -13,7 +12,7 @@
 namespace winnow::test {
 namespace {
 
-// Hands out fresh pages, one request after another, and knows which have been written to.
+// Hands out fresh pages and counts the pages that were written to.
 class FreshPages final : public std::pmr::memory_resource {
  public:
   FreshPages()
@@ -50,7 +49,7 @@ class FreshPages final : public std::pmr::memory_resource {
 
 class Touched : public Conformance {};
 
-TEST_P(Touched, memory_was_touched_has_all_pages_that_a_first_frame_writes_to) {
+TEST_P(Touched, reserve_touches_all_pages_of_a_frame) {
   FreshPages pages;
   World world(config(), &pages);
   PairBuffer buffer(&pages);
@@ -69,7 +68,7 @@ TEST_P(Touched, memory_was_touched_has_all_pages_that_a_first_frame_writes_to) {
 INSTANTIATE_TEST_SUITE_P(All, Touched, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-/// Hands out addresses of which pages are made when they are first written to.
+/// Hands out addresses whose pages are created when they are first written to.
 class UntouchedMemory final : public std::pmr::memory_resource {
  public:
   UntouchedMemory() = default;
@@ -98,7 +97,7 @@ class UntouchedMemory final : public std::pmr::memory_resource {
   std::size_t outstanding_ = 0;
 };
 
-/// Takes room for so many pairs, of which it writes the last one alone.
+/// Takes room for `count` pairs, but writes only the last one.
 bool put_pairs(PairSink& sink, std::size_t count, Pair last) {
   while (count != 0) {
     if (sink.cursor > sink.limit && !sink.grow(sink)) return false;
@@ -112,14 +111,14 @@ bool put_pairs(PairSink& sink, std::size_t count, Pair last) {
   return true;
 }
 
-TEST(Limits, of_pairs_are_not_those_of_32_bits) {
+TEST(Limits, number_of_pairs_may_exceed_32_bits) {
   constexpr std::size_t kTasks = 9;
   constexpr std::size_t kOfTask = std::size_t{1} << 29U;
   constexpr Execution kSerial = Execution::serial();
   UntouchedMemory memory;
   PairBuffer buffer(&memory);
   if (!PairWriter::reserve(buffer, kTasks * kOfTask, kTasks, kSerial, Pages::untouched)) {
-    GTEST_SKIP() << "no addresses for so many pairs";
+    GTEST_SKIP() << "too few addresses for the pairs";
   }
   const std::size_t reserved = memory.outstanding();
   PairWriter writer(buffer, kSerial);

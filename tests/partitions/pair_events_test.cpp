@@ -1,5 +1,5 @@
-// Pair events: what begins and ends is the difference of two frames' pairs by keys, whatever
-// happened in between and however the frame was found.
+// Pair events: the begun and ended pairs are the difference of the key pairs of two frames,
+// whatever happened between the frames and whichever algorithm found them.
 
 #if WINNOW_HAVE_RAPIDCHECK
 #include <rapidcheck.h>
@@ -34,15 +34,15 @@ std::vector<ClientData> random_data(std::size_t count, std::uint64_t stream) {
   return data;
 }
 
-// A frame's buffer and events beside the pairs of the frame before, and what each object that was
-// there in any frame was inserted with.
+// The buffer and events of a frame, the pairs of the frame before, and the client data of each
+// object of any frame.
 class Frames {
  public:
   explicit Frames(World& world,
                   std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : buffer(memory), events({memory, true}), world_(world) {}
 
-  // Queries the next frame and holds its events against the difference of the key pairs.
+  // Queries the next frame and compares its events with the difference of the key pairs.
   testing::AssertionResult next(const PairOptions& options = {}) {
     const Status status = world_.threads().run(
         [&] { return world_.partition().self_pairs(buffer, events, options); });
@@ -57,12 +57,12 @@ class Frames {
     return verdict;
   }
 
-  // After a refusal: nothing begins or ends, and the buffer holds the last frame's pairs, of which
-  // those of objects that are gone have stale ids.
+  // Tests the state after a refusal: no pair begins or ends, and the buffer has the pairs of the
+  // last frame; ids of removed objects are stale.
   testing::AssertionResult stands() const {
     const bool silent = events.begun().empty() && events.ended().empty() &&
                         events.begun_data().empty() && events.ended_data().empty();
-    if (!silent) return testing::AssertionFailure() << "a refused call told of changes";
+    if (!silent) return testing::AssertionFailure() << "a refused call reported changes";
     std::set<Ids> held;
     for (const auto& [first, second] : buffer.pairs()) held.insert({first, second});
     std::set<Ids> last;
@@ -73,7 +73,7 @@ class Frames {
     return testing::AssertionSuccess();
   }
 
-  // The next frame follows none.
+  // The next frame has no predecessor.
   void forget() { before_.clear(); }
 
   PairBuffer buffer;
@@ -110,7 +110,7 @@ class Frames {
     }
     const KeyPairs last = keys_of(buffer.pairs().subspan(events.persisting()));
     if (!std::ranges::equal(last, begun)) {
-      return testing::AssertionFailure() << "the last pairs are not those that began";
+      return testing::AssertionFailure() << "the last pairs are not the begun pairs";
     }
     const auto middle = buffer.begin() + events.persisting();
     if (order == Order::canonical &&
@@ -145,7 +145,7 @@ class Events : public Conformance {
   }
 };
 
-TEST_P(Events, are_the_difference_of_frames_however_objects_move) {
+TEST_P(Events, events_are_the_difference_of_moving_frames) {
   for (const Motion motion : kMotions) {
     SCOPED_TRACE(to_string(motion));
     World world(config());
@@ -162,7 +162,7 @@ TEST_P(Events, are_the_difference_of_frames_however_objects_move) {
 }
 
 #if WINNOW_HAVE_RAPIDCHECK
-TEST_P(Events, follow_any_sequence_of_calls) {
+TEST_P(Events, events_follow_any_sequence_of_calls) {
   const bool held = rc::check([this] {
     World world(config());
     Frames frames(world);
@@ -181,7 +181,7 @@ TEST_P(Events, follow_any_sequence_of_calls) {
         world.update(keys[some()], uniform_boxes(1, random.bits())[0]);
       }
       if (random.chance(0.3)) world.set_filter(keys[some()], {1, 1, random.chance(0.5) ? 0U : 1U});
-      // An id goes to another object at once: the old pairs end even where the new ones are alike.
+      // A new object gets the id at once: the old pairs end even if the new ones have equal ids.
       if (random.chance(0.4)) {
         const std::size_t at = some();
         const Aabb box = world.entries().at(keys[at].id).box;
@@ -201,7 +201,7 @@ TEST_P(Events, follow_any_sequence_of_calls) {
         RC_ASSERT(world.self_pairs(other) == Status::ok);
       }
       if (random.chance(0.05)) {
-        // Used otherwise in between: the events start anew.
+        // Another use of the buffer restarts the events.
         RC_ASSERT(world.self_pairs(frames.buffer) == Status::ok);
         frames.forget();
       }
@@ -212,8 +212,8 @@ TEST_P(Events, follow_any_sequence_of_calls) {
 }
 #endif
 
-// So few that the buffer is linked, whatever they do: the pairs of all others stay where they are.
-TEST_P(Events, follow_few_objects_among_many) {
+// So few objects change that the buffer is updated by its links; pairs of all others stay in place.
+TEST_P(Events, events_follow_few_objects_among_many) {
   for (const std::uint64_t stream : {1U, 2U, 3U}) {
     World world(config());
     Frames frames(world);
@@ -235,7 +235,7 @@ TEST_P(Events, follow_few_objects_among_many) {
           case 0:
             world.set_filter(keys[at], {1, 1, random.chance(0.5) ? 0U : 1U});
             break;
-          case 1:  // its id goes to another object
+          case 1:  // a new object gets its id
             world.remove(keys[at]);
             keys[at] = world.insert(random.chance(0.5) ? box : moved, random.bits());
             break;
@@ -246,7 +246,7 @@ TEST_P(Events, follow_few_objects_among_many) {
           case 3:
             keys.push_back(world.insert(moved, random.bits()));
             break;
-          case 4:  // onto another object
+          case 4:  // moves onto another object
             world.update(keys[at], world.entries().at(keys[some()].id).box);
             break;
           default:
@@ -261,8 +261,8 @@ TEST_P(Events, follow_few_objects_among_many) {
   }
 }
 
-// Without a buffer the same changes are told.
-TEST_P(Events, need_no_buffer) {
+// The events are equal without a buffer.
+TEST_P(Events, events_without_a_buffer_are_equal) {
   World with(config());
   World without(config());
   std::vector<Aabb> boxes = uniform_boxes(scene_size(500));
@@ -295,7 +295,7 @@ TEST_P(Events, need_no_buffer) {
   }
 }
 
-TEST_P(Events, go_on_after_a_linked_frame_that_memory_was_refused_for) {
+TEST_P(Events, refused_linked_frame_can_be_continued) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   int failures = 0;
   for (std::size_t granted = 0; granted < 14; ++granted) {
@@ -332,7 +332,7 @@ TEST_P(Events, go_on_after_a_linked_frame_that_memory_was_refused_for) {
   EXPECT_GT(failures, 0);
 }
 
-TEST_P(Events, of_an_id_that_went_to_another_object_end_and_begin) {
+TEST_P(Events, reused_id_ends_and_begins_its_pairs) {
   World world(config());
   Frames frames(world);
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
@@ -350,7 +350,7 @@ TEST_P(Events, of_an_id_that_went_to_another_object_end_and_begin) {
   EXPECT_EQ(frames.events.persisting(), 0U);
 }
 
-TEST_P(Events, give_the_client_data_of_objects_that_are_gone) {
+TEST_P(Events, ended_pairs_have_the_client_data) {
   World world(config());
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
   PairBuffer buffer;
@@ -362,7 +362,7 @@ TEST_P(Events, give_the_client_data_of_objects_that_are_gone) {
   ASSERT_EQ(events.begun_data().size(), 1U);
   EXPECT_EQ(events.begun_data()[0], (ClientDataPair{11, 12}));
   EXPECT_TRUE(events.ended_data().empty());
-  // The id goes to another object, which meets none.
+  // A new object gets the id, and its filter rejects all others.
   world.remove(other);
   other = world.insert(box, 13);
   world.set_filter(other, {1, 1, 1});
@@ -382,7 +382,7 @@ TEST_P(Events, give_the_client_data_of_objects_that_are_gone) {
   EXPECT_TRUE(events.ended_data().empty());
 }
 
-TEST_P(Events, take_memory_for_client_data_only_where_they_are_asked_for) {
+TEST_P(Events, client_data_memory_is_taken_only_on_request) {
   World world(config());
   World twin(config());
   std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
@@ -406,7 +406,7 @@ TEST_P(Events, take_memory_for_client_data_only_where_they_are_asked_for) {
   }
 }
 
-TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
+TEST_P(Events, events_of_another_buffer_or_partition_restart) {
   World world(config());
   World other(config());
   Frames frames(world);
@@ -429,13 +429,13 @@ TEST_P(Events, that_belong_to_another_buffer_or_partition_start_anew) {
   EXPECT_EQ(frames.events.begun_data().size(), second.size());
 }
 
-// What memory is refused to: a world's partition, its buffer and events, or both.
+// The memory that is refused: of the partition, of the buffer and events, or of both.
 struct Refused {
   bool partition;
   bool results;
 };
 
-TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
+TEST_P(Events, events_continue_after_any_refusal) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   int failures = 0;
   for (const auto& [motion, options] : {std::pair(Motion::few, PairOptions{}),
@@ -443,7 +443,7 @@ TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
                                         std::pair(Motion::few, PairOptions{Order::fast, false})}) {
     for (const Refused refused :
          {Refused{true, false}, Refused{false, true}, Refused{true, true}}) {
-      // From the first request that is refused on, until none is made.
+      // Refuses all requests from the n-th on, for each n, until none is refused.
       bool was_refused = true;
       for (std::size_t granted = 0; was_refused && granted < 40; ++granted) {
         CountingMemory memory;
@@ -466,7 +466,7 @@ TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
           ASSERT_TRUE(frames.next(options));
           change();
         }
-        // More than there is room for.
+        // More objects than there is room for.
         for (const Key& key : world.insert(uniform_boxes(40, 9))) keys.push_back(key);
         for (const Aabb& box : uniform_boxes(40, 9)) boxes.push_back(box);
         const std::size_t before = memory.refusals() + results.refusals();
@@ -491,11 +491,11 @@ TEST_P(Events, go_on_from_the_last_frame_after_any_refusal) {
   EXPECT_GT(failures, 0);
 }
 
-TEST_P(Events, honour_the_predicate) {
+TEST_P(Events, events_respect_the_predicate) {
   World world(config());
   std::vector<Aabb> boxes = uniform_boxes(scene_size(800));
   const std::vector<Key> keys = world.insert(boxes);
-  // Half of all pairs; asked from several threads.
+  // Accepts half of all pairs; called from several threads.
   const auto accept = [](void*, ObjectId first, ObjectId second) {
     return (first + second) % 2 == 0;
   };
@@ -531,7 +531,7 @@ TEST_P(Events, honour_the_predicate) {
   EXPECT_EQ(some.size(), static_cast<std::size_t>(accepted));
 }
 
-TEST_P(Events, allocate_nothing_in_steady_frames) {
+TEST_P(Events, steady_frames_do_not_allocate) {
   for (const auto& [motion, client_data] :
        {std::pair(Motion::few, false), std::pair(Motion::much, false), std::pair(Motion::few, true),
         std::pair(Motion::much, true)}) {
@@ -564,8 +564,8 @@ TEST_P(Events, allocate_nothing_in_steady_frames) {
 INSTANTIATE_TEST_SUITE_P(All, Events, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-// The same frames on every instruction set and number of threads, byte by byte.
-TEST(EventsOfAnyConfig, are_the_same) {
+// Frames are byte-identical on every instruction set and number of threads.
+TEST(EventsOfAnyConfig, events_are_equal_in_every_config) {
   for (const std::string_view name : structure_names()) {
     std::vector<std::tuple<std::vector<Pair>, std::size_t, std::size_t>> expected;
     for (const Config& config : all_configs()) {
@@ -582,7 +582,7 @@ TEST(EventsOfAnyConfig, are_the_same) {
           move(frame % 2 == 0 ? Motion::few : Motion::little, boxes, random);
           world.update(keys, boxes);
         } else {
-          // So few that the buffer is linked.
+          // So few changes that the buffer is updated by its links.
           const std::size_t at = random.below(keys.size());
           boxes[at] = boxes[random.below(keys.size())];
           world.update(keys[at], boxes[at]);
@@ -599,8 +599,8 @@ TEST(EventsOfAnyConfig, are_the_same) {
   }
 }
 
-// Where nothing moved nothing is compared: the price of a frame is not the number of pairs.
-TEST(EventsOfAStillFrame, are_none_and_cost_no_test) {
+// A frame without motion compares nothing: its cost does not depend on the number of pairs.
+TEST(EventsOfAStillFrame, still_frame_has_no_events_and_no_tests) {
   for (const std::string_view name : structure_names()) {
     World world(Config{std::string(name), active_isa(), 1});
     Frames frames(world);

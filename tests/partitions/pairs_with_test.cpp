@@ -1,4 +1,4 @@
-// pairs_with: two partitions of any kinds against the slow obvious twin.
+// pairs_with: two partitions of any structures, compared with brute force.
 
 #include <algorithm>
 
@@ -30,7 +30,7 @@ class PairsWith : public Conformance {
   }
 };
 
-TEST_P(PairsWith, every_other_kind_of_partition_are_right) {
+TEST_P(PairsWith, pairs_with_every_other_structure_are_right) {
   World mine(config());
   mine.insert(mixed_boxes(300));
   PairBuffer buffer;
@@ -43,7 +43,7 @@ TEST_P(PairsWith, every_other_kind_of_partition_are_right) {
   }
 }
 
-TEST_P(PairsWith, an_empty_partition_are_none) {
+TEST_P(PairsWith, pairs_with_an_empty_partition_are_none) {
   World mine(config());
   World other(config());
   PairBuffer buffer;
@@ -54,8 +54,8 @@ TEST_P(PairsWith, an_empty_partition_are_none) {
   EXPECT_TRUE(buffer.empty());
 }
 
-// The plain cross test: every object meets itself, and every other pair comes in both orders.
-TEST_P(PairsWith, itself_are_all_ordered_pairs) {
+// Tests all ordered pairs: every object with itself, and every other pair in both orders.
+TEST_P(PairsWith, pairs_with_itself_are_all_ordered_pairs) {
   World world(config());
   world.insert(uniform_boxes(300));
   PairBuffer buffer;
@@ -63,7 +63,7 @@ TEST_P(PairsWith, itself_are_all_ordered_pairs) {
   EXPECT_TRUE(std::ranges::find(buffer, Pair{7, 7}) != buffer.end());
 }
 
-TEST_P(PairsWith, one_large_and_one_small_partition_are_right) {
+TEST_P(PairsWith, pairs_of_large_and_small_partition_are_right) {
   World large(config());
   World small(config());
   large.insert(clustered_boxes(900));
@@ -75,7 +75,7 @@ TEST_P(PairsWith, one_large_and_one_small_partition_are_right) {
   }
 }
 
-TEST_P(PairsWith, hostile_scenes_are_right) {
+TEST_P(PairsWith, pairs_with_hostile_scenes_are_right) {
   PairBuffer buffer;
   World crowd(config());
   crowd.insert(uniform_boxes(150));
@@ -91,7 +91,7 @@ TEST_P(PairsWith, hostile_scenes_are_right) {
   }
 }
 
-TEST_P(PairsWith, partitions_in_motion_are_right) {
+TEST_P(PairsWith, pairs_of_moving_partitions_are_right) {
   World a(config());
   World b(config());
   Random random(3);

@@ -1,5 +1,5 @@
-// Builds that are planned over several refreshes, while objects move, come and go: no pair may be
-// missed, before, while or after an order is taken.
+// Rebuilds that are planned over several refreshes while objects move, come and go: no pair may be
+// missed before, during or after the new order is taken.
 
 #include <winnow/partitions/partition.h>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kWholeBuilds = std::numeric_limits<std::size_t>::max();
 constexpr int kFrames = 80;
 
-// Boxes that go straight on, each its own way, and turn back where the scene ends.
+// Boxes with constant velocities that turn back at the ends of the scene.
 class Drift {
  public:
   Drift(std::vector<Aabb> start, float longest_step) : boxes(std::move(start)) {
@@ -52,7 +52,7 @@ class Drift {
 
 class PlannedBuilds : public Conformance {
  protected:
-  // So that each stage of a plan has a refresh of its own.
+  // A budget that gives each stage of a plan its own refresh.
   [[nodiscard]] Config config_with(std::size_t budget) const {
     Config config = GetParam();
     config.build_budget = budget;
@@ -61,13 +61,13 @@ class PlannedBuilds : public Conformance {
   [[nodiscard]] static std::size_t count() { return scaled(1400); }
 };
 
-TEST(PlannedBuild, is_not_hastened_by_refreshes_that_nobody_asks_after) {
+TEST(PlannedBuild, refresh_without_a_query_does_not_advance_plans) {
   Drift drift(uniform_boxes(4000), 0.03F);
   std::vector<Partition> partitions;
   for (int i = 0; i < 2; ++i) partitions.emplace_back(linear_bvh());
   std::vector<Key> keys(drift.boxes.size());
   for (Partition& one : partitions) ASSERT_EQ(one.insert(drift.boxes, {}, keys), Status::ok);
-  // The first keys of the other one are as good: ids are the same.
+  // The ids are the same, so the keys of both partitions differ only in their stamps.
   std::vector<Key> others = keys;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     keys[i] = partitions[0].key_of(others[i].id);
@@ -77,7 +77,7 @@ TEST(PlannedBuild, is_not_hastened_by_refreshes_that_nobody_asks_after) {
     drift.go_on();
     ASSERT_EQ(partitions[0].update(keys, drift.boxes), Status::ok);
     ASSERT_EQ(partitions[1].update(others, drift.boxes), Status::ok);
-    // A few move once more.
+    // A few objects move again.
     ASSERT_EQ(partitions[1].refresh(), Status::ok);
     const std::size_t few = 40;
     ASSERT_EQ(partitions[1].update(std::span(others).first(few),
@@ -89,7 +89,7 @@ TEST(PlannedBuild, is_not_hastened_by_refreshes_that_nobody_asks_after) {
   EXPECT_LE(partitions[1].statistics().builds, partitions[0].statistics().builds + 1);
 }
 
-TEST(PlannedBuild, is_taken_before_it_is_due) {
+TEST(PlannedBuild, planned_order_is_taken_before_it_is_due) {
   for (const char* const name : {"FlatGrid", "HierarchicalGrid", "SweepAndPrune"}) {
     Drift drift(uniform_boxes(2000), 0.03F);
     Partition partition(structure_named(name));
@@ -104,13 +104,13 @@ TEST(PlannedBuild, is_taken_before_it_is_due) {
     }
     const Statistics statistics = partition.statistics();
     EXPECT_GE(statistics.planned_builds, 2U) << name;
-    // All but the first one.
+    // All builds but the first are planned.
     EXPECT_GE(statistics.planned_builds + 2, statistics.builds) << name;
     EXPECT_LT(most_irregular, drift.boxes.size() / 16 + 64) << name;
   }
 }
 
-// Frame by frame all drift, until an order would be taken next.
+// Returns the number of frames with all objects drifting before a planned order is taken.
 std::size_t frames_before_plan(const char* name) {
   Drift drift(uniform_boxes(2000), 0.03F);
   Partition partition(structure_named(name));
@@ -126,7 +126,7 @@ std::size_t frames_before_plan(const char* name) {
   return frames - 1;
 }
 
-TEST(PlannedBuild, waits_while_few_move_but_not_for_ever) {
+TEST(PlannedBuild, plan_is_delayed_while_few_objects_move) {
   for (const char* const name : {"FlatGrid", "HierarchicalGrid", "SweepAndPrune"}) {
     Drift drift(uniform_boxes(2000), 0.03F);
     Partition partition(structure_named(name));
@@ -151,9 +151,9 @@ TEST(PlannedBuild, waits_while_few_move_but_not_for_ever) {
   }
 }
 
-// A plan goes through levels from small to large objects. Large ones that jump before it comes to
-// theirs have places in the order where they are then.
-TEST(PlannedBuild, has_what_left_its_cell_meanwhile_where_it_is) {
+// A plan processes levels from small to large objects. Large objects that jump before the plan
+// reaches their level are sorted by their new positions.
+TEST(PlannedBuild, planned_order_uses_positions_after_jumps) {
   constexpr std::size_t kSmall = 1600;
   constexpr std::size_t kObjects = 2000;
   constexpr std::size_t kTurns = 20;
@@ -176,7 +176,7 @@ TEST(PlannedBuild, has_what_left_its_cell_meanwhile_where_it_is) {
     ASSERT_EQ(partition.refresh(), Status::ok);
     const Statistics now = partition.statistics();
     ASSERT_EQ(now.levels, 2U);
-    // What jumped in the last two frames came too late.
+    // Objects that jumped in the last two frames came too late.
     if (now.planned_builds > planned) {
       EXPECT_LE(now.irregular, 2 * kJumpsEach) << "frame " << frame;
     }
@@ -185,7 +185,7 @@ TEST(PlannedBuild, has_what_left_its_cell_meanwhile_where_it_is) {
   EXPECT_GE(planned, 2U);
 }
 
-TEST(PlannedBuild, is_not_made_where_builds_are_to_be_whole) {
+TEST(PlannedBuild, whole_builds_make_no_plan) {
   Drift drift(uniform_boxes(2000), 0.03F);
   Partition partition(hierarchical_grid(), {.build_budget = kWholeBuilds});
   std::vector<Key> keys(drift.boxes.size());
@@ -199,7 +199,7 @@ TEST(PlannedBuild, is_not_made_where_builds_are_to_be_whole) {
   EXPECT_EQ(partition.statistics().planned_builds, 0U);
 }
 
-TEST_P(PlannedBuilds, miss_no_pair_while_all_objects_drift) {
+TEST_P(PlannedBuilds, drift_during_a_plan_misses_no_pair) {
   for (const auto& start : {uniform_boxes(count()), mixed_boxes(count())}) {
     for (const std::size_t budget : {std::size_t{0}, count(), kWholeBuilds}) {
       Drift drift(start, 0.02F);
@@ -215,8 +215,8 @@ TEST_P(PlannedBuilds, miss_no_pair_while_all_objects_drift) {
   }
 }
 
-// A refresh after which an order is taken need not be told of all that moved while it was planned.
-TEST_P(PlannedBuilds, miss_no_pair_where_others_move_in_every_frame) {
+// The refresh that takes an order may not get all objects that moved during the plan.
+TEST_P(PlannedBuilds, different_movers_in_each_frame_miss_no_pair) {
   Drift drift(uniform_boxes(count()), 0.1F);
   World world(config_with(count()));
   std::vector<Aabb> told = drift.boxes;
@@ -233,7 +233,7 @@ TEST_P(PlannedBuilds, miss_no_pair_where_others_move_in_every_frame) {
   }
 }
 
-TEST_P(PlannedBuilds, miss_no_pair_while_objects_come_and_go_and_jump) {
+TEST_P(PlannedBuilds, arrivals_and_jumps_during_plans_miss_no_pair) {
   for (const std::size_t budget : {std::size_t{1}, 2 * count()}) {
     Drift drift(uniform_boxes(count()), 0.02F);
     World world(config_with(budget));
@@ -254,7 +254,7 @@ TEST_P(PlannedBuilds, miss_no_pair_while_objects_come_and_go_and_jump) {
         const std::size_t filtered = random.below(keys.size());
         world.set_filter(keys[filtered], {.layers = 1U << random.below(4)});
       }
-      // The last one that came goes in one frame and another comes in the next.
+      // The last arrival leaves in one frame, and another arrives in the next.
       if (frame % 2 == 0) {
         world.remove(last);
       } else {
@@ -266,8 +266,8 @@ TEST_P(PlannedBuilds, miss_no_pair_while_objects_come_and_go_and_jump) {
   }
 }
 
-// Rows that are planned may be put elsewhere altogether.
-TEST_P(PlannedBuilds, are_given_up_where_the_rows_change_altogether) {
+// Rows of a plan may move completely.
+TEST_P(PlannedBuilds, plan_is_dropped_if_all_rows_change) {
   Drift drift(uniform_boxes(count()), 0.02F);
   World world(config_with(1));
   std::vector<Key> keys = world.insert(drift.boxes);
@@ -287,7 +287,7 @@ TEST_P(PlannedBuilds, are_given_up_where_the_rows_change_altogether) {
   }
 }
 
-TEST_P(PlannedBuilds, find_the_same_pairs_in_the_same_order_on_one_thread) {
+TEST_P(PlannedBuilds, pair_order_is_equal_on_one_thread) {
   Drift drift(clustered_boxes(count()), 0.02F);
   World world(config_with(0));
   Config alone = config_with(0);
@@ -307,7 +307,7 @@ TEST_P(PlannedBuilds, find_the_same_pairs_in_the_same_order_on_one_thread) {
   }
 }
 
-TEST_P(PlannedBuilds, go_on_where_memory_is_refused) {
+TEST_P(PlannedBuilds, refused_memory_during_a_plan_is_recoverable) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   Drift drift(mixed_boxes(count()), 0.05F);

@@ -1,5 +1,5 @@
-// Random sequences of everything a caller may do, against the plain model. Failing sequences are
-// shrunk by rapidcheck; set WINNOW_SEED for others.
+// Random sequences of all calls, compared with a plain model. rapidcheck shrinks sequences that
+// fail; set WINNOW_SEED for others.
 
 #include <rapidcheck.h>
 #include <winnow/core/eigen.h>
@@ -27,7 +27,7 @@ struct Step {
     cross
   };
   int kind = query;
-  std::uint64_t choice = 0;  // which objects, how many
+  std::uint64_t choice = 0;  // selects objects and their number
   std::vector<Aabb> boxes;
 };
 
@@ -42,7 +42,7 @@ std::ostream& operator<<(std::ostream& out, const Step& step) {
   return out;
 }
 
-// Mostly small integers, so that boxes touch exactly; now and then anything.
+// Mostly small integers, so that boxes touch exactly; sometimes any value.
 rc::Gen<float> coordinates() {
   constexpr float inf = std::numeric_limits<float>::infinity();
   return rc::gen::weightedOneOf<float>(
@@ -78,7 +78,7 @@ rc::Gen<Step> steps() {
       rc::gen::set(&Step::boxes, rc::gen::container<std::vector<Aabb>>(5, valid_boxes())));
 }
 
-// Keys of `count` live objects, from the chosen one on.
+// Returns keys of `count` live objects, from the chosen one on.
 std::vector<Key> some_keys(const World& world, std::uint64_t choice, std::size_t count) {
   std::vector<Key> all;
   for (const auto& [id, entry] : world.entries()) all.push_back(entry.key);
@@ -91,8 +91,8 @@ std::vector<Key> some_keys(const World& world, std::uint64_t choice, std::size_t
   return keys;
 }
 
-// Now and then the default, or one that meets nothing; few layers and environments, so that they
-// are shared.
+// Sometimes the default filter, or one that accepts no object; few layers and environments, so that
+// objects share them.
 ObjectFilter some_filter(std::uint64_t choice) {
   if (choice % 5 == 0) return {};
   const auto bits = static_cast<std::uint32_t>(choice);
@@ -108,7 +108,7 @@ void take(const Step& step, World& world, const World& other, PairBuffer& buffer
       world.insert(boxes[0], step.choice);
       break;
     case Step::insert_many:
-      // Many at once, so that sequences reach beyond one block of rows.
+      // Many at once, so that sequences use more than one block of rows.
       for (std::size_t n = 0; n < count; ++n) world.insert(boxes);
       break;
     case Step::update:
@@ -152,7 +152,7 @@ void take(const Step& step, World& world, const World& other, PairBuffer& buffer
 
 class Sequences : public Conformance {};
 
-TEST_P(Sequences, of_any_calls_agree_with_the_model) {
+TEST_P(Sequences, any_call_sequence_agrees_with_the_model) {
   const bool held = rc::check([this] {
     World world(config());
     World other(config());

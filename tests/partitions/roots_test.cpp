@@ -1,4 +1,4 @@
-// Roots that decide how cells are laid out: near enough to the true ones, and the same everywhere.
+// Roots that determine the layout of cells: accurate, and equal on every machine.
 
 #include "partitions/structures/roots.h"
 
@@ -15,12 +15,12 @@
 namespace winnow::test {
 namespace {
 
-// Of any exponent.
+// Returns a number of any exponent.
 double any_number(Random& random) {
   return std::ldexp(random.uniform(1.0, 2.0), static_cast<int>(random.below(600)) - 300);
 }
 
-TEST(Roots, are_those_of_cmath_but_for_a_few_ulps) {
+TEST(Roots, roots_equal_cmath_within_few_ulps) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const double value = any_number(random);
@@ -30,14 +30,14 @@ TEST(Roots, are_those_of_cmath_but_for_a_few_ulps) {
   }
 }
 
-TEST(Roots, of_products_that_no_double_holds) {
+TEST(Roots, roots_of_products_beyond_double_are_right) {
   EXPECT_NEAR(root_of_product(3, std::array{1e300, 2e300, 4e300}) / 2e300, 1.0, 0x1p-50);
   EXPECT_NEAR(root_of_product(3, std::array{1e-300, 2e-300, 4e-300}) / 2e-300, 1.0, 0x1p-50);
   EXPECT_NEAR(root_of_product(2, std::array{5e-324, 5e-324}) / 5e-324, 1.0, 0x1p-50);
   EXPECT_NEAR(root_of_product(2, std::array{1e300, 4e300}) / 2e300, 1.0, 0x1p-50);
 }
 
-TEST(Roots, of_what_has_none) {
+TEST(Roots, roots_of_special_values_follow_cmath) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   for (const unsigned degree : {1U, 2U, 3U}) {
     EXPECT_EQ(root(degree, 0.0), 0.0);
@@ -47,7 +47,7 @@ TEST(Roots, of_what_has_none) {
   }
 }
 
-TEST(Roots, are_the_same_on_every_machine) {
+TEST(Roots, roots_are_equal_on_every_machine) {
   std::uint64_t state = 0;
   const auto number = [&state] {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;

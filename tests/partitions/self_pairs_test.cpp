@@ -1,4 +1,4 @@
-// self_pairs against the slow obvious twin on scenes made to break partitions.
+// self_pairs compared with brute force, on scenes that are hard for partitions.
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ class SelfPairs : public Conformance {
     for (const Scene& scene : scenes) {
       SCOPED_TRACE(scene.name);
       World world(config());
-      // A partition that reports every pair needs no large scenes to be wrong.
+      // A partition that reports every pair is too slow for large scenes.
       if (!world.partition().is_exact() && scene.boxes.size() > 1100) continue;
       world.insert(scene.boxes);
       PairBuffer buffer;
@@ -29,28 +29,28 @@ class SelfPairs : public Conformance {
   }
 };
 
-TEST_P(SelfPairs, are_right_on_random_scenes) {
+TEST_P(SelfPairs, pairs_of_random_scenes_are_right) {
   expect_right_pairs(random_scenes());
 }
 
-TEST_P(SelfPairs, are_right_on_degenerate_scenes) {
+TEST_P(SelfPairs, pairs_of_degenerate_scenes_are_right) {
   expect_right_pairs(degenerate_scenes());
 }
 
-TEST_P(SelfPairs, are_right_with_infinite_boxes) {
+TEST_P(SelfPairs, pairs_of_infinite_boxes_are_right) {
   expect_right_pairs(infinite_scenes());
 }
 
-TEST_P(SelfPairs, are_right_at_the_ends_of_the_float_range) {
+TEST_P(SelfPairs, pairs_at_float_range_ends_are_right) {
   expect_right_pairs(extreme_float_scenes());
 }
 
-TEST_P(SelfPairs, are_right_at_every_block_boundary) {
+TEST_P(SelfPairs, pairs_at_every_block_boundary_are_right) {
   expect_right_pairs(block_boundary_scenes());
 }
 
 // Sorting, bucketing and tree building must not depend on the order of insertion.
-TEST_P(SelfPairs, are_right_for_sorted_and_reversed_input) {
+TEST_P(SelfPairs, pairs_of_sorted_and_reversed_input_are_right) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Aabb> boxes = uniform_boxes(600);
     std::sort(boxes.begin(), boxes.end(),
@@ -65,7 +65,7 @@ TEST_P(SelfPairs, are_right_for_sorted_and_reversed_input) {
   }
 }
 
-TEST_P(SelfPairs, need_no_refresh_and_do_not_mind_one) {
+TEST_P(SelfPairs, pairs_after_an_explicit_refresh_are_right) {
   World world(config());
   world.insert(uniform_boxes(500));
   const Status status = world.threads().run([&] { return world.partition().refresh(); });

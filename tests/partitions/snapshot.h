@@ -8,16 +8,16 @@
 
 namespace winnow::test {
 
-/// What a caller can see of a partition. Taken before a call that must be refused and compared
-/// after it.
+/// The state of a partition that callers can read. Taken before a call that must be refused, and
+/// compared afterwards.
 class Snapshot {
  public:
   explicit Snapshot(World& world) : world_(world), pairs_(canonical_pairs()) {}
 
-  /// True if the call was answered with `expected` and nothing a caller can see has changed.
+  /// Returns true if the call returned `expected` and no readable state has changed.
   [[nodiscard]] testing::AssertionResult refused(Status status, Status expected) {
     if (status != expected) {
-      return testing::AssertionFailure() << "answered " << winnow::to_string(status)
+      return testing::AssertionFailure() << "returned " << winnow::to_string(status)
                                          << " instead of " << winnow::to_string(expected);
     }
     return unchanged();

@@ -1,4 +1,4 @@
-// Objects that jump away from the others of their block of a tree, or out of their cells.
+// Objects that jump away from the other objects of their tree block, or out of their cells.
 
 #include <winnow/partitions/partition.h>
 
@@ -15,7 +15,7 @@
 namespace winnow::test {
 namespace {
 
-// A share of the boxes goes to where others were.
+// Moves a share of the boxes to positions of other boxes.
 std::vector<std::size_t> jump(std::vector<Aabb>& boxes, double share, Random& random) {
   std::vector<std::size_t> jumped;
   const std::vector<Aabb> before = boxes;
@@ -29,7 +29,7 @@ std::vector<std::size_t> jump(std::vector<Aabb>& boxes, double share, Random& ra
   return jumped;
 }
 
-TEST(Strays, cost_the_others_of_their_block_nothing) {
+TEST(Strays, stray_costs_its_block_no_tests) {
   std::vector<Aabb> boxes = uniform_boxes(8000);
   Partition partition(linear_bvh());
   std::vector<Key> keys(boxes.size());
@@ -48,9 +48,9 @@ TEST(Strays, cost_the_others_of_their_block_nothing) {
   EXPECT_LT(partition.statistics().builds, 6U);
 }
 
-// Blocks of large objects are wide without any that have jumped, and no longer once these are
-// small.
-TEST(Strays, are_found_after_other_blocks_were_wide) {
+// Blocks of large objects are wide although no object has jumped, and are no longer wide after the
+// objects have become small.
+TEST(Strays, strays_are_found_after_blocks_were_wide) {
   constexpr std::size_t kObjects = 8000;
   constexpr std::size_t kLarge = 200;
   const std::vector<Aabb> small = uniform_boxes(kObjects);
@@ -84,7 +84,7 @@ TEST(Strays, are_found_after_other_blocks_were_wide) {
 
 class StrayObjects : public Conformance {};
 
-TEST_P(StrayObjects, are_in_no_missing_pair) {
+TEST_P(StrayObjects, strays_miss_no_pair) {
   for (const double share : {0.002, 0.02, 0.2}) {
     std::vector<Aabb> boxes = mixed_boxes(scaled(900));
     boxes[3].max = Vec3f::constant(std::numeric_limits<float>::infinity());
@@ -113,8 +113,8 @@ std::vector<Config> grids() {
 
 class Leavers : public Conformance {};
 
-// Of so many cells a task looks through several lines, each of which some may have left.
-TEST_P(Leavers, are_in_no_missing_pair_where_cells_are_many) {
+// With this many cells a task reads several lines, each of which objects may have left.
+TEST_P(Leavers, objects_that_leave_cells_miss_no_pair) {
   World world(config());
   std::vector<Aabb> boxes = uniform_boxes(12000);
   const std::vector<Key> keys = world.insert(boxes);
@@ -131,9 +131,9 @@ TEST_P(Leavers, are_in_no_missing_pair_where_cells_are_many) {
 
 class Newcomers : public Conformance {};
 
-// The tail grows and shrinks by a few blocks, is sorted and is moved from, with filters and
-// without.
-TEST_P(Newcomers, are_in_no_missing_pair_however_few_come_and_go) {
+// The tail grows and shrinks by a few blocks, is sorted, and gives objects to the order, with and
+// without filters.
+TEST_P(Newcomers, newcomers_miss_no_pair) {
   for (const bool filtered : {false, true}) {
     World world(config());
     const std::vector<Aabb> places = uniform_boxes(scaled(900));

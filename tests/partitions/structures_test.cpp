@@ -1,5 +1,5 @@
-// Structures as values: which there are, and how a partition exchanges its own while the objects
-// stay.
+// Structures as values: the list of structures, and the exchange of the structure of a partition
+// that keeps its objects.
 
 #include <winnow/partitions/partition.h>
 
@@ -20,7 +20,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(Structures, are_found_by_their_names) {
+TEST(Structures, structures_are_found_by_name) {
   std::set<std::string_view> names;
   for (const StructureKind kind : all_structures()) {
     EXPECT_TRUE(names.insert(kind.name()).second) << kind.name();
@@ -31,7 +31,7 @@ TEST(Structures, are_found_by_their_names) {
   EXPECT_EQ(structure_named("no such structure"), StructureKind{});
 }
 
-TEST(Structures, can_be_exchanged_while_objects_stay) {
+TEST(Structures, exchanged_structure_keeps_the_objects) {
   Partition partition(linear_bvh());
   const std::vector<Aabb> boxes{{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
   std::vector<Key> keys(2);
@@ -46,8 +46,8 @@ TEST(Structures, can_be_exchanged_while_objects_stay) {
   EXPECT_EQ(partition.name(), "FlatGrid");
 }
 
-// A buffer that a structure without tests has filled is not updated, but filled anew.
-TEST(Structures, report_what_they_are_exact_about_when_exchanged) {
+// The buffer of a structure without exact tests is not updated but filled again.
+TEST(Structures, exchange_updates_the_exactness_of_pairs) {
   Partition partition(n_squared());
   const std::vector<Aabb> boxes = uniform_boxes(100);
   std::vector<Key> keys(boxes.size());
@@ -67,9 +67,9 @@ TEST(Structures, report_what_they_are_exact_about_when_exchanged) {
   }
 }
 
-// Every structure after every other one, in a scene that moves, with filters, a tracked buffer and
-// events.
-TEST(Structures, keep_keys_filters_pairs_and_events_when_exchanged) {
+// Exchanges every structure for every other one, in a moving scene with filters, a tracked buffer
+// and events.
+TEST(Structures, exchange_keeps_keys_filters_pairs_and_events) {
   const Config config{"LinearBvh", active_isa(), 2};
   World world(config);
   World twin(config);
@@ -104,7 +104,7 @@ TEST(Structures, keep_keys_filters_pairs_and_events_when_exchanged) {
   }
 }
 
-TEST(Structures, are_told_what_the_automatic_choice_holds) {
+TEST(Structures, choice_names_the_structure_in_use) {
   Partition partition(automatic());
   const std::vector<Aabb> boxes = uniform_boxes(3000);
   std::vector<Key> keys(boxes.size());
@@ -117,7 +117,7 @@ TEST(Structures, are_told_what_the_automatic_choice_holds) {
   EXPECT_FALSE(choice.reason.empty());
 }
 
-// What holds no state refuses every call with one status, and changes nothing.
+// Expects that a partition without state refuses every call with one status and changes nothing.
 void expect_all_refused(Partition& partition, Status status) {
   const std::vector<Aabb> boxes(1);
   std::vector<Key> keys(1);
@@ -150,7 +150,7 @@ void expect_all_refused(Partition& partition, Status status) {
   partition.release_memory();
 }
 
-TEST(Structures, of_cells_leave_all_to_the_tree_where_many_objects_suit_no_cell) {
+TEST(Structures, objects_unsuitable_for_cells_use_the_tree) {
   constexpr std::size_t kObjects = 4000;
   const auto cells = [](StructureKind kind, const std::vector<Aabb>& boxes) {
     Partition partition(kind, {.execution = Execution::serial()});
@@ -166,7 +166,7 @@ TEST(Structures, of_cells_leave_all_to_the_tree_where_many_objects_suit_no_cell)
   }
 }
 
-TEST(Structures, that_are_none_are_refused) {
+TEST(Structures, default_structure_kind_is_refused) {
   Partition partition{StructureKind{}};
   expect_all_refused(partition, Status::invalid_argument);
   Partition good(linear_bvh());
@@ -174,7 +174,7 @@ TEST(Structures, that_are_none_are_refused) {
   EXPECT_EQ(good.name(), "LinearBvh");
 }
 
-TEST(Structures, leave_nothing_behind_when_a_partition_moves) {
+TEST(Structures, moved_from_partition_refuses_all_calls) {
   Partition from(sweep_and_prune());
   Key key;
   ASSERT_EQ(from.insert(Aabb{{0, 0, 0}, {1, 1, 1}}, 5, key), Status::ok);
@@ -185,7 +185,7 @@ TEST(Structures, leave_nothing_behind_when_a_partition_moves) {
   EXPECT_EQ(from.client_data_of(key.id), 5U);
 }
 
-TEST(Structures, whose_memory_is_refused_say_so) {
+TEST(Structures, refused_memory_is_reported) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const StructureKind kind : all_structures()) {
     CountingMemory memory;
@@ -210,8 +210,8 @@ TEST(Structures, whose_memory_is_refused_say_so) {
 }
 
 #if WINNOW_TEST_THREADS
-// A refresh orders rows anew; who looks up a box meanwhile must get that object's.
-TEST(Structures, give_right_boxes_while_a_query_refreshes) {
+// A refresh reorders rows; a concurrent bounds() must return the box of its object.
+TEST(Structures, bounds_during_a_refresh_are_right) {
   for (const StructureKind kind : {linear_bvh(), hierarchical_grid(), automatic()}) {
     Partition partition(kind);
     std::vector<Aabb> boxes = uniform_boxes(3000);

@@ -20,7 +20,7 @@ struct Search {
   bool all = false;
   std::vector<std::uint32_t> found;
 
-  /// Rows of which row % one_in is 0 are looked for.
+  /// Searches rows with row % one_in == 0.
   Search(std::size_t units_in, std::size_t one_in, std::size_t most_in)
       : units(units_in), most(most_in) {
     const std::size_t rows = kRowsOfUnit * units;
@@ -45,7 +45,7 @@ struct Search {
   }
 };
 
-TEST(AppendInOrder, finds_rows_in_order_and_looks_at_each_unit_once) {
+TEST(AppendInOrder, rows_are_in_order_and_units_read_once) {
   for (const std::size_t units : {1U, 3U, 7U, 8U, 13U, 64U, 65U, 1000U}) {
     const Search search(units, 5, kRowsOfUnit * units);
     EXPECT_TRUE(search.all);
@@ -56,14 +56,14 @@ TEST(AppendInOrder, finds_rows_in_order_and_looks_at_each_unit_once) {
   }
 }
 
-TEST(AppendInOrder, ends_where_a_sample_promises_too_many) {
+TEST(AppendInOrder, sample_with_too_many_rows_stops_the_search) {
   const Search search(1000, 1, 1000);
   EXPECT_FALSE(search.all);
   EXPECT_TRUE(search.found.empty());
   EXPECT_LT(search.looked_at, 200U);
 }
 
-TEST(AppendInOrder, says_so_where_there_is_one_more_than_may_be) {
+TEST(AppendInOrder, one_row_over_the_limit_is_reported) {
   const std::size_t rows = 5 * 200;
   EXPECT_TRUE(Search(rows / kRowsOfUnit, 5, 200).all);
   const Search one_more(rows / kRowsOfUnit, 5, 199);
@@ -72,7 +72,7 @@ TEST(AppendInOrder, says_so_where_there_is_one_more_than_may_be) {
   EXPECT_EQ(one_more.looked_at, one_more.units);
 }
 
-TEST(EvenStretches, are_as_many_for_each_of_eight_threads) {
+TEST(EvenStretches, stretches_are_even_for_eight_threads) {
   for (const std::size_t longest : {1U, 64U, 100U, 8192U, 16384U}) {
     for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 8193U, 16385U, 100000U, 1000003U}) {
       const std::size_t length = even_stretch(count, longest);

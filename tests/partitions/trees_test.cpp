@@ -1,5 +1,5 @@
-// What the conformance suite cannot know of the trees: what their orders are worth, counted in
-// tests of 16 boxes, and how looseness and levels behave at their ends.
+// Trees beyond the conformance suite: the quality of their orders, counted in tests of 16 boxes,
+// and the limits of looseness and levels.
 
 #include <winnow/core/eigen.h>
 #include <winnow/partitions/partition.h>
@@ -37,7 +37,7 @@ std::uint64_t tests_of_pairs(const std::string& name, const std::vector<Aabb>& b
   return tests_of_pairs(partition);
 }
 
-// The same pairs as brute force.
+// Expects the pairs of brute force.
 void expect_right_pairs(const Partition& partition, const std::vector<Aabb>& boxes) {
   Partition judge(bounds_n_squared());
   fill(judge, boxes);
@@ -48,7 +48,7 @@ void expect_right_pairs(const Partition& partition, const std::vector<Aabb>& box
   EXPECT_TRUE(std::ranges::equal(found.pairs(), expected.pairs()));
 }
 
-// All boxes in one plane.
+// Returns boxes in one plane.
 std::vector<Aabb> flat_boxes(std::size_t count) {
   std::vector<Aabb> boxes = uniform_boxes(count);
   const float spread = 3.0F;
@@ -61,7 +61,7 @@ std::vector<Aabb> flat_boxes(std::size_t count) {
   return boxes;
 }
 
-// A third of the boxes stand on one floor.
+// Returns boxes of which a third rest on one floor.
 std::vector<Aabb> floor_boxes(std::size_t count) {
   std::vector<Aabb> boxes = uniform_boxes(count);
   for (std::size_t i = 0; i < boxes.size(); i += 3) {
@@ -71,7 +71,7 @@ std::vector<Aabb> floor_boxes(std::size_t count) {
   return boxes;
 }
 
-TEST(LinearBvhOrder, costs_hardly_more_tests_than_a_search_finds_wherever_objects_lie) {
+TEST(LinearBvhOrder, order_needs_hardly_more_tests_than_static_order) {
   for (const std::size_t objects : {1000U, 5000U, 20000U}) {
     for (const auto& boxes :
          {uniform_boxes(objects), clustered_boxes(objects), mixed_boxes(objects),
@@ -82,16 +82,16 @@ TEST(LinearBvhOrder, costs_hardly_more_tests_than_a_search_finds_wherever_object
   }
 }
 
-// Moves every object to where another one was, `by` further on.
+// Moves every object to the position of another one, `by` places further.
 std::vector<Aabb> passed_on(const std::vector<Aabb>& boxes, std::size_t by) {
   std::vector<Aabb> next = boxes;
   std::rotate(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(by), next.end());
   return next;
 }
 
-// Then orders are cut in cells, where cells tell the objects apart.
-TEST(LinearBvhOrder, that_is_torn_in_each_frame_misses_no_pair_and_is_the_same_on_any_threads) {
-  constexpr std::size_t kObjects = 18000;  // more than are put in tiles at once
+// Orders are then split by cells, if cells separate the objects.
+TEST(LinearBvhOrder, torn_order_is_right_and_independent_of_threads) {
+  constexpr std::size_t kObjects = 18000;  // more than fit into one set of tiles
   const std::vector<Aabb> one_place(kObjects / 40, Aabb{{1, 2, 3}, {2, 3, 4}});
   std::vector<Aabb> line = uniform_boxes(kObjects);
   for (Aabb& box : line) box = {{box.min.x() * 30.0F, 0, 0}, {box.min.x() * 30.0F + 1.0F, 1, 1}};
@@ -118,7 +118,7 @@ TEST(LinearBvhOrder, that_is_torn_in_each_frame_misses_no_pair_and_is_the_same_o
   }
 }
 
-// Uniform boxes, of which every so many is dust at one place instead.
+// Returns uniform boxes, but every `every`-th is tiny and near the origin.
 std::vector<Aabb> boxes_and_dust(std::size_t count, std::size_t every) {
   std::vector<Aabb> boxes = uniform_boxes(count);
   for (std::size_t i = every / 2; i < count; i += every) {
@@ -128,15 +128,15 @@ std::vector<Aabb> boxes_and_dust(std::size_t count, std::size_t every) {
   return boxes;
 }
 
-// Samples of the rows must not see one of the kinds alone.
-TEST(LinearBvhOrder, costs_no_more_where_kinds_of_objects_come_by_turns) {
+// Samples of the rows must not contain only one of the kinds.
+TEST(LinearBvhOrder, alternating_object_sizes_cost_no_more_tests) {
   const auto tests_of_torn = [](const std::vector<Aabb>& boxes) {
     Partition partition(linear_bvh(), {.execution = Execution::serial()});
     const std::vector<Key> keys = fill(partition, boxes);
     std::uint64_t most = 0;
     for (std::size_t frame = 1; frame < 4; ++frame) {
       most = std::max(most, tests_of_pairs(partition));
-      // Dust stays dust.
+      // Tiny boxes change places only with tiny boxes.
       const std::vector<Aabb> moved = passed_on(boxes, 168 * frame);
       EXPECT_EQ(partition.update(keys, BoxView(std::span(moved))), Status::ok);
     }
@@ -154,8 +154,8 @@ TEST(LinearBvhOrder, costs_no_more_where_kinds_of_objects_come_by_turns) {
   }
 }
 
-// Not all goes far that goes farther than dust does.
-TEST(TreeOrder, is_kept_where_large_objects_move_by_little_of_their_size_among_dust) {
+// A step that is long for a tiny box may be short for a large one.
+TEST(TreeOrder, order_survives_small_moves_of_large_objects) {
   for (const StructureKind& kind : {linear_bvh(), static_bvh()}) {
     Partition partition(kind);
     std::vector<Aabb> boxes = boxes_and_dust(4000, 2);
@@ -178,7 +178,7 @@ TEST(TreeOrder, is_kept_where_large_objects_move_by_little_of_their_size_among_d
   }
 }
 
-TEST(StaticBvhOrder, costs_no_more_tests_than_that_of_linear_bvh) {
+TEST(StaticBvhOrder, static_order_needs_no_more_tests_than_linear) {
   constexpr std::size_t kObjects = 20000;
   for (const auto& boxes : {uniform_boxes(kObjects), clustered_boxes(kObjects),
                             mixed_boxes(kObjects), pile_boxes(kObjects), flat_boxes(kObjects)}) {
@@ -186,19 +186,19 @@ TEST(StaticBvhOrder, costs_no_more_tests_than_that_of_linear_bvh) {
   }
 }
 
-TEST(StaticBvhOrder, leaves_no_places_empty) {
+TEST(StaticBvhOrder, static_order_leaves_no_empty_places) {
   Partition tree(static_bvh());
   fill(tree, mixed_boxes(5003));
   ASSERT_EQ(tree.refresh(), Status::ok);
   EXPECT_EQ(tree.statistics().cells, (5003U + 15U) / 16U);
 }
 
-TEST(LooseOctreeLevels, of_two_axes_cost_no_more_than_of_three_in_a_flat_world) {
+TEST(LooseOctreeLevels, quadtree_needs_no_more_tests_in_flat_worlds) {
   const std::vector<Aabb> boxes = flat_boxes(20000);
   EXPECT_LE(tests_of_pairs("LooseQuadtree", boxes), tests_of_pairs("LooseOctree", boxes));
 }
 
-TEST(LooseOctreeLevels, are_bounded_for_any_range_of_sizes) {
+TEST(LooseOctreeLevels, levels_are_bounded_for_any_sizes) {
   std::vector<Aabb> boxes = uniform_boxes(600);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const float edge = std::pow(10.0F, -9.0F + 12.0F * static_cast<float>(i) / 600.0F);
@@ -212,7 +212,7 @@ TEST(LooseOctreeLevels, are_bounded_for_any_range_of_sizes) {
   EXPECT_GT(tree.statistics().cells, 1U);
 }
 
-TEST(LooseFactor, of_any_value_gives_the_same_pairs) {
+TEST(LooseFactor, any_loose_factor_gives_the_same_pairs) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<Aabb> boxes = mixed_boxes(800);
   for (const float loose : {-kInfinity, 0.0F, 1.0F, 1.5F, 2.0F, 100.0F, kInfinity,
@@ -227,14 +227,14 @@ TEST(LooseFactor, of_any_value_gives_the_same_pairs) {
   }
 }
 
-TEST(LooseFactor, lets_objects_move_by_half_of_their_size_without_leaving_their_nodes) {
+TEST(LooseFactor, move_by_half_the_size_keeps_the_node) {
   std::vector<Aabb> boxes = mixed_boxes(4000);
   Partition tree(loose_octree());
   const std::vector<Key> keys = fill(tree, boxes);
   ASSERT_EQ(tree.refresh(), Status::ok);
   const Statistics before = tree.statistics();
   for (Aabb& box : boxes) {
-    // Of the box's own edge, which is no longer than its cell's: less than that is loose by.
+    // In units of the edge of the box, which is no longer than its cell; the looseness is larger.
     const float step = 0.6F * (box.max.x() - box.min.x());
     as_eigen(box.min).array() += step;
     as_eigen(box.max).array() += step;

@@ -1,5 +1,4 @@
-// Partitions of spheres and k-DOPs: every pair of volumes that overlap, by the volumes' own slow
-// test.
+// Partitions of spheres and k-DOPs, compared with a brute-force test of the volumes.
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/kdop.h>
@@ -34,7 +33,7 @@ std::vector<Sphere> spheres_around(const std::vector<Aabb>& boxes) {
   return spheres;
 }
 
-// Tetrahedra in the boxes, so that k-DOPs tell apart what boxes do not.
+// Returns k-DOPs of tetrahedra in the boxes, which separate some pairs whose boxes overlap.
 template <int K>
 std::vector<Kdop<K>> kdops_in(const std::vector<Aabb>& boxes) {
   std::vector<Kdop<K>> kdops;
@@ -92,23 +91,23 @@ class Volumes : public Conformance {
   }
 };
 
-TEST_P(Volumes, that_are_14_dops_are_right) {
+TEST_P(Volumes, pairs_of_14_dops_are_right) {
   expect_right_kdops<14>();
 }
-TEST_P(Volumes, that_are_18_dops_are_right) {
+TEST_P(Volumes, pairs_of_18_dops_are_right) {
   expect_right_kdops<18>();
 }
-TEST_P(Volumes, that_are_26_dops_are_right) {
+TEST_P(Volumes, pairs_of_26_dops_are_right) {
   expect_right_kdops<26>();
 }
 
-// Every true pair; besides them only such as miss each other by less than a millionth.
-TEST_P(Volumes, that_are_spheres_are_right) {
+// Every true pair must be reported, and otherwise only pairs with a gap below a millionth.
+TEST_P(Volumes, pairs_of_spheres_are_right) {
   Threads threads(config().threads);
   for (const double scale : {1.0, 1e-12, 1e12}) {
     Partition partition = make(Volume::sphere);
     std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
-    // Touching spheres on a lattice, on which rounding must not lose a pair.
+    // Touching spheres on a lattice, of which rounding must not lose a pair.
     for (int i = 0; i < 60; ++i) {
       spheres.push_back(
           {{static_cast<float>(i % 5), static_cast<float>(i / 5 % 4), static_cast<float>(i / 20)},
@@ -132,7 +131,7 @@ TEST_P(Volumes, that_are_spheres_are_right) {
   }
 }
 
-TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
+TEST_P(Volumes, volumes_given_as_boxes_miss_no_box_pair) {
   Threads threads(config().threads);
   const std::vector<Aabb> boxes = mixed_boxes(500);
   const std::vector<Pair> truth = true_pairs(numbered(boxes));
@@ -153,8 +152,9 @@ TEST_P(Volumes, given_as_boxes_report_every_pair_of_boxes) {
   }
 }
 
-// Whatever bounds them: a structure that tests volumes leaves out none that others find.
-TEST_P(Volumes, of_two_partitions_are_pairs_of_boxes) {
+// pairs_with compares boxes, whatever the volumes, and no structure that tests volumes misses a
+// pair.
+TEST_P(Volumes, pairs_of_two_partitions_compare_boxes) {
   Threads threads(config().threads);
   const std::vector<Aabb> boxes = mixed_boxes(300);
   const std::vector<Aabb> others = uniform_boxes(200);
@@ -183,8 +183,8 @@ TEST_P(Volumes, of_two_partitions_are_pairs_of_boxes) {
   }
 }
 
-// What moved is asked about alone, and a partition of boxes asks about boxes.
-TEST_P(Volumes, are_followed_from_frame_to_frame) {
+// Queries only the moved objects; the partition of boxes compares boxes.
+TEST_P(Volumes, moving_volumes_are_right_in_every_frame) {
   Threads threads(config().threads);
   std::vector<Aabb> boxes = uniform_boxes(700);
   const std::vector<Aabb> others = mixed_boxes(60);
@@ -218,7 +218,7 @@ TEST_P(Volumes, are_followed_from_frame_to_frame) {
   EXPECT_GT(made.statistics().incremental_queries, 0U);
 }
 
-TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
+TEST_P(Volumes, volumes_of_another_kind_are_refused) {
   std::vector<Key> keys(1);
   const std::vector<Sphere> sphere{{{0, 0, 0}, 1}};
   const std::vector<Kdop<14>> kdop{Kdop<14>::around(Aabb{{0, 0, 0}, {1, 1, 1}})};
@@ -233,7 +233,7 @@ TEST_P(Volumes, of_another_kind_than_the_partitions_are_refused) {
   }
 }
 
-TEST_P(Volumes, that_there_are_not_make_no_partition) {
+TEST_P(Volumes, unknown_volume_is_refused) {
   const auto none = static_cast<Volume>(17);
   Partition partition(bounds_n_squared(), {.volume = none});
   EXPECT_EQ(partition.status(), Status::invalid_argument);
@@ -241,7 +241,7 @@ TEST_P(Volumes, that_there_are_not_make_no_partition) {
   EXPECT_EQ(partition.insert(Aabb{{0, 0, 0}, {1, 1, 1}}, 0, key), Status::invalid_argument);
 }
 
-TEST_P(Volumes, that_are_invalid_change_nothing) {
+TEST_P(Volumes, invalid_volumes_change_nothing) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   Partition partition = make(Volume::sphere);
   std::vector<Sphere> spheres = spheres_around(uniform_boxes(40));
@@ -258,7 +258,7 @@ TEST_P(Volumes, that_are_invalid_change_nothing) {
   }
 }
 
-// Those that take volumes from the caller and test them.
+// Returns the configurations that take volumes from the caller and test them.
 std::vector<Config> volume_configs() {
   std::vector<Config> configs;
   for (const Config& config : all_configs()) {
@@ -271,7 +271,7 @@ std::vector<Config> volume_configs() {
 INSTANTIATE_TEST_SUITE_P(All, Volumes, testing::ValuesIn(volume_configs()),
                          testing::PrintToStringParamName());
 
-TEST(VolumesGivenAsBoxes, are_kept_by_every_partition) {
+TEST(VolumesGivenAsBoxes, every_partition_accepts_volumes_given_as_boxes) {
   const std::vector<Aabb> boxes = mixed_boxes(300);
   for (const std::string_view name : structure_names()) {
     for (const Volume volume : {Volume::sphere, Volume::kdop26}) {
@@ -291,7 +291,7 @@ TEST(VolumesGivenAsBoxes, are_kept_by_every_partition) {
 }
 
 // A tree of other volumes is a tree of their boxes.
-TEST(VolumesGivenAsBoxes, are_pruned_as_boxes_are) {
+TEST(VolumesGivenAsBoxes, volumes_given_as_boxes_are_pruned_as_boxes) {
   const std::vector<Aabb> boxes = uniform_boxes(5000);
   std::uint64_t tests_of_boxes = 0;
   for (const Volume volume : {Volume::aabb, Volume::kdop14, Volume::kdop26}) {

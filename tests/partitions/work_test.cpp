@@ -1,6 +1,6 @@
-// How much work a query does, counted in tests of 16 boxes and not in time, so that it repeats
-// exactly: hostile scenes must not cost much more than their number of pairs demands, and objects
-// that stay where they are must not cost what moving ones do.
+// The work of queries, counted in tests of 16 boxes and not in time, so that it repeats exactly:
+// hostile scenes must not cost much more than their number of pairs demands, and objects at rest
+// must cost less than moving ones.
 
 #include <algorithm>
 #include <initializer_list>
@@ -20,8 +20,8 @@ class Work : public Conformance {};
 // Partitions with cells or a tree; the others test every pair by design.
 class BoundedWork : public Work {
  protected:
-  // At most 32 tests an object and one a pair. Brute force needs 625 an object at this size, kind
-  // scenes about five.
+  // Allows 32 tests for each object and one for each pair. Brute force needs 625 for each object at
+  // this size, easy scenes about five.
   void expect_bounded(const std::vector<Aabb>& boxes) {
     World world(config());
     world.insert(boxes);
@@ -33,35 +33,35 @@ class BoundedWork : public Work {
   }
 };
 
-TEST_P(BoundedWork, holds_on_uniform_boxes) {
+TEST_P(BoundedWork, uniform_boxes_need_few_tests) {
   expect_bounded(uniform_boxes(kObjects));
 }
-TEST_P(BoundedWork, holds_on_few_dense_clusters) {
+TEST_P(BoundedWork, dense_clusters_need_few_tests) {
   expect_bounded(clustered_boxes(kObjects));
 }
-TEST_P(BoundedWork, holds_on_mixed_sizes) {
+TEST_P(BoundedWork, mixed_sizes_need_few_tests) {
   expect_bounded(mixed_boxes(kObjects));
 }
-TEST_P(BoundedWork, holds_where_all_overlap_on_x) {
+TEST_P(BoundedWork, boxes_that_overlap_on_x_need_few_tests) {
   expect_bounded(wall_boxes(kObjects, 0));
 }
-TEST_P(BoundedWork, holds_where_all_overlap_on_y) {
+TEST_P(BoundedWork, boxes_that_overlap_on_y_need_few_tests) {
   expect_bounded(wall_boxes(kObjects, 1));
 }
-TEST_P(BoundedWork, holds_where_all_overlap_on_z) {
+TEST_P(BoundedWork, boxes_that_overlap_on_z_need_few_tests) {
   expect_bounded(wall_boxes(kObjects, 2));
 }
-TEST_P(BoundedWork, holds_with_one_far_outlier) {
+TEST_P(BoundedWork, one_far_outlier_needs_few_tests) {
   expect_bounded(outlier_boxes(kObjects));
 }
-TEST_P(BoundedWork, holds_on_two_scales) {
+TEST_P(BoundedWork, two_scales_need_few_tests) {
   expect_bounded(two_scale_boxes(kObjects));
 }
-TEST_P(BoundedWork, holds_on_exponential_sizes) {
+TEST_P(BoundedWork, exponential_sizes_need_few_tests) {
   expect_bounded(exponential_boxes(kObjects));
 }
 
-TEST_P(BoundedWork, holds_with_infinite_boxes_among_ordinary_ones) {
+TEST_P(BoundedWork, infinite_boxes_need_few_tests) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   constexpr float inf = std::numeric_limits<float>::infinity();
   for (int i = 0; i < 8; ++i) {
@@ -71,8 +71,8 @@ TEST_P(BoundedWork, holds_with_infinite_boxes_among_ordinary_ones) {
   expect_bounded(boxes);
 }
 
-// Points on few places: what overlaps must be reported, and no more than that be tested.
-TEST_P(BoundedWork, holds_where_objects_lie_on_each_other) {
+// Points at few places: all overlaps must be reported, and hardly more pairs tested.
+TEST_P(BoundedWork, coincident_objects_need_few_tests) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     boxes[i] = boxes[i / 20 * 20];
@@ -81,8 +81,8 @@ TEST_P(BoundedWork, holds_where_objects_lie_on_each_other) {
   expect_bounded(boxes);
 }
 
-// A structure made for where objects were must not be asked about where they are.
-TEST_P(BoundedWork, holds_in_the_frame_in_which_everything_jumps) {
+// A structure that was built for the old positions must not be used for the new ones.
+TEST_P(BoundedWork, frame_with_all_objects_jumping_needs_few_tests) {
   World world(config());
   const std::vector<Key> keys = world.insert(uniform_boxes(kObjects));
   PairBuffer buffer;
@@ -93,7 +93,7 @@ TEST_P(BoundedWork, holds_in_the_frame_in_which_everything_jumps) {
   EXPECT_LE(world.partition().statistics().last_tests, 32 * boxes.size() + buffer.size());
 }
 
-TEST_P(Work, is_none_in_a_frame_in_which_nothing_moves) {
+TEST_P(Work, frame_without_motion_needs_no_tests) {
   World world(config());
   world.insert(uniform_boxes(2000));
   PairBuffer buffer;
@@ -102,7 +102,7 @@ TEST_P(Work, is_none_in_a_frame_in_which_nothing_moves) {
   EXPECT_EQ(world.partition().statistics().last_tests, 0U);
 }
 
-TEST_P(Work, is_less_than_half_in_a_frame_in_which_one_in_twenty_moves) {
+TEST_P(Work, few_movers_need_under_half_the_tests) {
   World world(config());
   std::vector<Aabb> boxes = uniform_boxes(5000);
   const std::vector<Key> keys = world.insert(boxes);
@@ -122,7 +122,7 @@ TEST_P(Work, is_less_than_half_in_a_frame_in_which_one_in_twenty_moves) {
   EXPECT_LT(2 * few, world.partition().statistics().last_tests);
 }
 
-// Counters, never timings: one instruction set and one thread say what all do.
+// Counters, never timings: the count of one instruction set and one thread holds for all.
 std::vector<Config> configs_without(std::initializer_list<std::string_view> names) {
   std::vector<Config> configs;
   for (const std::string_view name : structure_names()) {

@@ -1,4 +1,5 @@
-// When bodies of composite shapes meet: against the least distance of all pairs of their parts.
+// Times of impact of composite bodies, compared with the least distance over all pairs of their
+// primitives.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -19,20 +20,20 @@ namespace {
 
 constexpr double kTolerance = 1e-6;
 
-/// A convex shape of the twin's pool in the frame of its body.
+/// A convex primitive in the frame of its body.
 struct TwinPart {
   ShapeId shape;
   Pose pose;
 };
 
-/// A shape as a caller has it and what it is made of.
+/// A shape of the library and the list of its convex primitives.
 struct TwinShape {
   ShapeId shape;
   std::vector<TwinPart> parts;
   double radius = 0.0;
 };
 
-/// Shapes of all kinds, small, and their parts.
+/// Small shapes of all kinds with their primitives.
 class TwinShapes {
  public:
   TwinShapes() {
@@ -50,7 +51,7 @@ class TwinShapes {
   ShapePool pool;
   CompositePool composites{pool};
   std::vector<TwinShape> shapes;
-  /// The first ones are composite.
+  /// Number of composite shapes, which come first in `shapes`.
   std::size_t composite_count = 0;
 
  private:
@@ -114,7 +115,7 @@ class TwinShapes {
     for (const CompoundChild& child : children) parts.push_back({child.shape, child.pose});
     put(id, std::move(parts));
   }
-  /// A mesh, a ball and the field.
+  /// Adds a compound of a mesh, a ball and the height field.
   void add_compound_of_surfaces() {
     const TwinShape& mesh = shapes[0];
     const TwinShape& field = shapes[shapes.size() - 2];
@@ -145,7 +146,7 @@ class TwinShapes {
   }
 };
 
-/// Two bodies that move.
+/// Two moving bodies.
 struct MovingTwins {
   const TwinShapes& all;
   const TwinShape* shape[2];
@@ -213,7 +214,7 @@ void make_motion(Random& random, double size, double most_turn, RigidMotion& mot
   if (random.chance(0.2)) motion.turn[random.below(3)] *= 20.0;
 }
 
-/// They are about within reach of each other at some time.
+/// Returns motions that bring the bodies near each other at some time.
 MovingTwins moving_twins(const TwinShapes& all, const TwinShape& a, const TwinShape& b,
                          Random& random) {
   MovingTwins twins{all, {&a, &b}, {}};
@@ -227,10 +228,10 @@ MovingTwins moving_twins(const TwinShapes& all, const TwinShape& a, const TwinSh
   return twins;
 }
 
-struct Asked {
+struct SingleImpact {
   ImpactResult result;
 
-  explicit Asked(const MovingTwins& twins) {
+  explicit SingleImpact(const MovingTwins& twins) {
     const ShapeId shapes[2] = {twins.shape[0]->shape, twins.shape[1]->shape};
     constexpr BodyPair kPair[1] = {{0, 1}};
     const ImpactOptions options{.tolerance = kTolerance, .composites = &twins.all.composites};
@@ -241,8 +242,8 @@ struct Asked {
 };
 
 void check(const MovingTwins& twins, std::size_t looks, std::size_t& unproved, std::size_t& hits) {
-  const Asked asked(twins);
-  const ImpactResult& found = asked.result;
+  const SingleImpact single(twins);
+  const ImpactResult& found = single.result;
   const double time = found.time()[0];
   const double doubt = 1e-8 * std::min(twins.size(), 10.0);
   const Before then =
@@ -260,7 +261,7 @@ void check(const MovingTwins& twins, std::size_t looks, std::size_t& unproved, s
   EXPECT_EQ(found.part_b()[0] == kWholeShape, of_b.size() == 1);
 }
 
-TEST(BodyImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
+TEST(BodyImpact, composite_with_convex_is_never_late) {
   const TwinShapes all;
   Random random(81);
   std::size_t unproved = 0;
@@ -278,7 +279,7 @@ TEST(BodyImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
   EXPECT_GE(hits, count / 12);
 }
 
-TEST(BodyImpact, of_two_composites_is_never_late) {
+TEST(BodyImpact, composite_with_composite_is_never_late) {
   const TwinShapes all;
   Random random(82);
   std::size_t unproved = 0;
@@ -293,7 +294,7 @@ TEST(BodyImpact, of_two_composites_is_never_late) {
   EXPECT_GE(hits, count / 12);
 }
 
-TEST(BodyImpact, starts_at_once_where_parts_overlap_and_with_the_deepest) {
+TEST(BodyImpact, overlapping_parts_hit_at_zero_with_deepest_part) {
   ShapePool pool;
   CompositePool composites(pool);
   ShapeId ball;
@@ -320,8 +321,8 @@ TEST(BodyImpact, starts_at_once_where_parts_overlap_and_with_the_deepest) {
   EXPECT_EQ(found.part_b()[1], 2U);
 }
 
-// A point goes through a vertex that six triangles share, and along an edge.
-TEST(BodyImpact, lets_nothing_through_between_triangles) {
+// Aims a point at a vertex that six triangles share, and at points of an edge.
+TEST(BodyImpact, point_at_shared_edge_or_vertex_hits_mesh) {
   ShapePool pool;
   CompositePool composites(pool);
   const MeshData hills = terrain(6);
@@ -355,7 +356,7 @@ TEST(BodyImpact, lets_nothing_through_between_triangles) {
   }
 }
 
-TEST(BodyImpact, is_looked_for_in_boxes_that_contain_the_whole_way) {
+TEST(BodyImpact, swept_boxes_contain_whole_motion) {
   const TwinShapes all;
   const PartTraversal parts(all.pool, &all.composites);
   Random random(84);
@@ -365,7 +366,7 @@ TEST(BodyImpact, is_looked_for_in_boxes_that_contain_the_whole_way) {
     RigidMotion motion;
     make_motion(random, 3.0, 3.0, frame);
     make_motion(random, 3.0, 3.0, motion);
-    // All of it, or a part that is far from the position of its body.
+    // Either the whole shape, or one primitive far from the position of its body.
     std::vector<TwinPart> shown = shape.parts;
     if (shown.size() > 1 && random.chance(0.5)) {
       shown = {shape.parts[random.below(shape.parts.size())]};
@@ -394,7 +395,7 @@ TEST(BodyImpact, is_looked_for_in_boxes_that_contain_the_whole_way) {
         const Pose placed = MovingTwins::placed(there, part.pose);
         const PreciseBox box = parts.box(PlacedShape{part.shape, placed});
         for (int i = 0; i < 3; ++i) {
-          // Boxes of shapes of the pool are floats.
+          // The pool stores bounds of shapes as floats.
           const double slack = 1e-6 * (1.0 + std::abs(box.max[i] - box.min[i]));
           EXPECT_LE(all_time.min[i], box.min[i] + slack);
           EXPECT_GE(all_time.max[i], box.max[i] - slack);
@@ -406,7 +407,7 @@ TEST(BodyImpact, is_looked_for_in_boxes_that_contain_the_whole_way) {
   }
 }
 
-TEST(BodyImpact, is_the_same_on_any_number_of_threads_and_refuses_what_is_not_there) {
+TEST(BodyImpact, results_match_on_threads_and_bad_pairs_fail) {
   const TwinShapes all;
   Random random(85);
   std::vector<ShapeId> shapes;

@@ -1,4 +1,5 @@
-// Contacts that are carried over from frame to frame, against those of a fresh scene.
+// Contacts that are carried over from frame to frame (SceneOptions::carry_over), compared with a
+// fresh scene.
 
 #include <winnow/winnow.h>
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kCarryOver = 0.1;
 
-/// Balls in a row, two by two, 9 apart.
+/// Pairs of balls, 9 apart.
 struct Balls {
   explicit Balls(std::size_t pairs, double gap) {
     EXPECT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
@@ -32,7 +33,7 @@ struct Balls {
       right.push_back(key);
     }
   }
-  /// Moves both balls of a pair by half.
+  /// Moves the two balls of a pair to the given gap.
   void part(std::size_t pair, double gap) {
     const double y = 9.0 * static_cast<double>(pair);
     ASSERT_EQ(scene.move(left[pair], Pose::at(-0.5 - gap / 2, y, 0)), Status::ok);
@@ -54,7 +55,7 @@ std::set<std::uint32_t> shown_with(const Contacts& contacts, ContactEvent event)
   return ids;
 }
 
-TEST(CarryOver, standing_pairs_tell_which_begin_and_end) {
+TEST(CarryOver, resting_pairs_report_begin_and_end_events) {
   constexpr std::size_t kPairs = 8;
   Balls balls(kPairs, 0.03);
   for (std::size_t i = 0; i < kPairs; i += 2) balls.part(i, -0.01);
@@ -69,12 +70,12 @@ TEST(CarryOver, standing_pairs_tell_which_begin_and_end) {
     EXPECT_EQ(shown_with(contacts, ContactEvent::begun), touching) << frame;
     EXPECT_EQ(contacts.ended().size(), frame == 0 ? 0 : kPairs / 2);
     for (const EndedContact& ended : contacts.ended()) EXPECT_FALSE(touching.contains(ended.b.id));
-    // By more than is carried over, and less than takes either out of its box.
+    // Moves by more than the carry-over, but not out of the fat boxes.
     for (std::size_t i = 0; i < kPairs; ++i) balls.part(i, (i % 2 == 0) != swapped ? 0.12 : -0.01);
   }
 }
 
-TEST(CarryOver, first_contact_among_standing_pairs_begins) {
+TEST(CarryOver, first_contact_among_resting_pairs_begins) {
   Balls balls(3, 0.03);
   Contacts contacts;
   ASSERT_EQ(balls.scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -85,8 +86,8 @@ TEST(CarryOver, first_contact_among_standing_pairs_begins) {
   EXPECT_TRUE(contacts.ended().empty());
 }
 
-/// Other contacts of the scene look at it while the pair sleeps.
-TEST(CarryOver, pair_that_moved_asleep_is_made_anew) {
+/// A second Contacts object calls collide while the pair sleeps.
+TEST(CarryOver, pair_moved_while_asleep_is_recomputed) {
   Balls balls(2, -0.01);
   Contacts contacts;
   Contacts others;
@@ -110,8 +111,9 @@ TEST(CarryOver, pair_that_moved_asleep_is_made_anew) {
   EXPECT_NEAR(contacts.distance()[1], -0.01, 1e-12);
 }
 
-/// Boxes and balls on a mesh: margins are no wider for the sake of what is carried over.
-TEST(CarryOver, first_frame_is_that_of_scene_without) {
+/// Boxes, cylinders and balls on a mesh: carry-over must not widen the contact margin of the first
+/// frame.
+TEST(CarryOver, first_frame_matches_scene_without_carry_over) {
   CompositeWorld world;
   const auto hills = [](float x, float y) {
     return 0.2F * std::sin(3.0F * x) * std::cos(2.0F * y);
@@ -145,8 +147,8 @@ TEST(CarryOver, first_frame_is_that_of_scene_without) {
   }
 }
 
-/// A contact that was left out as that of a seam is not apart.
-TEST(CarryOver, seam_that_becomes_dynamic_is_shown) {
+/// A pair that was dropped as a ghost contact counts as touching.
+TEST(CarryOver, ghost_contact_of_dynamic_floor_is_reported) {
   ShapePool shapes;
   ShapeId tile;
   ShapeId ball;

@@ -1,4 +1,4 @@
-// Questions that all ranks answer together: as one scene does, bit for bit.
+// Collective queries of all ranks, which must give the answers of one scene bit for bit.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/cluster_queries.h>
@@ -18,7 +18,7 @@
 namespace winnow::test {
 namespace {
 
-/// An answer as numbers: names, parts, and the bits of all else.
+/// An answer as numbers: names, parts, and the bits of all other values.
 using FlatAnswer = std::vector<std::uint64_t>;
 
 void add_bits(FlatAnswer& flat, std::initializer_list<double> values) {
@@ -59,7 +59,7 @@ FlatAnswer flat_of(const SceneDistance& body) {
   return flat;
 }
 
-/// Answers of a cluster's ranks beside those of one scene.
+/// Compares the answers of a cluster's rank with the answers of one scene.
 template <typename Answer>
 void expect_answers(const ClusterAnswers<Answer>& found, std::size_t question,
                     const std::vector<FlatAnswer>& expected) {
@@ -89,7 +89,7 @@ ShapeRay random_ray(double size, Random& random) {
   return ray;
 }
 
-/// What ranks ask: some nothing, some with a filter.
+/// Distributes new queries over the ranks. Some ranks may have none.
 template <typename Question, typename Make>
 std::vector<std::vector<Question>> questions_of(std::uint32_t ranks, Random& random, Make&& make) {
   std::vector<std::vector<Question>> all(ranks);
@@ -114,7 +114,7 @@ class ClusterQueryWorld {
     world_.add_ground();
     world_.add(scaled(120), kSize, random);
     world_.check(ContactLevel::boolean);
-    world_.move(0.5, 1.0, random);  // what is asked is where bodies are now
+    world_.move(0.5, 1.0, random);  // after collide: queries use the current poses
     scene_ = world_.one_scene();
     EXPECT_EQ(scene_->refresh(), Status::ok);
   }
@@ -126,7 +126,7 @@ class ClusterQueryWorld {
   std::unique_ptr<Scene> scene_;
 };
 
-TEST(ClusterRays, are_answered_as_by_one_scene) {
+TEST(ClusterRays, hits_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 2U, 5U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(20 + ranks);
@@ -161,7 +161,7 @@ TEST(ClusterRays, are_answered_as_by_one_scene) {
   }
 }
 
-TEST(ClusterRays, that_hit_several_bodies_at_once_tell_of_the_least_name) {
+TEST(ClusterRays, tied_hits_return_least_name) {
   const WorldShapes shapes;
   LoopbackTransport transport(4);
   ClusterScene cluster(transport, shapes.shapes);
@@ -190,7 +190,7 @@ TEST(ClusterRays, that_hit_several_bodies_at_once_tell_of_the_least_name) {
   EXPECT_EQ(queries.neighbours(1).answers[1].name, 7U);
 }
 
-TEST(ClusterOverlaps, are_those_of_one_scene) {
+TEST(ClusterOverlaps, overlaps_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 3U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(30 + ranks);
@@ -218,7 +218,7 @@ TEST(ClusterOverlaps, are_those_of_one_scene) {
   }
 }
 
-TEST(ClusterNeighbours, are_those_of_one_scene) {
+TEST(ClusterNeighbours, neighbours_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 3U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(40 + ranks);
@@ -246,7 +246,7 @@ TEST(ClusterNeighbours, are_those_of_one_scene) {
   }
 }
 
-TEST(ClusterQuestions, that_are_bad_are_refused_on_their_rank) {
+TEST(ClusterQuestions, bad_queries_fail_only_on_their_rank) {
   ClusterQueryWorld world(3);
   ClusterQueries queries(world.world_.cluster());
   const ShapeRay bad{.direction = {0, 0, 0}};
@@ -280,7 +280,7 @@ TEST(ClusterQuestions, that_are_bad_are_refused_on_their_rank) {
   world.world_.check(ContactLevel::boolean);
 }
 
-TEST(ClusterSceneFaults, end_every_later_call) {
+TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
   const WorldShapes shapes;
   Random random(60);
   std::vector<BodyName> names;
@@ -325,12 +325,12 @@ TEST(ClusterSceneFaults, end_every_later_call) {
   EXPECT_LT(fine, 30);
 }
 
-TEST(ClusterRegions, are_met_by_rays_as_their_points_say) {
+TEST(ClusterRegions, ray_reaches_regions_of_its_points) {
   Random random(50);
   for (int round = 0; round < 20; ++round) {
     std::vector<RegionCut> cuts;
     for (std::int32_t i = 0; i < 15; ++i) {
-      // A full tree: cut i has 2i + 1 and 2i + 2 below it, or ranks.
+      // A complete binary tree: cut i has the children 2i + 1 and 2i + 2, and the leaves are ranks.
       const auto side = [](std::int32_t k) { return k < 15 ? k : ~(k - 15); };
       cuts.push_back({static_cast<float>(random.uniform(-3, 3)),
                       static_cast<std::uint32_t>(random.below(3)),
@@ -346,7 +346,7 @@ TEST(ClusterRegions, are_met_by_rays_as_their_points_say) {
         const Vec3f point(static_cast<float>(ray.origin[0] + t * ray.direction[0]),
                           static_cast<float>(ray.origin[1] + t * ray.direction[1]),
                           static_cast<float>(ray.origin[2] + t * ray.direction[2]));
-        // Nearer to a cut than floats are fine, either side is right.
+        // Skip points within float precision of a cut: either owner is correct.
         const std::uint32_t owner = regions.owner(point);
         const Aabb& region = regions.of(owner);
         const Vec3f inner = (point - region.min).min(region.max - point);

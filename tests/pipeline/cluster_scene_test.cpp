@@ -1,4 +1,5 @@
-// Scenes on many ranks in one process: the contacts of one scene, bit for bit, and what is refused.
+// Scenes distributed over many ranks of one process: the contacts equal the contacts of one scene
+// bit for bit, and bad input is refused.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/cluster_scene.h>
@@ -32,7 +33,7 @@ void run_scene_frames(const WorldShapes& shapes, std::uint32_t ranks, ContactLev
   }
 }
 
-TEST(ClusterContacts, are_those_of_one_scene_on_any_number_of_ranks) {
+TEST(ClusterContacts, contacts_match_one_scene_for_any_rank_count) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {1U, 2U, 3U, 5U, 8U, 16U}) {
     for (const ContactLevel level : {ContactLevel::pairs, ContactLevel::boolean,
@@ -42,7 +43,7 @@ TEST(ClusterContacts, are_those_of_one_scene_on_any_number_of_ranks) {
   }
 }
 
-TEST(ClusterContacts, are_those_of_one_scene_with_a_margin_and_with_reduction) {
+TEST(ClusterContacts, margin_and_reduction_match_one_scene) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {2U, 7U}) {
     run_scene_frames(shapes, ranks, ContactLevel::manifold,
@@ -50,7 +51,7 @@ TEST(ClusterContacts, are_those_of_one_scene_with_a_margin_and_with_reduction) {
   }
 }
 
-TEST(ClusterContacts, are_right_on_thousands_of_ranks) {
+TEST(ClusterContacts, thousands_of_ranks_match_one_scene) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {64U, 512U, 4096U}) {
     Random random(ranks);
@@ -63,7 +64,7 @@ TEST(ClusterContacts, are_right_on_thousands_of_ranks) {
   }
 }
 
-TEST(ClusterContacts, have_the_digest_of_one_scene) {
+TEST(ClusterContacts, digest_matches_one_scene) {
   const WorldShapes shapes;
   ClusterDigest first;
   for (const std::uint32_t ranks : {1U, 4U, 9U}) {
@@ -86,7 +87,7 @@ TEST(ClusterContacts, have_the_digest_of_one_scene) {
   }
 }
 
-TEST(ClusterContacts, are_right_while_everything_gathers_and_scatters) {
+TEST(ClusterContacts, gathering_and_scattering_bodies_match_one_scene) {
   const WorldShapes shapes;
   Random random(7);
   ClusterSceneWorld world(shapes, 9);
@@ -102,7 +103,7 @@ TEST(ClusterContacts, are_right_while_everything_gathers_and_scatters) {
   world.check(ContactLevel::distance);
 }
 
-TEST(ClusterContacts, are_right_where_numbers_end) {
+TEST(ClusterContacts, extreme_positions_match_one_scene) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {1U, 2U, 6U}) {
     Random random(8);
@@ -120,7 +121,7 @@ TEST(ClusterContacts, are_right_where_numbers_end) {
   }
 }
 
-TEST(ClusterContacts, follow_composites_that_change_where_they_are) {
+TEST(ClusterContacts, composites_edited_in_place_match_one_scene) {
   WorldShapes shapes;
   Random random(9);
   ClusterSceneWorld world(shapes, 5);
@@ -135,7 +136,7 @@ TEST(ClusterContacts, follow_composites_that_change_where_they_are) {
   }
 }
 
-TEST(ClusterContacts, are_sent_for_nowhere_where_nothing_moves) {
+TEST(ClusterContacts, resting_bodies_send_no_bytes) {
   const WorldShapes shapes;
   Random random(3);
   ClusterSceneWorld world(shapes, 8);
@@ -150,7 +151,7 @@ TEST(ClusterContacts, are_sent_for_nowhere_where_nothing_moves) {
   EXPECT_EQ(world.cluster().statistics().bytes, 0U);
 }
 
-TEST(ClusterCheckpoints, go_on_in_another_number_of_ranks) {
+TEST(ClusterCheckpoints, restore_with_other_rank_count_continues) {
   const WorldShapes shapes;
   Random random(11);
   ClusterSceneWorld world(shapes, 3);
@@ -166,7 +167,7 @@ TEST(ClusterCheckpoints, go_on_in_another_number_of_ranks) {
   }
 }
 
-TEST(ClusterCheckpoints, refuse_other_bytes_and_change_nothing) {
+TEST(ClusterCheckpoints, restore_of_damaged_bytes_changes_nothing) {
   const WorldShapes shapes;
   Random random(12);
   ClusterSceneWorld world(shapes, 2);
@@ -181,7 +182,7 @@ TEST(ClusterCheckpoints, refuse_other_bytes_and_change_nothing) {
     EXPECT_EQ(answers[1], Status::ok);
     return answers[0];
   };
-  // Whole bytes, of names that are there.
+  // An undamaged checkpoint whose names already exist.
   EXPECT_EQ(answer_to(kept[0]), Status::invalid_key);
   EXPECT_EQ(answer_to(kept[1]), Status::invalid_key);
   for (std::size_t size = 1; size < kept[0].size(); size += 1 + size / 5) {
@@ -201,7 +202,7 @@ TEST(ClusterCheckpoints, refuse_other_bytes_and_change_nothing) {
   world.check(ContactLevel::boolean);
 }
 
-/// A rank that is told a batch, where the others are told nothing.
+/// Adds a batch on one rank and empty batches on the others.
 Status add_bodies_on(ClusterScene& cluster, std::uint32_t rank, std::span<const BodyName> names,
                      std::span<const BodyDefinition> bodies) {
   std::vector<ClusterSceneBatch> batches(cluster.hosted());
@@ -211,7 +212,7 @@ Status add_bodies_on(ClusterScene& cluster, std::uint32_t rank, std::span<const 
   return answers[rank];
 }
 
-TEST(ClusterSceneInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
+TEST(ClusterSceneInput, bad_input_fails_only_on_its_rank) {
   const WorldShapes shapes;
   Random random(6);
   ClusterSceneWorld world(shapes, 3);
@@ -268,7 +269,7 @@ TEST(ClusterSceneInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) 
   world.check(ContactLevel::manifold);
 }
 
-TEST(ClusterSceneInput, may_name_anew_what_was_removed) {
+TEST(ClusterSceneInput, removed_name_can_be_used_again) {
   const WorldShapes shapes;
   LoopbackTransport transport(4);
   ClusterScene cluster(transport, shapes.shapes);
@@ -283,7 +284,7 @@ TEST(ClusterSceneInput, may_name_anew_what_was_removed) {
   ASSERT_EQ(add_bodies_on(cluster, 3, std::span(names).first(1), std::span(bodies).first(1)),
             Status::ok);
   ASSERT_EQ(cluster.collide(ContactLevel::boolean), Status::ok);
-  // One pair ended with the body, and another one began.
+  // One pair ended with the removed body, and a new pair began.
   std::size_t begun = 0;
   std::size_t ended = 0;
   for (std::uint32_t rank = 0; rank < 4; ++rank) {
@@ -296,7 +297,7 @@ TEST(ClusterSceneInput, may_name_anew_what_was_removed) {
   EXPECT_EQ(ended, 1U);
 }
 
-TEST(ClusterSceneInput, of_options_out_of_range_ends_all) {
+TEST(ClusterSceneInput, options_out_of_range_fail_every_call) {
   const WorldShapes shapes;
   LoopbackTransport transport(2);
   for (const ClusterSceneOptions& options :

@@ -1,3 +1,6 @@
+// Keeps a table of the bodies of a ClusterScene, builds one Scene from it for each frame, and
+// compares contacts and events. Used by the cluster tests.
+
 #include "tests/pipeline/cluster_scene_world.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +97,7 @@ void ClusterSceneWorld::add_ground() {
   std::vector<BodyName> names;
   std::vector<BodyDefinition> bodies;
   for (const ShapeId shape : shapes_.ground) {
-    // The least, the greatest, and ones in between.
+    // Names include 0 and the greatest value.
     const BodyName name = (next_++ - 1) * 0x5555555555555555ULL;
     BodyDefinition body{.shape = shape, .pose = Pose::at(0, 0, 0.5), .motion = Motion::fixed};
     body.data = name;
@@ -183,7 +186,7 @@ void ClusterSceneWorld::remove(std::size_t count, Random& random) {
   }
 }
 
-/// What each rank says of arrivals leads to where bodies are.
+/// Updates the rank of each body from the arrivals that the ranks report.
 void ClusterSceneWorld::follow() {
   std::size_t bodies = 0;
   for (std::uint32_t rank = 0; rank < cluster_->ranks(); ++rank) {
@@ -233,7 +236,8 @@ std::vector<FlatContact> ClusterSceneWorld::expected(ContactLevel level) const {
   return flat;
 }
 
-/// What touched and persists no more has ended, on one rank.
+/// Each pair that touched before and does not persist must be reported as ended by exactly one
+/// rank.
 void ClusterSceneWorld::check_events(const std::vector<FlatContact>& found) {
   std::set<PairOrder> still;
   std::set<std::pair<BodyName, BodyName>> expected;

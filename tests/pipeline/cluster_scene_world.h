@@ -15,19 +15,19 @@
 
 namespace winnow::test {
 
-/// Shapes of many kinds, that a world of bodies has by number.
+/// Shapes of many kinds for the bodies of a world.
 struct WorldShapes {
   WorldShapes();
 
   ShapePool shapes;
   CompositePool composites{shapes};
-  std::vector<ShapeId> movable;  ///< about as large as 1; convex ones and a compound
+  std::vector<ShapeId> movable;  ///< of size about 1: convex shapes and a compound
   std::vector<ShapeId> ground;   ///< half-space, mesh, height field, compound
 };
 
-/// Everything that was found of one pair, bit by bit.
+/// All results for one pair, bit by bit.
 struct FlatContact {
-  std::uint32_t code = 0;  ///< of the kinds
+  std::uint32_t code = 0;  ///< of the two kinds
   BodyName a = 0;
   BodyName b = 0;
   bool persisted = false;
@@ -38,42 +38,42 @@ struct FlatContact {
 };
 [[nodiscard]] std::vector<FlatContact> flattened(const Contacts& contacts);
 
-/// A cluster of scenes on ranks of this process, and the same bodies in a table, of which one Scene
-/// is made anew for each frame.
+/// A cluster of scenes on ranks of this process, and a table of its bodies from which each check
+/// builds one Scene to compare with.
 class ClusterSceneWorld {
  public:
   ClusterSceneWorld(const WorldShapes& shapes, std::uint32_t ranks,
                     const ClusterSceneOptions& options = {});
 
-  /// What is on every rank.
+  /// Adds the fixed bodies, which exist on every rank.
   void add_ground();
   void move_ground(Random& random);
-  /// Bodies in a box of this size, each on a rank that `random` says; some are fixed, some
-  /// filtered.
+  /// Adds bodies within a cube of this size, each on a random rank. Some are fixed, some have
+  /// filters.
   void add(std::size_t count, double size, Random& random);
-  /// One more, at this pose.
+  /// Adds one body at this pose.
   void add_at(const Pose& pose, Random& random);
   void move(double share, double step, Random& random);
   void remove(std::size_t count, Random& random);
-  /// Finds contacts on all ranks and in one scene, and compares everything.
+  /// Calls collide on all ranks and in one scene, and compares all results.
   void check(ContactLevel level);
-  /// Notes where bodies have gone.
+  /// Updates the rank of each body.
   void follow();
-  /// Goes on in a cluster of so many ranks, from what the ranks kept.
+  /// Restores a new cluster of `ranks` ranks from the checkpoints of the current one.
   void restart(std::uint32_t ranks);
 
   [[nodiscard]] ClusterScene& cluster() { return *cluster_; }
   [[nodiscard]] const std::map<BodyName, BodyDefinition>& bodies() const { return bodies_; }
   [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name); }
   [[nodiscard]] std::vector<std::vector<std::byte>> saved() const;
-  /// All bodies in one scene, in the order of their names.
+  /// Returns a scene of all bodies, added in the order of their names.
   [[nodiscard]] std::unique_ptr<Scene> one_scene() const;
 
  private:
   using PairOrder = std::tuple<std::uint32_t, BodyName, BodyName>;
 
   [[nodiscard]] BodyDefinition make_body(const Pose& pose, Random& random) const;
-  /// Each on a rank that `random` says.
+  /// Adds each body on a random rank.
   void add_bodies(const std::vector<BodyDefinition>& bodies, Random& random);
   void check_events(const std::vector<FlatContact>& found);
   [[nodiscard]] std::vector<FlatContact> found() const;

@@ -1,4 +1,5 @@
-// A cluster in one process: the pairs of brute force on any number of ranks, and what it refuses.
+// A cluster in one process: pairs compared with brute force for many numbers of ranks, and refused
+// input.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/cluster.h>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// A rank that is told a batch, where the others are told nothing.
+/// Adds a batch on one rank and empty batches on the others.
 Status add_on(Cluster& cluster, std::uint32_t rank, std::span<const BodyName> names,
               std::span<const Aabb> boxes) {
   std::vector<ClusterBatch> batches(cluster.hosted());
@@ -47,7 +48,7 @@ void run_frames(const std::vector<Aabb>& boxes, std::uint32_t ranks, double step
   }
 }
 
-TEST(Cluster, parcels_travel_while_something_else_is_done) {
+TEST(Cluster, exchange_calls_meanwhile_callback) {
   LoopbackTransport transport(3);
   const std::uint64_t number = 7;
   const Parcel sent[] = {{2, 0, {std::as_bytes(std::span(&number, 1))}}};
@@ -62,7 +63,7 @@ TEST(Cluster, parcels_travel_while_something_else_is_done) {
   EXPECT_EQ(received.size(), 0U);
 }
 
-TEST(ClusterPairs, are_those_of_brute_force_on_any_number_of_ranks) {
+TEST(ClusterPairs, pairs_match_brute_force_for_any_rank_count) {
   const std::size_t n = scaled(200);
   const std::vector<Aabb> scenes[] = {uniform_boxes(n), clustered_boxes(n), mixed_boxes(n),
                                       wall_boxes(n, 0), pile_boxes(n),      two_scale_boxes(n),
@@ -72,11 +73,11 @@ TEST(ClusterPairs, are_those_of_brute_force_on_any_number_of_ranks) {
   }
 }
 
-TEST(ClusterPairs, are_right_on_thousands_of_ranks) {
+TEST(ClusterPairs, thousands_of_ranks_match_brute_force) {
   for (const std::uint32_t ranks : {64U, 512U, 4096U}) run_frames(uniform_boxes(200), ranks, 0.5);
 }
 
-TEST(ClusterPairs, are_right_with_infinite_and_equal_boxes) {
+TEST(ClusterPairs, infinite_and_equal_boxes_match_brute_force) {
   std::vector<Aabb> boxes = uniform_boxes(60);
   for (int axis = 0; axis < 3; ++axis) {
     Aabb slab = boxes[static_cast<std::size_t>(axis)];
@@ -90,7 +91,7 @@ TEST(ClusterPairs, are_right_with_infinite_and_equal_boxes) {
   for (const std::uint32_t ranks : {1U, 2U, 5U, 32U}) run_frames(boxes, ranks, 1.0);
 }
 
-TEST(ClusterPairs, are_right_while_everything_gathers_and_scatters) {
+TEST(ClusterPairs, gathering_and_scattering_boxes_match_brute_force) {
   Random random(7);
   ClusterWorld world(9);
   world.add(uniform_boxes(150), random);
@@ -105,11 +106,12 @@ TEST(ClusterPairs, are_right_while_everything_gathers_and_scatters) {
   world.check();
 }
 
-TEST(ClusterMessages, are_none_where_nothing_moves) {
+TEST(ClusterMessages, resting_boxes_send_no_messages) {
   Random random(3);
   ClusterWorld world(8);
   std::vector<Aabb> boxes = uniform_boxes(400);
-  boxes.push_back({Vec3f(-100, -100, 0), Vec3f(100, 100, 1)});  // met by many ranks
+  boxes.push_back(
+      {Vec3f(-100, -100, 0), Vec3f(100, 100, 1)});  // overlaps the regions of many ranks
   world.add(boxes, random);
   std::uint64_t cuts = 0;
   do {
@@ -121,7 +123,7 @@ TEST(ClusterMessages, are_none_where_nothing_moves) {
   EXPECT_EQ(world.cluster().statistics().messages, 0U);
 }
 
-TEST(ClusterMessages, tell_of_what_moved_alone) {
+TEST(ClusterMessages, few_moved_boxes_send_few_bytes) {
   Random random(4);
   ClusterWorld world(8, {.imbalance = 1e9});
   world.add(uniform_boxes(1000), random);
@@ -132,7 +134,7 @@ TEST(ClusterMessages, tell_of_what_moved_alone) {
   EXPECT_LT(world.cluster().statistics().bytes * 10, first);
 }
 
-TEST(ClusterCuts, balance_counted_work) {
+TEST(ClusterCuts, cuts_balance_counted_work) {
   Random random(5);
   for (const auto& boxes : {uniform_boxes(3000), clustered_boxes(3000)}) {
     ClusterWorld world(4);
@@ -144,7 +146,7 @@ TEST(ClusterCuts, balance_counted_work) {
   }
 }
 
-TEST(ClusterInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
+TEST(ClusterInput, bad_input_fails_only_on_its_rank) {
   Random random(6);
   ClusterWorld world(3);
   world.add(uniform_boxes(50), random);
@@ -183,13 +185,13 @@ TEST(ClusterInput, that_is_bad_is_refused_on_its_rank_and_changes_nothing) {
   world.check();
 }
 
-TEST(ClusterInput, of_keys_that_follow_each_other_round_the_greatest_id_is_refused) {
+TEST(ClusterInput, keys_wrapping_past_greatest_id_are_refused) {
   LoopbackTransport transport(2);
   Cluster cluster(transport);
   const BodyName names[] = {1, 2, 3};
   const std::vector<Aabb> boxes(4, Aabb{Vec3f(0, 0, 0), Vec3f(1, 1, 1)});
   ASSERT_EQ(add_on(cluster, 0, names, std::span(boxes).first(3)), Status::ok);
-  std::vector<Key> keys(4);  // a null key, then those of numbers 0, 1 and 2
+  std::vector<Key> keys(4);  // a null key, then the keys with ids 0, 1 and 2
   for (std::size_t i = 0; i < 3; ++i) {
     ASSERT_EQ(cluster.key_of(0, names[i], keys[1 + i]), Status::ok);
     ASSERT_EQ(keys[1 + i].id, i);
@@ -197,7 +199,7 @@ TEST(ClusterInput, of_keys_that_follow_each_other_round_the_greatest_id_is_refus
   EXPECT_EQ(cluster.move(0, std::span<const Key>(keys), BoxView(boxes)), Status::invalid_key);
 }
 
-TEST(ClusterInput, that_two_ranks_name_alike_is_refused_on_both) {
+TEST(ClusterInput, equal_names_on_two_ranks_fail_on_both) {
   LoopbackTransport transport(3);
   Cluster cluster(transport);
   const BodyName names[] = {1, 2, 3};
@@ -217,7 +219,7 @@ TEST(ClusterInput, that_two_ranks_name_alike_is_refused_on_both) {
   EXPECT_EQ(cluster.statistics().pairs, 3U);
 }
 
-TEST(ClusterPairs, are_named_as_they_are_read) {
+TEST(ClusterPairs, reading_pairs_returns_names) {
   LoopbackTransport transport(1);
   Cluster cluster(transport);
   const BodyName names[] = {9, 4, 7};
@@ -239,7 +241,7 @@ TEST(ClusterPairs, are_named_as_they_are_read) {
   EXPECT_TRUE(cluster.pairs(0).empty());
 }
 
-TEST(ClusterPairs, are_gone_on_all_ranks_once_bodies_are_added) {
+TEST(ClusterPairs, adding_bodies_clears_pairs_on_all_ranks) {
   for (const std::uint32_t ranks : {1U, 4U}) {
     Random random(10);
     ClusterWorld world(ranks);
@@ -256,7 +258,7 @@ TEST(ClusterPairs, are_gone_on_all_ranks_once_bodies_are_added) {
   }
 }
 
-TEST(ClusterInput, may_name_anew_what_another_rank_removed) {
+TEST(ClusterInput, name_removed_elsewhere_can_be_used_again) {
   Random random(8);
   ClusterWorld world(4);
   world.add(uniform_boxes(40), random);
@@ -271,7 +273,7 @@ TEST(ClusterInput, may_name_anew_what_another_rank_removed) {
   EXPECT_EQ(world.found_pairs(), world.true_pairs());
 }
 
-TEST(ClusterBodies, of_three_ranks_go_on_in_five) {
+TEST(ClusterBodies, bodies_of_three_ranks_continue_on_five) {
   Random random(9);
   ClusterWorld world(3);
   world.add(mixed_boxes(150), random);
@@ -293,7 +295,7 @@ TEST(ClusterBodies, of_three_ranks_go_on_in_five) {
   EXPECT_EQ(digest, digest_of(world.true_pairs()));
 }
 
-TEST(ClusterFaults, end_every_later_call) {
+TEST(ClusterFaults, transport_failure_fails_every_later_call) {
   const std::vector<Aabb> boxes = uniform_boxes(30);
   std::vector<BodyName> names(boxes.size());
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = i;
@@ -320,7 +322,7 @@ TEST(ClusterFaults, end_every_later_call) {
   EXPECT_GT(fine, 0);
 }
 
-TEST(ClusterRegions, meet_boxes_as_their_points_say) {
+TEST(ClusterRegions, box_overlaps_regions_of_its_points) {
   Random random(10);
   const auto number = [&] {
     return random.chance(0.5) ? static_cast<float>(random.below(5))
@@ -356,7 +358,7 @@ TEST(ClusterRegions, meet_boxes_as_their_points_say) {
   }
 }
 
-TEST(ClusterNames, are_kept_as_by_a_map) {
+TEST(ClusterNames, name_table_matches_map) {
   Random random(11);
   NameTable table(std::pmr::get_default_resource());
   std::unordered_map<std::uint64_t, std::uint32_t> twin;

@@ -61,7 +61,7 @@ void ClusterWorld::remove(std::size_t count, Random& random) {
   }
 }
 
-/// What each rank says of arrivals and departures leads to where bodies are.
+/// Updates the rank and key of each body from the arrivals and departures that the ranks report.
 void ClusterWorld::follow() {
   std::size_t bodies = 0;
   for (std::uint32_t rank = 0; rank < cluster_.ranks(); ++rank) {

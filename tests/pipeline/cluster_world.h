@@ -10,7 +10,7 @@
 
 namespace winnow::test {
 
-/// Fails from some call on, as a broken network does.
+/// A transport that fails from the given call on, like a broken network.
 class FailingTransport final : public Transport {
  public:
   FailingTransport(std::uint32_t ranks, int calls) : inner_(ranks), calls_(calls) {}
@@ -35,22 +35,22 @@ class FailingTransport final : public Transport {
   int calls_;
 };
 
-/// A cluster of ranks in this process, and the same boxes in a table: pairs by brute force.
+/// A cluster of ranks in this process, and a table of its boxes for brute-force pairs.
 class ClusterWorld {
  public:
   explicit ClusterWorld(std::uint32_t ranks, const ClusterOptions& options = {});
 
-  /// Each box on a rank that `random` says; names are not in the order of boxes.
+  /// Adds each box on a random rank. Names are not in the order of boxes.
   void add(const std::vector<Aabb>& boxes, Random& random);
-  /// Some bodies go elsewhere by up to `step`, as their ranks are told.
+  /// Moves a share of the bodies by up to `step`, each on its own rank.
   void move(double share, double step, Random& random);
   void remove(std::size_t count, Random& random);
-  /// Finds pairs, and checks them, their digest, and who has which bodies.
+  /// Finds pairs and checks them, their digest, and the rank of each body.
   void check();
 
   [[nodiscard]] std::vector<NamePair> true_pairs() const;
   [[nodiscard]] std::vector<NamePair> found_pairs() const;
-  /// The rank that a body belongs to.
+  /// Returns the rank that owns a body.
   [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name).rank; }
   [[nodiscard]] Key key_of(BodyName name) const { return homes_.at(name).key; }
   [[nodiscard]] const std::map<BodyName, Aabb>& boxes() const { return boxes_; }
@@ -70,7 +70,7 @@ class ClusterWorld {
   BodyName next_ = 1;
 };
 
-/// What a digest has to be, from its definition.
+/// Computes the digest from its definition.
 [[nodiscard]] ClusterDigest digest_of(const std::vector<NamePair>& pairs);
 
 }  // namespace winnow::test

@@ -1,5 +1,5 @@
-// Cylinders, cones and capsules whose centres are the same and whose axes are nearly so: many
-// directions are nearly as good as the best, and bounds must be narrow all the same.
+// Cylinders, cones and capsules with coincident centres and nearly parallel axes: many directions
+// are nearly optimal, and the error bounds must still be narrow.
 
 #include <gtest/gtest.h>
 #include <winnow/core/rotation.h>
@@ -17,9 +17,9 @@ namespace {
 
 constexpr NarrowTier kTiers[] = {NarrowTier::robust, NarrowTier::reference};
 
-/// A pair at one place, its axes tilted against each other.
+/// Adds a pair at the same position with axes tilted against each other.
 template <typename A, typename B>
-void put_together(const A& a, const B& b, double tilt, Random& random, PairScene& scene) {
+void add_tilted_pair(const A& a, const B& b, double tilt, Random& random, PairScene& scene) {
   const auto n = static_cast<std::uint32_t>(scene.shapes.size());
   scene.shapes.resize(n + 2);
   EXPECT_EQ(scene.pool.add(a, scene.shapes[n]), Status::ok);
@@ -34,9 +34,9 @@ void put_together(const A& a, const B& b, double tilt, Random& random, PairScene
   scene.pairs.push_back({n, n + 1});
 }
 
-// What stands as high as it is wide has a capsule within, of the same radius: the two of them part
-// the soonest at right angles to both axes.
-TEST(CoincidentCentres, of_long_cylinders_and_capsules_leave_narrow_bounds) {
+// A cylinder at least as high as wide contains a capsule of the same radius, so the pair separates
+// soonest at right angles to both axes.
+TEST(CoincidentCentres, long_cylinders_and_capsules_have_narrow_bounds) {
   Random random(1);
   PairScene scene;
   std::vector<double> depth;
@@ -45,8 +45,8 @@ TEST(CoincidentCentres, of_long_cylinders_and_capsules_leave_narrow_bounds) {
     const CylinderShape a{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0), 0.0};
     const CylinderShape b{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0), 0.125};
     const CapsuleShape c{random.uniform(0.2, 1.0), random.uniform(1.0, 2.0)};
-    put_together(a, b, tilt, random, scene);
-    put_together(c, b, tilt, random, scene);
+    add_tilted_pair(a, b, tilt, random, scene);
+    add_tilted_pair(c, b, tilt, random, scene);
     depth.push_back(a.radius + b.radius + b.rounding);
     depth.push_back(c.radius + b.radius + b.rounding);
   }
@@ -59,18 +59,18 @@ TEST(CoincidentCentres, of_long_cylinders_and_capsules_leave_narrow_bounds) {
   }
 }
 
-TEST(CoincidentCentres, of_what_is_turned_by_rounding_leave_narrow_bounds) {
+TEST(CoincidentCentres, cones_turned_by_rounding_have_narrow_bounds) {
   Random random(2);
   PairScene scene;
   const auto length = [&] { return random.uniform(0.2, 1.0); };
   for (std::size_t n = scaled(80); n-- != 0;) {
     const double tilt = random.log_uniform(1e-17, 1e-8);
-    put_together(ConeShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.125}, tilt,
-                 random, scene);
-    put_together(CylinderShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.0}, tilt,
-                 random, scene);
-    put_together(CapsuleShape{length(), length()}, ConeShape{length(), length(), 0.0}, tilt, random,
-                 scene);
+    add_tilted_pair(ConeShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.125}, tilt,
+                    random, scene);
+    add_tilted_pair(CylinderShape{length(), length(), 0.0}, ConeShape{length(), length(), 0.0},
+                    tilt, random, scene);
+    add_tilted_pair(CapsuleShape{length(), length()}, ConeShape{length(), length(), 0.0}, tilt,
+                    random, scene);
   }
   for (const NarrowTier tier : kTiers) {
     for (const auto& answer : ask(scene, {.level = ContactLevel::distance, .tier = tier})) {
@@ -79,15 +79,15 @@ TEST(CoincidentCentres, of_what_is_turned_by_rounding_leave_narrow_bounds) {
   }
 }
 
-/// Spheres on the segments of capsules, on triangles and as near to two sides of a box, and
-/// capsules whose segments are in one line or cross, in a frame that leans; with how deep they are.
-void put_on_axes(PairScene& scene, std::vector<double>& depth, Random& random) {
+/// Adds spheres on the segments of capsules, on triangles and equally near to two sides of a box,
+/// and capsules whose segments are collinear or cross, in a tilted frame; appends the exact depths.
+void add_aligned_pairs(PairScene& scene, std::vector<double>& depth, Random& random) {
   const Quaternion lean = normalized({random.uniform(0.5, 1.0), random.uniform(-1.0, 1.0),
                                       random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
   const auto length = [&] { return random.uniform(0.5, 1.0); };
   const auto put = [&](const auto& a, const auto& b, double along, const Quaternion& turn,
                        double deep) {
-    put_together(a, b, 0.0, random, scene);
+    add_tilted_pair(a, b, 0.0, random, scene);
     Pose& first = scene.poses[scene.poses.size() - 2];
     Pose& second = scene.poses.back();
     std::copy_n(lean.begin(), 4, first.orientation);
@@ -111,11 +111,11 @@ void put_on_axes(PairScene& scene, std::vector<double>& depth, Random& random) {
       ball.radius);
 }
 
-TEST(CoincidentCentres, of_round_shapes_part_across_others_and_hardly_need_the_solver) {
+TEST(CoincidentCentres, round_shapes_separate_sideways_almost_without_solver) {
   Random random(3);
   PairScene scene;
   std::vector<double> depth;
-  for (std::size_t n = scaled(200); n-- != 0;) put_on_axes(scene, depth, random);
+  for (std::size_t n = scaled(200); n-- != 0;) add_aligned_pairs(scene, depth, random);
   NarrowPhase narrow;
   NarrowResult result;
   const NarrowOptions asked{.level = ContactLevel::distance};

@@ -1,3 +1,6 @@
+// Meshes, height fields and compounds in a CompositePool: input checks, lifetimes, bounds, part
+// numbers, and the correction of normals at internal edges (CompositePool::smooth).
+
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
 #include "tests/pipeline/composite_world.h"
@@ -16,7 +19,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(CompositePool, refuses_what_it_cannot_hold) {
+TEST(CompositePool, bad_input_is_refused) {
   Random random(5);
   CompositeWorld world;
   world.add_shapes(random);
@@ -46,7 +49,7 @@ TEST(CompositePool, refuses_what_it_cannot_hold) {
   EXPECT_EQ(pool.bounds(id, Pose{}), Aabb{});
 }
 
-TEST(CompositePool, triangles_live_until_the_last_scaled_id_is_removed) {
+TEST(CompositePool, triangles_live_until_last_scaled_id_is_removed) {
   Random random(6);
   const Surface surface = soup(random, 30, 2.0, 0.5);
   ShapePool shapes;
@@ -70,8 +73,8 @@ TEST(CompositePool, triangles_live_until_the_last_scaled_id_is_removed) {
   EXPECT_EQ(add(pool, surface), second);
 }
 
-/// Parts of compounds of surfaces.
-TEST(CompositePool, a_part_is_told_by_its_child) {
+/// Compounds that contain surfaces number their parts child by child.
+TEST(CompositePool, part_number_maps_to_child) {
   Random random(8);
   ShapePool shapes;
   CompositePool pool(shapes);
@@ -102,7 +105,7 @@ TEST(CompositePool, a_part_is_told_by_its_child) {
   EXPECT_EQ(pool.part(plain, 1).child, kWholeShape);
 }
 
-TEST(CompositePool, what_compounds_are_made_of_stays) {
+TEST(CompositePool, child_of_compound_cannot_be_removed) {
   Random random(9);
   ShapePool shapes;
   CompositePool pool(shapes);
@@ -118,8 +121,8 @@ TEST(CompositePool, what_compounds_are_made_of_stays) {
   EXPECT_EQ(pool.remove(scaled_mesh), Status::ok);
 }
 
-/// Of few children and of many.
-TEST(CompositePool, compounds_follow_surfaces_that_change) {
+/// With few children, and with enough for a tree.
+TEST(CompositePool, edited_surface_updates_its_compounds) {
   Random random(10);
   for (const std::size_t children : {2U, 20U}) {
     ShapePool shapes;
@@ -145,7 +148,7 @@ TEST(CompositePool, compounds_follow_surfaces_that_change) {
     ASSERT_EQ(pool.update_height_field(field, 0, 0, {.heights = heights, .columns = 4, .rows = 3}),
               Status::ok);
     EXPECT_GE(pool.bounds(compound, {}).max[2], 90.0F);
-    // Their trees as well: the highest sample is found.
+    // The compound's tree is updated too: a sweep finds the highest sample.
     int met = 0;
     const BoxSweep high{{-10, -10, 89}, {10, 10, 91}};
     pool.visit(compound, {}, high,
@@ -158,7 +161,7 @@ TEST(CompositePool, compounds_follow_surfaces_that_change) {
   }
 }
 
-TEST(CompositePool, boxes_and_radii_hold_every_part) {
+TEST(CompositePool, bounds_and_radius_contain_every_part) {
   Random random(7);
   CompositeWorld world;
   world.add_shapes(random);
@@ -185,7 +188,7 @@ TEST(CompositePool, boxes_and_radii_hold_every_part) {
         } else {
           inner = world.shapes.bounds(part.shape, part.pose);
         }
-        // Both are rounded outward to float.
+        // Both boxes are rounded outward to float.
         const float slack = 1e-6F * as_eigen(inner.max).cwiseAbs().maxCoeff();
         for (int axis = 0; axis < 3; ++axis) {
           if (!std::isfinite(inner.max[axis])) continue;
@@ -198,7 +201,7 @@ TEST(CompositePool, boxes_and_radii_hold_every_part) {
   }
 }
 
-/// A body on a surface: what its contacts are, smoothed.
+/// Contacts of a body with a surface after `smooth`.
 struct Landing {
   std::vector<Eigen::Vector3d> normals;  ///< from the body to the surface
   double deepest = std::numeric_limits<double>::infinity();
@@ -244,7 +247,7 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
 
 const Cut kCuts[] = {Cut::same, Cut::mirrored, Cut::alternating, Cut::random};
 
-TEST(InnerEdges, what_slides_over_a_flat_floor_feels_only_its_normal) {
+TEST(InternalEdges, flat_mesh_gives_only_floor_normals) {
   Random random(8);
   ShapePool shapes;
   CompositePool pool(shapes);
@@ -258,7 +261,7 @@ TEST(InnerEdges, what_slides_over_a_flat_floor_feels_only_its_normal) {
     ASSERT_EQ(pool.add_scaled(floor, {1.3, -0.8, 2.0}, scaled_floor), Status::ok);
     for (int i = 0; i < static_cast<int>(scaled(150)); ++i) {
       const ShapeId body = bodies[random.below(5)];
-      // Over corners, over edges and elsewhere; about its own height above the floor.
+      // Above vertices, above edges and elsewhere, at about the height at which it rests.
       Pose at = Pose::at(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0);
       if (random.chance(0.3)) at.position[0] = 0.7 * std::round(at.position[0] / 0.7);
       if (random.chance(0.3)) at.position[1] = 0.7 * std::round(at.position[1] / 0.7);
@@ -281,7 +284,7 @@ TEST(InnerEdges, what_slides_over_a_flat_floor_feels_only_its_normal) {
   }
 }
 
-TEST(InnerEdges, a_height_field_has_none_either) {
+TEST(InternalEdges, flat_height_field_gives_only_floor_normals) {
   ShapePool shapes;
   CompositePool pool(shapes);
   const std::vector<float> heights(100, 2.0F);
@@ -299,11 +302,11 @@ TEST(InnerEdges, a_height_field_has_none_either) {
   }
 }
 
-TEST(InnerEdges, ridges_and_borders_are_felt) {
+TEST(InternalEdges, ridges_and_borders_keep_their_normals) {
   ShapePool shapes;
   CompositePool pool(shapes);
   const ShapeId ball = add(shapes, SphereShape{0.5});
-  // A roof whose ridge runs along y at x = 0.
+  // A roof with its ridge along y at x = 0.
   const ShapeId roof =
       add(pool, grid(8, 0.5F, Cut::same, [](float x, float) { return -std::abs(x); }));
   const Landing on_ridge =
@@ -312,7 +315,7 @@ TEST(InnerEdges, ridges_and_borders_are_felt) {
   for (const Eigen::Vector3d& normal : on_ridge.normals) {
     EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
-  // Off the border of a floor: from the ball straight to the edge.
+  // Off the border of a floor the normal points from the ball to the edge.
   const ShapeId floor = add(pool, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
   const Landing off = land(shapes, pool, ball, Pose::at(1.3, 0.1, 0.35), floor, Pose{},
                            ContactLevel::manifold, 0.0);
@@ -325,8 +328,8 @@ TEST(InnerEdges, ridges_and_borders_are_felt) {
   EXPECT_LT(nearest, 1e-9);
 }
 
-TEST(InnerEdges, a_box_at_a_corner_of_the_rim_keeps_its_contact) {
-  // The middle one of three triangles touches the border of the surface with a corner alone.
+TEST(InternalEdges, box_at_corner_of_border_keeps_contact) {
+  // The middle one of three triangles touches the border of the surface only with a corner.
   Surface rim;
   rim.vertices = {{0.76816994F, 2.86684918F, -14.9698315F},
                   {0.544054806F, 4.13250637F, -13.4728489F},
@@ -345,7 +348,7 @@ TEST(InnerEdges, a_box_at_a_corner_of_the_rim_keeps_its_contact) {
   EXPECT_GT(landing.deepest, -0.01);
 }
 
-TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
+TEST(InternalEdges, ball_in_valley_gets_both_face_normals) {
   ShapePool shapes;
   CompositePool pool(shapes);
   const ShapeId ball = add(shapes, SphereShape{0.5});
@@ -367,7 +370,7 @@ TEST(InnerEdges, a_valley_holds_a_ball_by_its_faces) {
   }
 }
 
-TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_refused_memory) {
+TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(9);
   CompositeWorld world;
@@ -422,7 +425,8 @@ TEST(InnerEdges, smoothing_is_the_same_on_any_number_of_threads_and_survives_ref
   }
 }
 
-/// The manifolds of the first body that was added, which touches nothing but the ground.
+/// Returns the contacts of the first body, which touches only the ground. Each manifold also adds
+/// its distance as a point.
 std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId first,
                                           ShapeId ground, std::span<const ShapeId> others,
                                           ContactLevel level) {
@@ -434,14 +438,14 @@ std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId f
   Random random(10);
   for (std::size_t i = 0; i < 60 && !others.empty(); ++i) {
     BodyDefinition body{.shape = others[i % others.size()], .data = 2 + i};
-    // Each has its own ground, far away.
+    // Each other body gets its own ground, far away.
     body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, random.uniform(-0.4, 0.1));
     bodies.push_back(body);
     body = {.shape = ground, .motion = Motion::fixed, .data = 100 + i};
     body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, 0);
     bodies.push_back(body);
   }
-  // The first body is the last of all, so that answers about others come before those about it.
+  // Move the first body to the end, so that results for the others come before its own.
   std::ranges::rotate(bodies, bodies.begin() + 2);
   std::vector<Key> keys(bodies.size());
   EXPECT_EQ(scene.add(bodies, keys), Status::ok);
@@ -463,16 +467,16 @@ std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId f
   return points;
 }
 
-TEST(InnerEdges, smoothing_does_not_depend_on_other_bodies) {
+TEST(InternalEdges, smoothing_ignores_other_bodies) {
   CompositeWorld world;
   const ShapeId ground =
       add(world.composites, grid(70, 0.2F, Cut::random, [](float, float) { return 0.0F; }));
   const ShapeId box = add(world.shapes, BoxShape{{6.5, 6.5, 0.5}, 0.0});
   const ShapeId needle = add(world.shapes, CapsuleShape{0.05, 0.6});
   const ShapeId hull = add_octahedron(world.shapes, 0.7);
-  // The shortest way out of a needle is sideways, over an internal edge. It is pushed out along the
-  // face unless that is several times as far as the deepest contact of its own kind, whatever the
-  // box has.
+  // The shortest way out for a needle is sideways, over an internal edge. It is pushed out along
+  // the face unless that is several times as far as the deepest contact of its own kind. The
+  // contacts of the box must not affect this.
   std::vector<CompoundChild> parts{{box, Pose{}}, {hull, Pose::at(0.05, 3, 0.4)}};
   for (int i = 0; i < 12; ++i) parts.push_back({needle, Pose::at(0.037 * i, -0.41 * i, 0.35)});
   ShapeId first;

@@ -1,5 +1,8 @@
 #pragma once
 
+// Shapes of every kind, convex and composite, with random bodies and pairs, and helpers that split
+// a body into primitives. Used by tests of the mid phase, composites and scenes.
+
 #include <gtest/gtest.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -23,10 +26,11 @@ struct Surface {
   std::vector<std::uint32_t> corners;
 };
 
-/// How the squares of a grid are cut into triangles.
+/// The diagonals that cut the squares of a grid into triangles.
 enum class Cut { same, mirrored, alternating, random };
 
-/// Heights over a grid of `n` x `n` squares of side `side`, centred on the origin.
+/// Returns a grid of `n` x `n` squares of side `side` with the given heights, centred on the
+/// origin.
 template <typename Height>
 Surface grid(int n, float side, Cut cut, Height&& height) {
   Surface surface;
@@ -64,7 +68,7 @@ inline Surface soup(Random& random, int triangles, double reach, double size) {
       surface.vertices.push_back((at + off).cast<float>());
       surface.corners.push_back(static_cast<std::uint32_t>(surface.vertices.size() - 1));
     }
-    // Now and then a segment, or a point.
+    // Sometimes degenerate to a segment or a point.
     if (random.chance(0.05)) surface.corners.back() = surface.corners[surface.corners.size() - 2];
     if (random.chance(0.02)) {
       surface.corners[surface.corners.size() - 2] = surface.corners.back();
@@ -110,7 +114,7 @@ inline Pose random_pose(Random& random, double reach) {
   return pose;
 }
 
-/// Shapes of every kind.
+/// Shapes of every kind, and bodies and pairs of them.
 struct CompositeWorld {
   explicit CompositeWorld(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : shapes(memory), composites(shapes, memory) {}
@@ -164,7 +168,8 @@ struct CompositeWorld {
     add_compounds_of_surfaces(random, mesh, heights);
   }
 
-  /// Of few children and of many; surfaces of their own, so that `ids` can be removed one by one.
+  /// Adds compounds of few and of many children. Their surfaces are separate, so that the shapes in
+  /// `ids` can be removed one by one.
   void add_compounds_of_surfaces(Random& random, ShapeId mesh, const std::vector<float>& heights) {
     ShapeId surfaces[3];
     EXPECT_EQ(composites.add_scaled(mesh, {1.0, 1.0, 1.0}, surfaces[0]), Status::ok);
@@ -198,7 +203,7 @@ struct CompositeWorld {
   }
 };
 
-/// All primitives of a body, shown by visit without a limit.
+/// Returns all primitives of a body by `visit` without a limit.
 inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, const Pose& pose) {
   std::vector<Primitive> parts;
   if (!id.is_composite()) {
@@ -220,7 +225,7 @@ inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, 
   return parts;
 }
 
-/// Answers pairs of primitives.
+/// Runs the narrow phase on pairs of primitives.
 inline void answer(const ShapePool& shapes, const PrimitivePairs& pairs,
                    const NarrowOptions& options, NarrowResult& result) {
   NarrowPhase narrow;

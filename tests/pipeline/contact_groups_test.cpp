@@ -1,5 +1,5 @@
-// Islands and colours of contacts, against labels that are passed on until none changes and against
-// what every two pairs of a group share.
+// Islands compared with labels that are propagated to a fixed point, and colours checked for bodies
+// that two pairs of a colour share.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -20,7 +20,7 @@ namespace {
   return body.motion != Motion::fixed;
 }
 
-/// Bodies of a pair that are not fixed.
+/// Returns the ids of the bodies of a pair that are not fixed.
 [[nodiscard]] std::vector<std::uint32_t> movable(const Scene& scene, const Contacts& contacts,
                                                  std::size_t pair) {
   std::vector<std::uint32_t> ids;
@@ -30,7 +30,7 @@ namespace {
   return ids;
 }
 
-/// Every pair is in the list of its group, once, and lists ascend.
+/// Checks that each pair is listed exactly once, in its group, and that lists ascend.
 void expect_in_order(const ContactGroups& groups, std::size_t pairs) {
   ASSERT_EQ(groups.group().size(), pairs);
   std::size_t listed = 0;
@@ -45,8 +45,8 @@ void expect_in_order(const ContactGroups& groups, std::size_t pairs) {
   EXPECT_EQ(listed, pairs);
 }
 
-/// A row of balls: 0 1 2 touch, 3 stands alone, 4 5 touch, and all lie on a floor.
-TEST(ContactGroups, bodies_that_only_share_a_floor_are_islands_of_their_own) {
+/// A row of balls on a floor: 0 1 2 touch, 3 is separate, 4 5 touch.
+TEST(ContactGroups, bodies_sharing_only_a_floor_are_separate_islands) {
   ShapePool pool;
   ShapeId ball;
   ShapeId floor;
@@ -82,7 +82,7 @@ TEST(ContactGroups, bodies_that_only_share_a_floor_are_islands_of_their_own) {
   EXPECT_LE(colours.size(), 4U);
 }
 
-TEST(ContactGroups, of_no_contacts_are_none) {
+TEST(ContactGroups, no_contacts_make_no_groups) {
   ShapePool pool;
   Scene scene(pool);
   Contacts contacts;
@@ -97,7 +97,7 @@ TEST(ContactGroups, of_no_contacts_are_none) {
   }
 }
 
-TEST(ContactGroups, islands_are_what_bodies_connect_and_nothing_else) {
+TEST(ContactGroups, islands_are_connected_components) {
   SceneWorld world(scaled(600), 21);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -133,7 +133,7 @@ TEST(ContactGroups, islands_are_what_bodies_connect_and_nothing_else) {
   }
 }
 
-TEST(ContactGroups, no_two_pairs_of_a_colour_share_a_body_that_is_not_fixed) {
+TEST(ContactGroups, pairs_of_a_colour_share_no_movable_body) {
   SceneWorld world(scaled(600), 22);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -159,7 +159,7 @@ TEST(ContactGroups, no_two_pairs_of_a_colour_share_a_body_that_is_not_fixed) {
   }
 }
 
-TEST(ContactGroups, a_body_with_more_contacts_than_there_are_colours_leaves_a_rest) {
+TEST(ContactGroups, body_with_many_contacts_fills_rest_colour) {
   ShapePool pool;
   ShapeId large;
   ShapeId small;
@@ -186,7 +186,7 @@ TEST(ContactGroups, a_body_with_more_contacts_than_there_are_colours_leaves_a_re
   EXPECT_EQ(colours.pairs(kRestColour).size(), kSmall - std::size_t{kRestColour});
 }
 
-TEST(ContactGroups, are_the_same_on_any_number_of_threads) {
+TEST(ContactGroups, groups_match_on_any_thread_count) {
   std::vector<std::uint32_t> first;
   for (const Workers& workers : all_workers()) {
     SceneWorld world(scaled(20'000), 23);
@@ -208,7 +208,7 @@ TEST(ContactGroups, are_the_same_on_any_number_of_threads) {
   }
 }
 
-TEST(ContactGroups, are_refused_for_bodies_that_are_gone_and_where_there_is_no_memory) {
+TEST(ContactGroups, removed_bodies_and_missing_memory_are_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(50, 24);

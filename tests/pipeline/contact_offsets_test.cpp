@@ -1,4 +1,4 @@
-// Contact and rest offsets of bodies: each pair against the answer about this pair only.
+// Contact and rest offsets of bodies: each pair of a scene compared with a single-pair query.
 
 #include "tests/pipeline/composite_world.h"
 #include "tests/pipeline/scene_world.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin = 0.03;
 
-/// Gives about half of the bodies offsets, a few of them wide ones.
+/// Gives about half of the bodies offsets. A few contact offsets are large.
 void give_offsets(SceneWorld& world) {
   for (BodyDefinition& body : world.bodies) {
     if (world.random.chance(0.5)) continue;
@@ -26,7 +26,7 @@ void give_offsets(SceneWorld& world) {
   }
 }
 
-/// The answer of the function for one pair at the gap of the pair, shifted by the rest offsets.
+/// The single-pair answer at the contact margin of the pair. Tests shift it by the rest offsets.
 struct PairTwin {
   PairTwin(const SceneWorld& world, const BodyDefinition& a, const BodyDefinition& b,
            NarrowTier tier, ContactLevel level)
@@ -40,7 +40,7 @@ struct PairTwin {
   PairAnswer answer;
 };
 
-/// Bit by bit: the points of a manifold depend on the pair and its gap only.
+/// Compares bit by bit: the points of a manifold depend only on the pair and its contact margin.
 void expect_points(const Contacts& contacts, std::size_t m, const PairTwin& twin) {
   const std::uint32_t first = contacts.point_first()[m];
   ASSERT_EQ(contacts.point_first()[m + 1] - first, twin.answer.contact_count);
@@ -74,12 +74,12 @@ void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t 
   EXPECT_LT(contacts.data_a()[i], world.bodies.size());
 }
 
-/// Bodies have their number as client data.
+/// The client data of a body is its index.
 const BodyDefinition& body_of(const SceneWorld& world, ClientData data) {
   return world.bodies[static_cast<std::size_t>(data)];
 }
 
-/// Every pair that is near by its own gap is shown, and no other.
+/// Checks that the scene shows exactly the pairs within their own contact margin.
 void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTier tier) {
   std::set<Names> near;
   for (const auto& [pair, distance] : world.touching(kMargin + 0.9)) {
@@ -95,7 +95,7 @@ void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTi
   }
 }
 
-TEST(ContactOffsets, pairs_of_any_gaps_answer_as_alone) {
+TEST(ContactOffsets, pairs_with_offsets_match_single_queries) {
   SceneWorld world(scaled(400), 71);
   give_offsets(world);
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
@@ -109,8 +109,8 @@ TEST(ContactOffsets, pairs_of_any_gaps_answer_as_alone) {
   }
 }
 
-/// Box shapes and meshes, whose contacts are merged into regions.
-TEST(ContactOffsets, rest_of_others_leaves_error_bounds_of_regions) {
+/// A box on a mesh with contact reduction.
+TEST(ContactOffsets, rest_offset_of_others_leaves_error_bounds) {
   CompositeWorld world;
   const ShapeId floor =
       add(world.composites, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
@@ -132,7 +132,7 @@ TEST(ContactOffsets, rest_of_others_leaves_error_bounds_of_regions) {
   EXPECT_EQ(bounds(false), bounds(true));
 }
 
-TEST(ContactOffsets, shapes_themselves_are_asked_about_at_level_boolean) {
+TEST(ContactOffsets, level_boolean_ignores_offsets) {
   SceneWorld world(scaled(300), 72);
   std::set<Names> overlapping;
   for (const auto& [pair, distance] : world.touching()) overlapping.insert(pair);
@@ -144,7 +144,7 @@ TEST(ContactOffsets, shapes_themselves_are_asked_about_at_level_boolean) {
   EXPECT_EQ(shown(contacts), overlapping);
 }
 
-TEST(ContactOffsets, offsets_of_nothing_change_no_bit) {
+TEST(ContactOffsets, zero_offsets_change_no_bit) {
   SceneWorld world(scaled(300), 73);
   Scene plain(world.pool, {.margin = kMargin});
   ASSERT_EQ(add_all(plain, world), Status::ok);
@@ -167,7 +167,7 @@ TEST(ContactOffsets, offsets_of_nothing_change_no_bit) {
   EXPECT_EQ(digest(contacts), digest(expected));
 }
 
-TEST(ContactOffsets, what_is_no_length_is_refused_and_changes_nothing) {
+TEST(ContactOffsets, bad_offsets_are_refused_and_change_nothing) {
   SceneWorld world(8, 74);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -188,8 +188,8 @@ TEST(ContactOffsets, what_is_no_length_is_refused_and_changes_nothing) {
   EXPECT_EQ(scene.set_offsets(Key{}, {}), Status::invalid_key);
 }
 
-/// The largest lengths there are overflow nothing.
-TEST(ContactOffsets, lengths_may_be_as_large_as_doubles) {
+/// The largest doubles cause no NaN.
+TEST(ContactOffsets, largest_doubles_cause_no_nan) {
   SceneWorld world(20, 75);
   const double most = std::numeric_limits<double>::max();
   world.bodies[0].offsets = {most, most};
@@ -201,7 +201,7 @@ TEST(ContactOffsets, lengths_may_be_as_large_as_doubles) {
   for (const double d : contacts.distance()) EXPECT_FALSE(std::isnan(d));
 }
 
-TEST(ContactOffsets, what_rests_on_a_mesh_rests_at_its_offset) {
+TEST(ContactOffsets, body_on_mesh_rests_at_its_offset) {
   CompositeWorld world;
   const ShapeId floor =
       add(world.composites, grid(8, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
@@ -228,7 +228,7 @@ TEST(ContactOffsets, what_rests_on_a_mesh_rests_at_its_offset) {
       for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
         EXPECT_NEAR(contacts.contact(p).depth, 0.01, 1e-6);
         const bool box_is_a = contacts.a()[0] == keys[0];
-        // Halfway between the floor and what is 0.03 below the box.
+        // Halfway between the floor and the surface 0.03 below the box.
         EXPECT_NEAR(contacts.contact(p).position[2], box_is_a ? -0.325 : -0.005, 1e-6);
       }
     }
@@ -241,8 +241,9 @@ TEST(ContactOffsets, what_rests_on_a_mesh_rests_at_its_offset) {
   }
 }
 
-/// Whatever comes, goes and is carried over, the pairs shown are those of a fresh scene.
-TEST(ContactOffsets, a_change_counts_from_the_next_question_on) {
+/// Changes offsets while bodies are removed, added and carried over, and compares with a fresh
+/// scene.
+TEST(ContactOffsets, changed_offsets_apply_to_next_collide) {
   SceneWorld world(scaled(200), 76);
   Scene scene(world.pool, {.margin = kMargin, .carry_over = 0.02});
   ASSERT_EQ(add_all(scene, world), Status::ok);

@@ -1,3 +1,6 @@
+// Clipping of two contact patches (supporting features) into contact points: depths, feature ids,
+// thinning to four points. Compared with a plain search in long double.
+
 #include "pipeline/manifold/contact_patch.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A patch with memory of its own. Vertex i has the number 10 + i, the edge from it 20 + i.
+// A patch that owns its memory. Vertex i has the id 10 + i, the edge from it 20 + i.
 struct TestPatch {
   std::vector<Vector3d> points;
   double rounding = 0.0;
@@ -57,7 +60,7 @@ Vector3d random_direction(Random& random) {
   return d.normalized();
 }
 
-// A convex polygon (or segment, or point) whose plane leans by up to `lean` from being
+// Returns a convex polygon, segment or point. Its plane is tilted by up to `lean` from the plane
 // perpendicular to the normal.
 TestPatch random_patch(Random& random, const Vector3d& normal, double lean, std::size_t vertices) {
   const Vector3d tilted = (normal + lean * random.unit() * random_direction(random)).normalized();
@@ -76,8 +79,8 @@ TestPatch random_patch(Random& random, const Vector3d& normal, double lean, std:
   return patch;
 }
 
-// The patch's height along the normal at a place in the plane of u and v, if it is there. A plain
-// fan of triangles in long double.
+// Returns the patch's height along the normal above a point of the plane of u and v, or nothing
+// outside the patch. A plain fan of triangles in long double.
 std::optional<double> height_at(const TestPatch& patch, const Vector3d& normal, const Vector3d& at,
                                 double slack) {
   const Vector3d u = normal.unitOrthogonal();
@@ -108,7 +111,8 @@ std::optional<double> height_at(const TestPatch& patch, const Vector3d& normal, 
   return std::nullopt;
 }
 
-// All places where the largest depth can be, plainly: vertices over the other patch, and crossings.
+// Computes the largest depth by testing all candidates: vertices over the other patch, and
+// crossings of edges.
 std::optional<double> deepest(const TestPatch& a, const TestPatch& b, const Vector3d& normal) {
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
@@ -147,7 +151,7 @@ TestPatch square(double half, double height, double turn = 0.0) {
   return patch;
 }
 
-TEST(ContactPatch, a_square_on_a_larger_one_meets_it_in_its_corners) {
+TEST(ContactPatch, square_on_larger_square_touches_at_corners) {
   TestPatch a = square(2.0, 1.0);
   TestPatch b = square(1.0, 0.75);
   const auto points = meet(a, b, Vector3d::UnitZ());
@@ -158,7 +162,7 @@ TEST(ContactPatch, a_square_on_a_larger_one_meets_it_in_its_corners) {
     EXPECT_NEAR(std::abs(p.position[0]), 1.0, 1e-6);
     EXPECT_NEAR(std::abs(p.position[1]), 1.0, 1e-6);
     EXPECT_FLOAT_EQ(p.position[2], 0.875F);
-    // Face 7 of a, a vertex of b.
+    // The face 7 of a with a vertex of b.
     EXPECT_EQ(p.feature >> 32U, (2U << 30U) + 7U);
     EXPECT_LT(p.feature & 0xFFFFFFFFU, 14U);
     features.insert(p.feature);
@@ -166,7 +170,7 @@ TEST(ContactPatch, a_square_on_a_larger_one_meets_it_in_its_corners) {
   EXPECT_EQ(features.size(), 4U);
 }
 
-TEST(ContactPatch, features_stay_the_same_under_a_small_motion) {
+TEST(ContactPatch, small_motion_keeps_features) {
   TestPatch a = square(1.0, 1.0);
   const auto features = [&](double turn, double shift) {
     TestPatch b = square(0.9, 0.9, 0.2 + turn);
@@ -181,14 +185,14 @@ TEST(ContactPatch, features_stay_the_same_under_a_small_motion) {
   EXPECT_EQ(before, features(0.0, 1e-3));
 }
 
-TEST(ContactPatch, crossing_edges_meet_in_a_point_and_parallel_ones_in_two) {
+TEST(ContactPatch, crossing_edges_give_one_point_parallel_two) {
   TestPatch a = {{{-1, 0, 0.1}, {1, 0, 0.1}}};
   TestPatch crossing = {{{0.25, -1, 0}, {0.25, 1, 0}}};
   const auto point = meet(a, crossing, Vector3d::UnitZ());
   ASSERT_EQ(point.size(), 1U);
   EXPECT_LT((position(point[0]) - Vector3d(0.25, 0, 0.05)).norm(), 1e-6);
   EXPECT_FLOAT_EQ(point[0].depth, 0.1F);
-  // The edge of a patch of two vertices is its feature.
+  // The feature of a patch with two vertices is the edge.
   EXPECT_EQ(point[0].feature >> 32U, (1U << 30U) + 7U);
 
   TestPatch along = {{{0.25, 1e-5, 0}, {3, -1e-5, 0}}};
@@ -198,7 +202,7 @@ TEST(ContactPatch, crossing_edges_meet_in_a_point_and_parallel_ones_in_two) {
   EXPECT_NEAR(std::max(ends[0].position[0], ends[1].position[0]), 1.0, 1e-6);
 }
 
-TEST(ContactPatch, an_edge_on_a_face_keeps_what_is_inside) {
+TEST(ContactPatch, edge_on_face_is_clipped) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = {{{0, 0, -0.1}, {3, 0, -0.4}}};
   const auto points = meet(a, b, Vector3d::UnitZ(), 0.0);
@@ -208,7 +212,7 @@ TEST(ContactPatch, an_edge_on_a_face_keeps_what_is_inside) {
   EXPECT_NEAR(points[1].depth, 0.1, 1e-6);
 }
 
-TEST(ContactPatch, points_beyond_the_margin_are_left_out_but_never_the_deepest) {
+TEST(ContactPatch, points_beyond_margin_are_dropped_except_deepest) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = {{{-0.5, -0.5, 0.1}, {0.5, -0.5, 0.1}, {0.5, 0.5, 0.3}, {-0.5, 0.5, 0.3}}};
   EXPECT_EQ(meet(a, b, Vector3d::UnitZ(), 0.5).size(), 4U);
@@ -218,7 +222,7 @@ TEST(ContactPatch, points_beyond_the_margin_are_left_out_but_never_the_deepest) 
   EXPECT_NEAR(least[0].depth, -0.1, 1e-6);
 }
 
-TEST(ContactPatch, rounding_adds_to_the_depth_and_moves_the_surfaces) {
+TEST(ContactPatch, rounding_adds_to_depth_and_shifts_points) {
   TestPatch a = {{{0, 0, 0}}, 0.5};
   TestPatch b = square(1.0, 0.6);
   b.rounding = 0.2;
@@ -228,7 +232,7 @@ TEST(ContactPatch, rounding_adds_to_the_depth_and_moves_the_surfaces) {
   EXPECT_NEAR(points[0].position[2], 0.45, 1e-6);
 }
 
-TEST(ContactPatch, patches_that_do_not_meet_give_the_closest_place) {
+TEST(ContactPatch, disjoint_patches_give_closest_point) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = square(1.0, 0.0);
   for (Vector3d& p : b.points) p.x() += 2.5;
@@ -239,7 +243,7 @@ TEST(ContactPatch, patches_that_do_not_meet_give_the_closest_place) {
   EXPECT_NEAR(points[0].depth, 0.0, 1e-9);
 }
 
-TEST(ContactPatch, flat_and_coincident_vertices_are_no_trouble) {
+TEST(ContactPatch, degenerate_patches_give_valid_points) {
   TestPatch floor = square(2.0, 0.0);
   TestPatch sliver = {{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}}};
   TestPatch upright = {{{-1, 0, -0.1}, {0, 0, 1}, {1, 0, -0.1}}};
@@ -256,7 +260,7 @@ TEST(ContactPatch, flat_and_coincident_vertices_are_no_trouble) {
   EXPECT_EQ(meet(point, point, Vector3d::UnitZ()).size(), 1U);
 }
 
-TEST(ContactPatch, many_vertices_are_thinned_to_a_patch_as_large) {
+TEST(ContactPatch, many_vertices_are_reduced_to_four_points) {
   TestPatch a;
   for (int i = 0; i < 100; ++i) {
     const double turn = 2.0 * M_PI * i / 100.0;
@@ -272,7 +276,7 @@ TEST(ContactPatch, many_vertices_are_thinned_to_a_patch_as_large) {
   EXPECT_LT((position(points[0]) + position(points[1])).norm(), 0.5);
 }
 
-TEST(ContactPatch, scale_does_not_matter) {
+TEST(ContactPatch, results_scale_with_patches) {
   for (const double scale : {1e-20, 1e-6, 1.0, 1e6, 1e15}) {
     TestPatch a = square(scale, 0.0);
     TestPatch b = square(scale, -0.1 * scale, 0.5);
@@ -282,7 +286,7 @@ TEST(ContactPatch, scale_does_not_matter) {
   }
 }
 
-TEST(ContactPatch, the_deepest_point_comes_first_and_all_lie_on_both_patches) {
+TEST(ContactPatch, deepest_point_is_first_all_on_both_patches) {
   Random random(1);
   for (std::size_t round = 0; round < scaled(20'000); ++round) {
     const Vector3d normal = random_direction(random);
@@ -299,8 +303,8 @@ TEST(ContactPatch, the_deepest_point_comes_first_and_all_lie_on_both_patches) {
       const auto top = height_at(a, normal, position(points[i]), 1e-5);
       const auto bottom = height_at(b, normal, position(points[i]), 1e-5);
       ASSERT_TRUE(top && bottom) << round;
-      // Heights of leaning patches change with the rounding of positions to float. The first point
-      // has the depth of the deepest, which may be another one.
+      // Heights of tilted patches change when positions are rounded to float. The first point has
+      // the largest depth of all, possibly of a different tied point.
       const double tied = i == 0 ? 4.0 * kTiedDepth : 0.0;
       EXPECT_NEAR(points[i].depth, *top - *bottom + a.rounding + b.rounding, 1e-4 + tied) << round;
       EXPECT_NEAR(normal.dot(position(points[i])), 0.5 * (*top + a.rounding + *bottom - b.rounding),
@@ -312,7 +316,7 @@ TEST(ContactPatch, the_deepest_point_comes_first_and_all_lie_on_both_patches) {
   }
 }
 
-TEST(ContactPatch, swapped_patches_give_the_same_points_with_swapped_features) {
+TEST(ContactPatch, swapped_patches_swap_features_only) {
   Random random(2);
   for (std::size_t round = 0; round < scaled(5'000); ++round) {
     const Vector3d normal = random_direction(random);

@@ -1,4 +1,5 @@
-// Regions of contact against the raw manifolds of all parts, and against one large box.
+// Contact regions (CompositePool::reduce, SceneOptions::contact_reduction) compared with the raw
+// manifolds of all primitives, and with one large box.
 
 #include "pipeline/composites/composites.h"
 #include "pipeline/solver/manifold.h"
@@ -27,7 +28,7 @@ using Vec = Eigen::Vector3d;
   return Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>();
 }
 
-/// What a body that is alone with a floor touches.
+/// A scene with one body and one floor.
 struct Floor {
   Floor(const ShapePool& shapes, const CompositePool& pool, ShapeId floor, ShapeId body,
         double margin, bool reduced)
@@ -43,7 +44,7 @@ struct Floor {
     ASSERT_EQ(scene.move(key, pose), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   }
-  /// Of manifold m.
+  /// Returns the points of manifold m.
   [[nodiscard]] std::vector<ContactPoint> points(std::size_t m) const {
     std::vector<ContactPoint> all;
     for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
@@ -61,7 +62,7 @@ struct Floor {
   Contacts contacts;
 };
 
-/// Floors whose surface is z = 0 over [-4, 4] x [-4, 4], and one large box.
+/// Floors with the surface z = 0 over [-4, 4] x [-4, 4]. The first is one large box.
 struct Floors {
   Floors() : pool(shapes) {
     body = add(shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
@@ -85,7 +86,7 @@ struct Floors {
     const std::vector<float> heights(41 * 41, 0.0F);
     ShapeId field;
     EXPECT_EQ(pool.add_height_field({heights, 41, 41, 0, {0.2, 0.2}}, field), Status::ok);
-    // Begins at its corner.
+    // A height field starts at its corner instead of its centre.
     ids.push_back(field);
     field_at = ids.size() - 1;
   }
@@ -102,7 +103,7 @@ struct Floors {
     EXPECT_EQ(pool.add_compound(tiles, ids.back()), Status::ok);
   }
 
-  /// A body that stands on floor i as it does on the others.
+  /// Returns the pose on floor i that corresponds to `pose` on the other floors.
   [[nodiscard]] Pose on(std::size_t i, Pose pose) const {
     for (int k = 0; k < 2 && i == field_at; ++k) pose.position[k] += 4.0;
     return pose;
@@ -112,13 +113,13 @@ struct Floors {
   CompositePool pool;
   ShapeId body;
   ShapeId large;
-  /// The first is the large box.
+  /// The first one is the large box.
   std::vector<ShapeId> ids;
   std::size_t field_at = 0;
 };
 
-/// A box of half extents (0.5, 0.4, 0.3) on one of its faces, turned any way, tilted by `tilt`, its
-/// deepest corner at `depth` under z = 0.
+/// Returns the pose of a box with half extents (0.5, 0.4, 0.3) that rests on one of its faces, in a
+/// random direction, tilted by `tilt`, its deepest corner `depth` below z = 0.
 [[nodiscard]] Pose resting(Random& random, double tilt, double depth) {
   const double angle = random.uniform(-4.0, 4.0);
   const double about = random.uniform(-4.0, 4.0);
@@ -134,10 +135,11 @@ struct Floors {
   return pose;
 }
 
-/// The extent of a face of the box in `resting`, below which depths are tied.
+/// Size of the largest face of the box in `resting`. Depths count as tied within kTiedDepth times
+/// it.
 constexpr double kFaceExtent = 1.3;
 
-/// Both have a point wherever the other has one, as deep.
+/// Checks that both have the same points with the same depths.
 void expect_same_points(const std::vector<ContactPoint>& a, const std::vector<ContactPoint>& b,
                         double tolerance) {
   ASSERT_EQ(a.size(), b.size());
@@ -151,7 +153,7 @@ void expect_same_points(const std::vector<ContactPoint>& a, const std::vector<Co
   }
 }
 
-TEST(ContactReduction, a_box_that_rests_on_any_flat_floor_has_the_contacts_of_one_large_box) {
+TEST(ContactReduction, box_on_any_flat_floor_matches_large_box) {
   const Floors floors;
   constexpr double kMargin = 0.05;
   std::vector<std::unique_ptr<Floor>> stood;
@@ -168,21 +170,21 @@ TEST(ContactReduction, a_box_that_rests_on_any_flat_floor_has_the_contacts_of_on
     for (std::size_t i = 0; i < stood.size(); ++i) {
       stood[i]->stand(floors.on(i, pose));
       SCOPED_TRACE("round " + std::to_string(round) + ", floor " + std::to_string(i));
-      // A box that is hardly over a tile, or beside it, may be nearer to its side.
+      // A box that barely overlaps a tile may be nearer to the tile's side.
       if (i == tiles && stood[i]->contacts.manifolds() != 1) continue;
       ASSERT_EQ(stood[i]->contacts.manifolds(), 1U);
       EXPECT_NEAR(stood[i]->contacts.distance()[0], stood[0]->contacts.distance()[0], 1e-6);
       EXPECT_LE((stood[i]->normal(0) - Vec(0, 0, -1)).norm(), 10.0 * tilt + 1e-6);
       ASSERT_EQ(stood[i]->points(0).size(), 4U);
-      // Halfway between two faces may be along the normal of either; where they are apart, of an
-      // edge between triangles.
+      // The midpoint between two faces may be measured along the normal of either face, and along
+      // an edge normal if they are apart.
       const double tolerance = 3e-6 + kMargin * tilt + 0.1 * std::max(0.0, -depth);
       expect_same_points(stood[0]->points(0), stood[i]->points(0), tolerance);
     }
   }
 }
 
-/// Pairs of bodies of all kinds, the answers about their parts, and regions of these.
+/// Pairs of bodies of all kinds, the answers for their primitives, and the regions made of them.
 struct Reduced {
   Reduced(std::size_t count, double margin, std::uint64_t seed,
           std::pmr::memory_resource* memory = std::pmr::get_default_resource())
@@ -210,13 +212,13 @@ struct Reduced {
   [[nodiscard]] Vec normal(std::size_t i) const {
     return {answers.normal(0)[i], answers.normal(1)[i], answers.normal(2)[i]};
   }
-  /// A contact as regions have it.
+  /// Returns a contact in the frame that regions use.
   [[nodiscard]] ContactPoint moved(std::size_t i, ContactPoint contact) const {
     const double* const from = pairs.poses[pairs.pairs[answers.pair_of(i)].a].position;
     for (int k = 0; k < 3; ++k) contact.position[k] += static_cast<float>(from[k]);
     return contact;
   }
-  /// All contacts of an answer, and all corners of what its two parts share.
+  /// Returns all contacts of an answer, and all corners of the area that its two primitives share.
   [[nodiscard]] std::vector<ContactPoint> all_points(std::size_t i) const {
     std::vector<ContactPoint> points;
     const std::uint32_t first = answers.contact_first()[i];
@@ -237,7 +239,7 @@ struct Reduced {
     }
     return points;
   }
-  /// Answers that touch, of a pair of bodies, in the order of the pairs of parts.
+  /// Returns for each pair of bodies its touching answers, in the order of primitive pairs.
   [[nodiscard]] std::vector<std::vector<std::size_t>> members() const {
     std::vector<std::size_t> slot(answers.size());
     for (std::size_t i = 0; i < answers.size(); ++i) slot[answers.pair_of(i)] = i;
@@ -260,7 +262,8 @@ struct Reduced {
   ContactRegions regions;
 };
 
-/// What a region may be made of: every member of its pair of bodies whose normal is nearly its own.
+/// Checks that a region's points come from members of its pair of bodies whose normals are nearly
+/// the region's.
 void expect_made_of(const Reduced& all, const ContactRegion& region,
                     const std::vector<std::size_t>& members) {
   const Vec normal = Eigen::Map<const Vec>(region.normal);
@@ -277,18 +280,18 @@ void expect_made_of(const Reduced& all, const ContactRegion& region,
     extent = std::max(extent, (position(p) - position(points[0])).norm());
   }
   for (const ContactPoint& kept : std::span(region.point, region.count)) {
-    // The first has the depth of the deepest, which may be another one.
+    // The first point has the largest depth of all, possibly of a different tied point.
     const double tied = &kept == region.point ? kTiedDepth * 2.0 * extent : 0.0;
     const auto is_it = [&](const ContactPoint& p) {
       return (position(p) - position(kept)).norm() <= 2e-6 &&
              std::abs(p.depth - kept.depth) <= 2e-5 + tied;
     };
     EXPECT_TRUE(std::any_of(points.begin(), points.end(), is_it));
-    EXPECT_LE(kept.depth, region.point[0].depth) << "the first is the deepest";
+    EXPECT_LE(kept.depth, region.point[0].depth) << "the first point must be the deepest";
   }
 }
 
-TEST(ContactReduction, regions_are_made_of_nearly_parallel_manifolds_and_keep_the_deepest) {
+TEST(ContactReduction, regions_merge_parallel_manifolds_and_keep_deepest) {
   for (const double margin : {0.0, 0.1}) {
     const Reduced all(scaled(400), margin, 11);
     const auto members = all.members();
@@ -305,7 +308,8 @@ TEST(ContactReduction, regions_are_made_of_nearly_parallel_manifolds_and_keep_th
         const auto leads = [&](const ContactRegion& r) {
           return Eigen::Map<const Vec>(r.normal).dot(all.normal(i)) >= kRegionCosine - 1e-9;
         };
-        EXPECT_TRUE(std::any_of(regions.begin(), regions.end(), leads)) << "a normal is lost";
+        EXPECT_TRUE(std::any_of(regions.begin(), regions.end(), leads))
+            << "no region has this normal";
       }
       double found = 1e9;
       for (const ContactRegion& region : regions) {
@@ -318,7 +322,7 @@ TEST(ContactReduction, regions_are_made_of_nearly_parallel_manifolds_and_keep_th
   }
 }
 
-TEST(ContactReduction, no_two_regions_have_nearly_parallel_normals) {
+TEST(ContactReduction, region_normals_are_never_nearly_parallel) {
   const Reduced all(scaled(400), 0.05, 17);
   for (std::size_t pair = 0; pair < all.regions.size(); ++pair) {
     const auto regions = all.regions.of(pair);
@@ -332,8 +336,8 @@ TEST(ContactReduction, no_two_regions_have_nearly_parallel_normals) {
   }
 }
 
-/// How far the origin is inside of the convex hull of points in the plane, negative outside: the
-/// least over all directions of how far the points reach along them.
+/// Returns how far the origin is inside the convex hull of the points in the plane, negative
+/// outside: the least support distance over directions in the plane.
 [[nodiscard]] double depth_in_hull(const std::vector<ContactPoint>& points, const Vec& normal) {
   Vec u = normal.unitOrthogonal();
   const Vec v = normal.cross(u);
@@ -348,7 +352,7 @@ TEST(ContactReduction, no_two_regions_have_nearly_parallel_normals) {
   return least;
 }
 
-TEST(ContactReduction, what_rests_within_its_raw_contacts_rests_within_the_reduced_ones) {
+TEST(ContactReduction, stable_raw_contacts_stay_stable_when_reduced) {
   const Floors floors;
   ShapePool& shapes = const_cast<ShapePool&>(floors.shapes);
   const ShapeId bodies[] = {add(shapes, CylinderShape{0.5, 0.3, 0.0}),
@@ -378,7 +382,8 @@ TEST(ContactReduction, what_rests_within_its_raw_contacts_rests_within_the_reduc
           }
         }
         ASSERT_EQ(reduced.contacts.manifolds(), 1U);
-        // A quarter of the diameter: four points of a round face are a square in it.
+        // At least a quarter of the diameter inside: the four points that are kept of a round face
+        // form a square in it.
         if (all.empty() || depth_in_hull(all, Vec::UnitZ()) < 0.3) continue;
         ++stood;
         EXPECT_GT(depth_in_hull(reduced.points(0), Vec::UnitZ()), 0.0);
@@ -388,7 +393,7 @@ TEST(ContactReduction, what_rests_within_its_raw_contacts_rests_within_the_reduc
   EXPECT_GT(stood, scaled(300));
 }
 
-/// Features of all points of a body's contacts.
+/// Returns the sorted feature ids of all contact points.
 [[nodiscard]] std::vector<std::uint64_t> features(const Floor& floor) {
   std::vector<std::uint64_t> all;
   for (std::size_t p = 0; p < floor.contacts.points(); ++p) {
@@ -398,7 +403,7 @@ TEST(ContactReduction, what_rests_within_its_raw_contacts_rests_within_the_reduc
   return all;
 }
 
-TEST(ContactReduction, corners_keep_their_features_while_a_box_trembles_and_slides) {
+TEST(ContactReduction, corners_keep_features_while_box_trembles_and_slides) {
   const Floors floors;
   Random random(23);
   for (std::size_t i = 1; i + 1 < floors.ids.size(); ++i) {
@@ -407,13 +412,13 @@ TEST(ContactReduction, corners_keep_their_features_while_a_box_trembles_and_slid
     std::vector<std::uint64_t> first;
     for (int frame = 0; frame < 100; ++frame) {
       Pose pose = start;
-      // First it trembles, then it slides over many triangles.
+      // The box first trembles, then slides over many triangles.
       for (double& p : pose.position) p += random.uniform(-1e-7, 1e-7);
       if (frame > 50) pose.position[0] += 0.011 * (frame - 50);
       floor.stand(floors.on(i, pose));
       ASSERT_EQ(floor.contacts.manifolds(), 1U);
       const auto now = features(floor);
-      ASSERT_EQ(std::adjacent_find(now.begin(), now.end()), now.end()) << "two of one name";
+      ASSERT_EQ(std::adjacent_find(now.begin(), now.end()), now.end()) << "duplicate feature";
       if (first.empty()) first = now;
       EXPECT_EQ(now, first) << "floor " << i << ", frame " << frame;
     }
@@ -438,7 +443,7 @@ TEST(ContactReduction, corners_keep_their_features_while_a_box_trembles_and_slid
   return bits;
 }
 
-TEST(ContactReduction, is_the_same_on_any_number_of_threads_and_any_instruction_set) {
+TEST(ContactReduction, regions_match_on_any_threads_and_isa) {
   std::vector<std::uint64_t> first;
   for (const Isa isa : {available_isas().front(), available_isas().back()}) {
     const IsaScope scope(isa);
@@ -455,7 +460,7 @@ TEST(ContactReduction, is_the_same_on_any_number_of_threads_and_any_instruction_
   }
 }
 
-TEST(ContactReduction, allocates_nothing_the_second_time_and_counts_every_byte) {
+TEST(ContactReduction, second_call_allocates_nothing_and_footprint_is_exact) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
@@ -482,7 +487,7 @@ TEST(ContactReduction, allocates_nothing_the_second_time_and_counts_every_byte) 
   EXPECT_EQ(memory.outstanding(), 0U);
 }
 
-TEST(ContactReduction, a_scene_with_meshes_allocates_nothing_in_a_steady_frame) {
+TEST(ContactReduction, steady_scene_with_meshes_allocates_nothing) {
   CountingMemory memory;
   CountingMemory results;
   {
@@ -511,7 +516,7 @@ TEST(ContactReduction, a_scene_with_meshes_allocates_nothing_in_a_steady_frame) 
   EXPECT_EQ(memory.outstanding(), 0U);
 }
 
-TEST(ContactReduction, asks_for_answers_with_contacts) {
+TEST(ContactReduction, answers_without_contacts_are_refused) {
   Reduced all(10, 0.0, 41);
   answer(all.world.shapes, all.pairs, {.level = ContactLevel::distance}, all.answers);
   EXPECT_EQ(all.reduce(Execution::serial()), Status::invalid_argument);

@@ -1,6 +1,6 @@
-// Kernels of cylinders, cones, ellipsoids, tapered capsules and a program's own sets, and of hulls
-// on half-spaces: small cases derived on paper, then against the solver, on every instruction set,
-// far from the origin and at other places of a batch.
+// Kernels of cylinders, cones, ellipsoids, tapered capsules and user shapes, and of hulls on
+// half-spaces: small cases derived on paper, then compared with the solver, on every ISA, far from
+// the origin and at other positions of a batch.
 
 #include <gtest/gtest.h>
 #include <winnow/core/rotation.h>
@@ -21,7 +21,7 @@ namespace {
 
 using enum ShapeKind;
 
-/// One pair: a at the origin, b at a pose.
+/// Returns a scene with one pair of shapes at the two poses.
 template <typename A, typename B>
 PairScene pair_of(const A& a, const B& b, const Pose& pose_a, const Pose& pose_b) {
   PairScene scene;
@@ -37,7 +37,7 @@ PairAnswers answer_to(const PairScene& scene, ContactLevel level, double margin 
   return ask(scene, {.level = level, .margin = margin}).at(0);
 }
 
-/// Depths of the contacts, deepest first.
+/// Returns the depths of the contacts, deepest first.
 std::vector<float> depths(const PairAnswers& answer) {
   std::vector<float> depth;
   for (const ContactPoint& contact : answer.contacts) depth.push_back(contact.depth);
@@ -54,7 +54,7 @@ Pose turned_about_x(double angle, double z) {
 
 constexpr double kRightAngle = 1.5707963267948966;
 
-TEST(CurvedKernels, a_cylinder_stands_on_four_points_of_its_rim) {
+TEST(CurvedKernels, upright_cylinder_on_plane_has_four_rim_points) {
   const PairScene scene =
       pair_of(CylinderShape{1.0, 2.0, 0.0}, HalfSpaceShape{}, Pose::at(0, 0, 1.5), Pose{});
   const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
@@ -70,7 +70,7 @@ TEST(CurvedKernels, a_cylinder_stands_on_four_points_of_its_rim) {
   EXPECT_NEAR(p[1].position[1] + p[2].position[1], 0.0, 1e-6);
 }
 
-TEST(CurvedKernels, a_cylinder_lies_on_the_ends_of_its_side) {
+TEST(CurvedKernels, lying_cylinder_on_plane_has_two_points) {
   const PairScene scene = pair_of(CylinderShape{1.0, 2.0, 0.25}, HalfSpaceShape{},
                                   turned_about_x(kRightAngle, 1.0), Pose{});
   const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
@@ -79,7 +79,7 @@ TEST(CurvedKernels, a_cylinder_lies_on_the_ends_of_its_side) {
   EXPECT_NEAR(std::abs(answer.contacts[0].position[1] - answer.contacts[1].position[1]), 4.0, 1e-6);
 }
 
-TEST(CurvedKernels, a_cone_stands_on_its_base_or_its_tip) {
+TEST(CurvedKernels, cone_on_plane_rests_on_base_or_tip) {
   const ConeShape cone{1.0, 1.0, 0.0};
   const PairAnswers base = answer_to(pair_of(cone, HalfSpaceShape{}, Pose::at(0, 0, 1.25), Pose{}),
                                      ContactLevel::manifold, 0.5);
@@ -92,8 +92,8 @@ TEST(CurvedKernels, a_cone_stands_on_its_base_or_its_tip) {
   EXPECT_EQ(tip.contacts.size(), 1U);
 }
 
-TEST(CurvedKernels, a_ball_beside_a_cone_is_as_far_as_from_its_side) {
-  // A side of slope 45 degrees: (1, 0, 0) is sqrt(1/2) from it.
+TEST(CurvedKernels, ball_beside_cone_has_distance_from_side) {
+  // The side has a slope of 45 degrees and is sqrt(1/2) from (1, 0, 0).
   const PairScene scene =
       pair_of(SphereShape{0.25}, ConeShape{1.0, 0.5, 0.0}, Pose::at(1, 0, 0.5), Pose{});
   const PairAnswers answer = answer_to(scene, ContactLevel::distance);
@@ -102,7 +102,7 @@ TEST(CurvedKernels, a_ball_beside_a_cone_is_as_far_as_from_its_side) {
   EXPECT_NEAR(answer.normal[2], -std::sqrt(0.5), 1e-15);
 }
 
-TEST(CurvedKernels, a_drum_on_a_box_sinks_in_by_the_lower_of_two_ways_out) {
+TEST(CurvedKernels, cylinder_in_box_top_has_least_depth) {
   const PairScene scene = pair_of(BoxShape{{4, 4, 1}, 0.0}, CylinderShape{1.0, 1.0, 0.0}, Pose{},
                                   Pose::at(0.5, 0, 1.75));
   const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
@@ -112,7 +112,7 @@ TEST(CurvedKernels, a_drum_on_a_box_sinks_in_by_the_lower_of_two_ways_out) {
   for (const float depth : depths(answer)) EXPECT_NEAR(depth, 0.25F, 1e-6F);
 }
 
-TEST(CurvedKernels, crossed_drums_are_as_far_as_their_sides) {
+TEST(CurvedKernels, crossed_separate_cylinders_have_distance_of_sides) {
   const CylinderShape drum{0.5, 2.0, 0.0};
   const PairScene scene = pair_of(drum, drum, Pose{}, [] {
     Pose pose = turned_about_x(kRightAngle, 0.25);
@@ -124,7 +124,8 @@ TEST(CurvedKernels, crossed_drums_are_as_far_as_their_sides) {
   EXPECT_NEAR(answer.normal[0], 1.0, 1e-7);
 }
 
-/// The depth and normal of a pair that lanes answer alone, to the last digits.
+/// Checks depth and normal of a pair to the last digits, and that lanes answered it without the
+/// solver.
 void expect_depth(const PairScene& scene, double depth, const double (&normal)[3]) {
   NarrowPhase narrow;
   NarrowResult result;
@@ -137,28 +138,28 @@ void expect_depth(const PairScene& scene, double depth, const double (&normal)[3
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(result.normal(axis)[0], normal[axis], 1e-14);
 }
 
-TEST(CurvedKernels, drums_that_cross_are_as_deep_as_their_sides) {
+TEST(CurvedKernels, crossed_overlapping_cylinders_have_depth_of_sides) {
   Pose across = turned_about_x(kRightAngle, 0.25);
   across.position[0] = 0.75;
   const CylinderShape drum{0.5, 2.0, 0.0};
   expect_depth(pair_of(drum, drum, Pose{}, across), 0.25, {1.0, 0.0, 0.0});
 }
 
-TEST(CurvedKernels, a_drum_in_a_wall_is_as_deep_as_its_cap) {
+TEST(CurvedKernels, cylinder_cap_in_box_gives_depth) {
   expect_depth(pair_of(BoxShape{{4, 4, 1}, 0.0}, CylinderShape{1.0, 1.0, 0.0}, Pose{},
                        Pose::at(0.5, 0.125, 1.75)),
                0.25, {0.0, 0.0, 1.0});
 }
 
-TEST(CurvedKernels, logs_side_by_side_are_as_deep_as_their_sides) {
+TEST(CurvedKernels, parallel_cylinders_have_depth_of_sides) {
   Pose beside = Pose::at(0.6, 0.8, 1.0);
   expect_depth(pair_of(CylinderShape{0.75, 2.0, 0.0}, CylinderShape{0.5, 4.0, 0.0}, Pose{}, beside),
                0.25, {0.6, 0.8, 0.0});
 }
 
-TEST(CurvedKernels, a_cone_in_the_edge_of_a_box_is_as_deep_as_its_side) {
-  // The cone's side has a slope of 45 degrees. The edge of the box along y is met where the line of
-  // the side towards it passes, 0.125 / sqrt(2) inside.
+TEST(CurvedKernels, cone_side_at_box_edge_gives_depth) {
+  // The cone's side has a slope of 45 degrees. The nearest line of the side passes the edge of the
+  // box along y 0.125 / sqrt(2) inside it.
   const ConeShape cone{1.0, 0.5, 0.0};
   const double slope = std::sqrt(0.5);
   Pose corner = Pose::at(-1.0 - 0.5 + 0.125, 0.0, 1.0);
@@ -166,9 +167,9 @@ TEST(CurvedKernels, a_cone_in_the_edge_of_a_box_is_as_deep_as_its_side) {
   expect_depth(scene, 0.125 * slope, {slope, 0.0, -slope});
 }
 
-TEST(CurvedKernels, a_rim_in_an_edge_is_as_deep_as_it_reaches_in) {
-  // A coin that stands on the edge of a box, turned by 45 degrees about y, with its rim along x
-  // and leaning by a degree: its lower rim is the deeper one.
+TEST(CurvedKernels, cylinder_rim_at_box_edge_gives_depth) {
+  // A coin on the edge of a box that is turned by 45 degrees about y. The coin's rim is along x and
+  // tilted by one degree: its lower rim is the deeper one.
   Pose on_edge;
   on_edge.orientation[0] = std::cos(0.25 * kRightAngle);
   on_edge.orientation[2] = std::sin(0.25 * kRightAngle);
@@ -181,8 +182,8 @@ TEST(CurvedKernels, a_rim_in_an_edge_is_as_deep_as_it_reaches_in) {
   expect_depth(scene, 0.0625, {0.0, 0.0, 1.0});
 }
 
-TEST(CurvedKernels, an_egg_over_a_plane_is_as_high_as_its_lowest_point) {
-  // Turned by a right angle about x: its second axis is upright.
+TEST(CurvedKernels, ellipsoid_on_plane_has_distance_of_lowest_point) {
+  // The turn by a right angle about x makes the second axis upright.
   const PairScene scene = pair_of(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.5}, EllipsoidShape{{1, 3, 2}},
                                   Pose{}, turned_about_x(kRightAngle, 3.25));
   const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
@@ -192,9 +193,9 @@ TEST(CurvedKernels, an_egg_over_a_plane_is_as_high_as_its_lowest_point) {
   EXPECT_NEAR(answer.contacts[0].position[2], 0.375, 1e-6);
 }
 
-TEST(CurvedKernels, a_ball_by_an_egg_is_as_far_as_from_the_point_that_faces_it) {
-  // The point (r cos t, s sin t) of an ellipse with radii r and s faces along
-  // (cos t / r, sin t / s): here of radii 2 and 1 at the angle with sine 0.6, to either side.
+TEST(CurvedKernels, ball_by_ellipsoid_matches_closed_form) {
+  // The point (r cos t, s sin t) of an ellipse with radii r and s has the normal (cos t / r, sin t
+  // / s). Here the radii are 2 and 1 and sin t = 0.6; the ball is outside and inside.
   const double surface[2] = {2.0 * 0.8, 0.6};
   const double out[2] = {0.4 / std::hypot(0.4, 0.6), 0.6 / std::hypot(0.4, 0.6)};
   for (const double away : {1.0, -0.125}) {
@@ -207,23 +208,23 @@ TEST(CurvedKernels, a_ball_by_an_egg_is_as_far_as_from_the_point_that_faces_it) 
   }
 }
 
-TEST(CurvedKernels, an_egg_in_a_wall_is_as_deep_as_it_reaches_in) {
+TEST(CurvedKernels, ellipsoid_in_box_has_depth_of_lowest_point) {
   expect_depth(pair_of(BoxShape{{4, 4, 1}, 0.0}, EllipsoidShape{{1.0, 2.0, 1.5}}, Pose{},
                        Pose::at(0.5, 0.125, 1.75)),
                0.75, {0.0, 0.0, 1.0});
 }
 
-TEST(CurvedKernels, eggs_end_to_end_are_as_deep_as_their_ends) {
+TEST(CurvedKernels, ellipsoids_end_to_end_have_depth_of_ends) {
   const EllipsoidShape egg{{1.0, 1.25, 1.5}};
   expect_depth(pair_of(egg, egg, Pose{}, Pose::at(0, 0, 2.75)), 0.25, {0.0, 0.0, 1.0});
 }
 
-/// Balls of radii 4 and 1 whose middles are 5 apart: the side between them has the normal
-/// (0.8, 0, 0.6), and begins in (3.2, 0, -0.1).
+/// Balls of radii 4 and 1 whose centres are 5 apart: the side between them has the normal (0.8, 0,
+/// 0.6) and starts at (3.2, 0, -0.1).
 constexpr TaperedCapsuleShape kTaper{{4.0, 1.0}, 2.5};
 
-TEST(CurvedKernels, a_ball_beside_a_taper_is_as_far_as_from_its_side) {
-  // From the middle of the side, (2, 0, 1.5), to either side of it.
+TEST(CurvedKernels, ball_beside_tapered_capsule_has_distance_from_side) {
+  // On either side of the middle of the side, (2, 0, 1.5).
   for (const double away : {1.0, -0.125}) {
     const Pose at = Pose::at(2.0 + 0.8 * away, 0, 1.5 + 0.6 * away);
     const PairAnswers answer =
@@ -235,8 +236,8 @@ TEST(CurvedKernels, a_ball_beside_a_taper_is_as_far_as_from_its_side) {
   }
 }
 
-TEST(CurvedKernels, a_taper_that_lies_on_its_side_touches_a_plane_with_both_balls) {
-  // Turned about y so that the side's normal points down.
+TEST(CurvedKernels, lying_tapered_capsule_on_plane_has_two_points) {
+  // Turned about y so that the normal of the side points down.
   const double half = 0.5 * (std::acos(0.6) - 2.0 * kRightAngle);
   Pose lying = Pose::at(0, 0, 2.25);
   lying.orientation[0] = std::cos(half);
@@ -252,20 +253,20 @@ TEST(CurvedKernels, a_taper_that_lies_on_its_side_touches_a_plane_with_both_ball
   EXPECT_NEAR(std::abs(answer.contacts[0].position[0] - answer.contacts[1].position[0]), 4.0, 1e-6);
 }
 
-TEST(CurvedKernels, a_taper_whose_ball_holds_the_other_is_that_ball) {
+TEST(CurvedKernels, nested_tapered_capsule_matches_larger_ball) {
   const PairScene scene =
       pair_of(SphereShape{1.0}, TaperedCapsuleShape{{3.0, 1.0}, 0.5}, Pose::at(0, 0, 4.0), Pose{});
   EXPECT_EQ(answer_to(scene, ContactLevel::distance).distance, 0.5);
 }
 
-TEST(CurvedKernels, a_taper_in_a_wall_is_as_deep_as_its_ball_reaches_in) {
+TEST(CurvedKernels, tapered_capsule_in_box_has_depth_of_ball) {
   expect_depth(pair_of(BoxShape{{8, 8, 1}, 0.0}, TaperedCapsuleShape{{1.5, 0.5}, 1.0}, Pose{},
                        Pose::at(0.5, 0.125, 1.0 + 1.0 + 1.5 - 1.75)),
                1.75, {0.0, 0.0, 1.0});
 }
 
-TEST(CurvedKernels, tapers_side_by_side_are_as_deep_as_their_sides) {
-  // The second is the first's mirror image, so that their sides are in parallel.
+TEST(CurvedKernels, parallel_tapered_capsules_have_depth_of_sides) {
+  // The second is the mirror image of the first, so that their sides are parallel.
   const double n[3] = {0.8, 0.0, 0.6};
   const TaperedCapsuleShape upside_down{{1.0, 4.0}, 2.5};
   Pose beside = Pose::at(2.0 * 2.0, 0, 2.0 * 1.5);
@@ -273,14 +274,15 @@ TEST(CurvedKernels, tapers_side_by_side_are_as_deep_as_their_sides) {
   expect_depth(pair_of(kTaper, upside_down, Pose{}, beside), 0.25, {0.8, 0.0, 0.6});
 }
 
-TEST(CurvedKernels, tapers_in_each_other_are_as_deep_as_their_balls) {
-  // Upright both: the larger balls are side by side, 0.3 apart.
+TEST(CurvedKernels, overlapping_tapered_capsules_have_depth_of_balls) {
+  // Both are upright: the larger balls are side by side, 0.3 apart.
   const TaperedCapsuleShape taper{{0.5, 0.125}, 0.25};
   expect_depth(pair_of(taper, taper, Pose{}, Pose::at(0.18, 0.24, 0)), 0.7, {0.6, 0.8, 0.0});
 }
 
-TEST(CurvedKernels, a_needle_through_a_coin_is_no_deeper_than_along_any_direction) {
-  // The coin is 1e-8 wide, and the difference of the cores 3e-10 thin: its faces are slivers.
+TEST(CurvedKernels, needle_through_coin_has_least_depth) {
+  // The coin is 1e-8 wide, and the Minkowski difference of the cores 3e-10 thin: its faces are
+  // slivers.
   Pose along = Pose::at(0.69512259845849433, 0.69512259845849433, 0.69512259845849433);
   Pose coin = along;
   constexpr double kTurns[2][4] = {
@@ -294,14 +296,14 @@ TEST(CurvedKernels, a_needle_through_a_coin_is_no_deeper_than_along_any_directio
       EllipsoidShape{{1.1007418655307882e-08, 6.7142671839396405e-09, 0.0}, rounding}, along, coin);
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     const auto answer = ask(scene, {.level = ContactLevel::distance, .tier = tier}).at(0);
-    // The least of the coin's extents across the needle, in long double.
+    // The least extent of the coin across the needle, in long double.
     EXPECT_NEAR(-answer.distance, rounding + 3.2603644706036771e-10, answer.error_bound);
     EXPECT_LE(answer.error_bound, 1e-9);
   }
 }
 
-TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
-  // Both drums look the same from either side.
+TEST(CurvedKernels, equal_opposite_directions_give_either_normal) {
+  // Moving either way separates the drums equally soon.
   const CylinderShape drum{0.5, 2.0, 0.0};
   const PairScene scene = pair_of(drum, drum, Pose{}, turned_about_x(kRightAngle, 0.0));
   NarrowPhase narrow;
@@ -313,10 +315,11 @@ TEST(CurvedKernels, mirrored_ways_out_are_as_short_as_each_other) {
   EXPECT_NEAR(std::abs(result.normal(0)[0]), 1.0, 1e-14);
 }
 
-/// Of a drum at the origin, upright, and one that leans by an angle about x: how far the second has
-/// to go along the direction that is `around` about z and `up` over the horizon.
-double way_out(const CylinderShape& a, const CylinderShape& b, double lean, const Pose& at,
-               double around, double up) {
+/// Returns how far the second drum must move along a direction to separate from the first one. The
+/// first is upright at the origin, the second is tilted by `lean` about x. The direction is
+/// `around` about z and `up` above the horizon.
+double separating_distance(const CylinderShape& a, const CylinderShape& b, double lean,
+                           const Pose& at, double around, double up) {
   const double n[3] = {std::cos(up) * std::cos(around), std::cos(up) * std::sin(around),
                        std::sin(up)};
   const auto reach = [](const CylinderShape& drum, double along) {
@@ -328,7 +331,7 @@ double way_out(const CylinderShape& a, const CylinderShape& b, double lean, cons
          (at.position[0] * n[0] + at.position[1] * n[1] + at.position[2] * n[2]);
 }
 
-TEST(CurvedKernels, drums_in_each_other_have_depths_within_their_bounds) {
+TEST(CurvedKernels, nearly_coaxial_cylinders_stay_within_error_bounds) {
   Random random(11);
   for (int i = 0; i < 40; ++i) {
     const double lean = std::pow(10.0, random.uniform(-6.0, -2.0));
@@ -340,8 +343,9 @@ TEST(CurvedKernels, drums_in_each_other_have_depths_within_their_bounds) {
     double least = a.half_length + b.half_length;
     for (int around = 0; around < 2000; ++around) {
       for (int up = -2; up <= 2; ++up) {
-        least = std::min(
-            least, way_out(a, b, lean, pose, 4.0 * kRightAngle * around / 2000.0, 0.5 * lean * up));
+        least = std::min(least,
+                         separating_distance(a, b, lean, pose, 4.0 * kRightAngle * around / 2000.0,
+                                             0.5 * lean * up));
       }
     }
     const double sizes = a.radius + a.half_length + b.radius + b.half_length;
@@ -351,7 +355,7 @@ TEST(CurvedKernels, drums_in_each_other_have_depths_within_their_bounds) {
   }
 }
 
-TEST(CurvedKernels, sets_of_a_program_are_as_deep_whatever_radius_it_gives) {
+TEST(CurvedKernels, user_shape_depth_ignores_its_radius) {
   PairScene scene;
   Random random(13);
   add_pairs(scene, support, support, PairStyle::ordinary, 500, random);
@@ -442,7 +446,7 @@ NarrowOptions options(ContactLevel level, NarrowTier tier) {
   return {.level = level, .tier = tier, .margin = kReach};
 }
 
-/// `is_exact`: what touches is decided by exact arithmetic.
+/// `is_exact`: pairs that touch are decided by exact arithmetic.
 void expect_answers_of_the_solver(const PairScene& scene, bool is_exact) {
   const auto solved = ask(scene, options(ContactLevel::distance, NarrowTier::reference));
   const auto verdict = ask(scene, options(ContactLevel::boolean, NarrowTier::robust));
@@ -465,15 +469,15 @@ void expect_answers_of_the_solver(const PairScene& scene, bool is_exact) {
   }
 }
 
-TEST_P(CurvedPairs, are_answered_as_by_the_solver) {
+TEST_P(CurvedPairs, answers_match_solver) {
   for (const PairStyle style : kPairStyles) {
     SCOPED_TRACE(to_string(style));
-    // What touches a shape that is known by its farthest points is decided by no exact arithmetic.
+    // Exact arithmetic does not cover shapes given by support functions.
     expect_answers_of_the_solver(scene_of(style, scaled(1000)), GetParam().b < ellipsoid);
   }
 }
 
-/// A body of the scene and points as bodies: how far each is from it.
+/// Returns the distance of each point from a body of the scene.
 std::vector<double> distances_to_points(PairScene& scene, std::uint32_t body,
                                         const std::vector<Pose>& points) {
   ShapeId point;
@@ -497,8 +501,8 @@ std::vector<double> distances_to_points(PairScene& scene, std::uint32_t body,
 void expect_contacts_on_both_surfaces(PairScene& scene) {
   const auto touch = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
   for (std::size_t i = 0; i < touch.size(); ++i) {
-    // Lines within 0.001 of parallel meet at both ends, where they are no farther beside each
-    // other.
+    // Lines within 0.001 of parallel get a contact at each end of their common part, where they may
+    // be slightly farther apart.
     const double bound =
         (touch[i].contacts.size() > 1 ? 5e-4 : 2e-6) * (extent(scene, scene.pairs[i]) + kReach);
     for (const double side : {0.5, -0.5}) {
@@ -520,7 +524,7 @@ void expect_contacts_on_both_surfaces(PairScene& scene) {
   }
 }
 
-TEST_P(CurvedPairs, have_contacts_on_both_surfaces) {
+TEST_P(CurvedPairs, contacts_lie_on_both_surfaces) {
   PairScene scene = scene_of(PairStyle::ordinary, scaled(1000), 12);
   expect_contacts_on_both_surfaces(scene);
 }
@@ -538,13 +542,13 @@ void expect_hardly_any_solved(const PairScene& scene) {
   }
 }
 
-TEST_P(CurvedPairs, of_ordinary_sizes_hardly_need_the_solver) {
+TEST_P(CurvedPairs, ordinary_pairs_rarely_need_solver) {
   expect_hardly_any_solved(scene_of(PairStyle::ordinary, 2000));
 }
 
-/// Stands bodies upright in a frame that leans: turned about their own axes, upside down or not,
-/// and boxes on any of their faces.
-void stand_up(PairScene& scene, const Quaternion& lean, Random& random) {
+/// Stands bodies upright in a tilted frame: turned about their own axes, upside down or not, boxes
+/// on any of their faces.
+void make_upright(PairScene& scene, const Quaternion& lean, Random& random) {
   for (std::size_t i = 0; i < scene.poses.size(); ++i) {
     const double spin = random.uniform(0.0, 2.0 * kRightAngle);
     Quaternion turn = product(lean, {std::cos(spin), 0.0, 0.0, std::sin(spin)});
@@ -557,31 +561,31 @@ void stand_up(PairScene& scene, const Quaternion& lean, Random& random) {
   }
 }
 
-TEST_P(CurvedPairs, that_stand_upright_are_answered_as_by_the_solver) {
+TEST_P(CurvedPairs, upright_pairs_match_solver) {
   Random random(17);
   for (const PairStyle style : kPairStyles) {
     SCOPED_TRACE(to_string(style));
     for (const Quaternion& lean : {Quaternion{1, 0, 0, 0}, Quaternion{0.6, 0.0, 0.8, 0.0},
                                    Quaternion{0.1, 0.7, -0.5, 0.5}}) {
       PairScene scene = scene_of(style, scaled(300), 18);
-      stand_up(scene, lean, random);
+      make_upright(scene, lean, random);
       expect_answers_of_the_solver(scene, GetParam().b < ellipsoid);
-      // Where a set lies on a half-space, the point that stands for the deepest one may be above
-      // it.
+      // If a user shape lies on a half-space, the contact at the deepest point may be above the
+      // shape's surface.
       const bool is_level = GetParam().a == half_space && GetParam().b == support;
       if (style == PairStyle::ordinary && !is_level) expect_contacts_on_both_surfaces(scene);
     }
   }
 }
 
-TEST_P(CurvedPairs, that_stand_upright_hardly_need_the_solver) {
+TEST_P(CurvedPairs, upright_pairs_rarely_need_solver) {
   Random random(19);
   PairScene scene = scene_of(PairStyle::ordinary, 2000);
-  stand_up(scene, {1, 0, 0, 0}, random);
+  make_upright(scene, {1, 0, 0, 0}, random);
   expect_hardly_any_solved(scene);
 }
 
-TEST_P(CurvedPairs, have_the_same_answers_on_every_instruction_set) {
+TEST_P(CurvedPairs, answers_match_on_every_isa) {
   for (const PairStyle style : kPairStyles) {
     SCOPED_TRACE(to_string(style));
     const PairScene scene = scene_of(style, scaled(200));
@@ -600,7 +604,7 @@ TEST_P(CurvedPairs, have_the_same_answers_on_every_instruction_set) {
   }
 }
 
-TEST_P(CurvedPairs, have_the_same_answers_alone_as_in_a_batch) {
+TEST_P(CurvedPairs, single_pair_matches_batch) {
   PairScene scene = scene_of(PairStyle::lattice, 60);
   const auto all = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
   const std::vector<BodyPair> pairs = scene.pairs;
@@ -611,7 +615,7 @@ TEST_P(CurvedPairs, have_the_same_answers_alone_as_in_a_batch) {
   }
 }
 
-TEST_P(CurvedPairs, have_the_same_answers_far_away) {
+TEST_P(CurvedPairs, far_pairs_match_near_pairs) {
   PairScene scene = scene_of(PairStyle::ordinary, scaled(300));
   for (Pose& pose : scene.poses) {
     for (double& x : pose.position) x = std::round(x * 0x1p10) * 0x1p-10;

@@ -1,4 +1,5 @@
-// Deformable meshes: candidates are exactly the overlapping boxes, and nothing passes through.
+// DeformableMesh: candidates are exactly the features with overlapping boxes, and no impact is
+// missed.
 
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/deformable_mesh.h>
@@ -39,7 +40,7 @@ struct MeshStep {
   }
 };
 
-/// Vertices of a mesh, each moved a little in its own way.
+/// Returns a mesh whose vertices all move a little in different directions.
 MeshStep trembling(const MeshData& mesh, double motion, const Vec3d& offset = {}) {
   Random random(31);
   MeshStep step;
@@ -63,7 +64,7 @@ std::vector<MeshStep> sample_steps() {
   return steps;
 }
 
-/// Boxes and features as they are by definition.
+/// Edges, boxes and features computed directly from their definition.
 class MeshTwin {
  public:
   MeshTwin(const MeshStep& step, const Vec3d& origin, double distance) : step_(step) {
@@ -89,7 +90,7 @@ class MeshTwin {
   [[nodiscard]] std::size_t edges() const { return edges_.size(); }
   [[nodiscard]] std::array<std::uint32_t, 2> edge(std::size_t i) const { return edges_[i]; }
 
-  /// The vertices of feature i of one side of a kind.
+  /// Returns the vertices of feature i on the first or second side of a feature pair.
   [[nodiscard]] std::vector<std::uint32_t> feature(FeaturePair kind, bool second,
                                                    std::size_t i) const {
     if (kind == FeaturePair::edge_edge) return {edges_[i][0], edges_[i][1]};
@@ -130,7 +131,7 @@ std::vector<Pair> candidates_by_force(FeaturePair kind, const MeshTwin& a, const
   return pairs;
 }
 
-/// All results, in the order in which they come.
+/// Collects all chunks, in the order of delivery.
 template <typename Result, typename Ask>
 std::vector<Result> collected(Ask&& ask) {
   std::vector<Result> all;
@@ -161,7 +162,7 @@ std::array<Vec3d, 4> points_at(const std::vector<Vec3d>& a, const std::vector<st
   return points;
 }
 
-TEST(DeformableMeshes, have_every_edge_once) {
+TEST(DeformableMeshes, each_edge_is_stored_once) {
   for (const MeshStep& step : sample_steps()) {
     DeformableMesh mesh;
     ASSERT_EQ(step.build(mesh), Status::ok);
@@ -173,7 +174,7 @@ TEST(DeformableMeshes, have_every_edge_once) {
   }
 }
 
-TEST(DeformableMeshes, have_exactly_the_candidates_whose_boxes_overlap) {
+TEST(DeformableMeshes, self_candidates_are_exactly_overlapping_boxes) {
   for (const MeshStep& step : sample_steps()) {
     for (const double distance : {0.0, 0.02}) {
       const Vec3d origin = step.start[0];
@@ -188,7 +189,7 @@ TEST(DeformableMeshes, have_exactly_the_candidates_whose_boxes_overlap) {
   }
 }
 
-TEST(DeformableMeshes, have_exactly_the_candidates_with_another_mesh) {
+TEST(DeformableMeshes, candidates_with_mesh_are_exactly_overlapping_boxes) {
   const MeshStep a = trembling(torus(10, 8), 0.1);
   const MeshStep b = trembling(degenerate_soup(50, 4), 0.1);
   DeformableMesh first;
@@ -206,7 +207,7 @@ TEST(DeformableMeshes, have_exactly_the_candidates_with_another_mesh) {
   }
 }
 
-TEST(DeformableMeshes, answer_in_the_same_order_everywhere_in_chunks_of_any_size) {
+TEST(DeformableMeshes, order_matches_for_any_threads_isa_and_chunk) {
   const MeshStep step = trembling(thin_sheets(24), 0.01);
   std::vector<Pair> expected[2];
   for (const Isa isa : available_isas()) {
@@ -235,7 +236,7 @@ TEST(DeformableMeshes, answer_in_the_same_order_everywhere_in_chunks_of_any_size
   }
 }
 
-TEST(DeformableMeshes, miss_no_impact) {
+TEST(DeformableMeshes, self_impacts_match_single_queries) {
   for (const MeshStep& step : sample_steps()) {
     DeformableMesh mesh({.origin = step.start[0], .chunk = 7});
     ASSERT_EQ(step.build(mesh), Status::ok);
@@ -269,7 +270,7 @@ TEST(DeformableMeshes, miss_no_impact) {
   }
 }
 
-TEST(DeformableMeshes, stop_a_sheet_that_falls_through_another) {
+TEST(DeformableMeshes, falling_sheet_hits_sheet_below) {
   const MeshData sheets = thin_sheets(10);
   MeshStep below = trembling(sheets, 0.0);
   MeshStep above = below;
@@ -292,7 +293,7 @@ TEST(DeformableMeshes, stop_a_sheet_that_falls_through_another) {
   EXPECT_EQ(stopped.size(), above.start.size());
 }
 
-TEST(DeformableMeshes, tell_what_is_near_with_the_nearest_points) {
+TEST(DeformableMeshes, proximity_returns_near_features_and_witness_points) {
   for (const MeshStep& step : sample_steps()) {
     const double thickness = 0.05;
     const Vec3d origin = step.start[0];
@@ -336,7 +337,7 @@ TEST(DeformableMeshes, tell_what_is_near_with_the_nearest_points) {
   }
 }
 
-TEST(DeformableMeshes, refuse_bad_input_and_stay_as_they_were) {
+TEST(DeformableMeshes, bad_input_is_refused_and_changes_nothing) {
   const MeshStep step = trembling(torus(6, 5), 0.1);
   DeformableMesh mesh;
   const auto nothing = [](auto) { FAIL(); };
@@ -386,12 +387,12 @@ TEST(DeformableMeshes, refuse_bad_input_and_stay_as_they_were) {
   EXPECT_EQ(step.move(mesh), Status::invalid_argument);  // NOLINT(bugprone-use-after-move)
 }
 
-TEST(DeformableMeshes, may_be_edited_between_steps) {
+TEST(DeformableMeshes, rebuilt_mesh_matches_fresh_mesh) {
   MeshStep step = trembling(torus(12, 9), 0.1);
   DeformableMesh mesh;
   ASSERT_EQ(step.build(mesh), Status::ok);
   ASSERT_EQ(step.move(mesh), Status::ok);
-  // A face, and then a vertex more; and a face taken away.
+  // Add a face, then a vertex with a face, and remove a face.
   for (const std::uint32_t corner : {0U, 5U, 40U}) step.corners.push_back(corner);
   step.start.push_back(step.start[3] + Vec3d(0.1, 0.2, 0.3));
   step.end.push_back(step.end[3]);
@@ -415,7 +416,7 @@ TEST(DeformableMeshes, may_be_edited_between_steps) {
             candidates_of(fresh, FeaturePair::edge_edge));
 }
 
-TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_to_step) {
+TEST(DeformableMeshes, steady_mesh_takes_120_bytes_per_triangle) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const MeshStep step = trembling(torus(100, 60), 0.01);
   CountingMemory memory;
@@ -432,7 +433,7 @@ TEST(DeformableMeshes, take_at_most_120_bytes_a_triangle_and_no_more_from_step_t
   EXPECT_EQ(memory.outstanding(), mesh.footprint().total().reserved);
 }
 
-TEST(DeformableMeshes, survive_every_refusal_of_memory) {
+TEST(DeformableMeshes, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const MeshStep step = trembling(torus(8, 6), 0.1);
   for (std::size_t granted = 0;; ++granted) {
@@ -461,7 +462,7 @@ TEST(DeformableMeshes, survive_every_refusal_of_memory) {
   EXPECT_EQ(huge.self_candidates(FeaturePair::edge_edge, [](auto) {}), Status::out_of_memory);
 }
 
-TEST(DeformableMeshes, of_one_triangle_or_none_that_has_an_edge_are_answered) {
+TEST(DeformableMeshes, meshes_of_one_triangle_return_results) {
   MeshStep step;
   step.start = {Vec3d(), Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0.2, 0.2, 1.0)};
   step.end = {Vec3d(), Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0.2, 0.2, -1.0)};

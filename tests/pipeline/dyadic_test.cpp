@@ -1,3 +1,6 @@
+// Dyadic, the fixed-size exact numbers of the exact overlap test, compared with doubles and with
+// the integers of Boost.
+
 #include "pipeline/exact/dyadic.h"
 #include <gtest/gtest.h>
 
@@ -20,7 +23,7 @@ namespace {
 
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 
-TEST(Dyadic, sums_and_products_of_integers_are_those_of_integers) {
+TEST(Dyadic, arithmetic_on_integers_matches_int) {
   for (int a = -9; a <= 9; ++a) {
     for (int b = -9; b <= 9; ++b) {
       const Dyadic x(a);
@@ -34,7 +37,7 @@ TEST(Dyadic, sums_and_products_of_integers_are_those_of_integers) {
   }
 }
 
-TEST(Dyadic, keeps_every_bit_of_doubles_far_apart) {
+TEST(Dyadic, sum_of_distant_doubles_keeps_every_bit) {
   const Dyadic sum = Dyadic(DBL_MAX) + kDenormal;
   EXPECT_EQ(compare(sum, DBL_MAX), 1);
   EXPECT_EQ(compare(sum - DBL_MAX, kDenormal), 0);
@@ -46,7 +49,7 @@ TEST(Dyadic, keeps_every_bit_of_doubles_far_apart) {
   EXPECT_EQ(square.highest_bit(), 2047);
 }
 
-TEST(Dyadic, that_needs_more_room_than_there_is_is_zero) {
+TEST(Dyadic, results_beyond_capacity_are_zero) {
   constexpr int kTooFar = 64 * (kDyadicDigits + 1);
   const Dyadic far = Dyadic::power_of_two(kTooFar);
   EXPECT_EQ((far + 1.0).sign(), 0);
@@ -58,13 +61,13 @@ TEST(Dyadic, that_needs_more_room_than_there_is_is_zero) {
   EXPECT_EQ((wide * Dyadic(-1.0)).sign(), -1);
 }
 
-TEST(Dyadic, sums_may_take_all_the_room_that_there_is) {
+TEST(Dyadic, sum_of_full_capacity_is_exact) {
   const Dyadic most = Dyadic::power_of_two(64 * (kDyadicDigits - 2) + 63);
   EXPECT_EQ(compare(most + 1.0 - most, 1.0), 0);
   EXPECT_EQ(compare(most - 1.0 - most, -1.0), 0);
 }
 
-TEST(Dyadic, is_what_it_was_when_it_is_copied_onto_itself) {
+TEST(Dyadic, self_assignment_keeps_value) {
   Dyadic number(-2.5);
   const Dyadic& same = number;
   number = same;
@@ -73,7 +76,7 @@ TEST(Dyadic, is_what_it_was_when_it_is_copied_onto_itself) {
   EXPECT_EQ(compare(Dyadic(), 0.0), 0);
 }
 
-TEST(Dyadic, is_rounded_to_nearly_the_nearest_double) {
+TEST(Dyadic, scaled_returns_nearly_nearest_double) {
   for (const double value : {1.0, 3.0, 0.1, 1e300, -7e-300, DBL_MIN, -DBL_MAX}) {
     EXPECT_EQ(Dyadic(value).scaled(0), value);
     const double third = (Dyadic(value) * 0x1.5555555555555p-2).scaled(0);
@@ -81,7 +84,7 @@ TEST(Dyadic, is_rounded_to_nearly_the_nearest_double) {
   }
 }
 
-TEST(Dyadic, roots_are_exact_or_just_above) {
+TEST(Dyadic, root_is_exact_or_slightly_above) {
   Random random(7);
   for (const double value : {1.0, 5.0, 12.0, 0x1p-600, 3.0 * 0x1p500, 0.75}) {
     EXPECT_EQ(compare(root_above(Dyadic(value) * value), value), 0) << value;
@@ -99,7 +102,7 @@ TEST(Dyadic, roots_are_exact_or_just_above) {
 #ifdef WINNOW_HAVE_BOOST_INTEGERS
 using Integer = boost::multiprecision::cpp_int;
 
-// Numbers as multiples of 2^-1200.
+// Numbers are multiples of 2^-1200.
 constexpr int kScale = 1200;
 
 [[nodiscard]] Integer integer_of(double value, int scale) {
@@ -116,7 +119,7 @@ constexpr int kScale = 1200;
   return random.chance(0.5) ? value : -value;
 }
 
-TEST(Dyadic, polynomials_agree_with_big_integers) {
+TEST(Dyadic, polynomials_match_big_integers) {
   Random random(11);
   for (std::size_t i = 0; i < scaled(20000); ++i) {
     double v[5];
@@ -131,7 +134,7 @@ TEST(Dyadic, polynomials_agree_with_big_integers) {
     const Integer size = abs(whole);
     ASSERT_EQ(made.lowest_bit() + 3 * kScale, static_cast<int>(lsb(size)));
     ASSERT_EQ(made.highest_bit() + 3 * kScale, static_cast<int>(msb(size)));
-    // Every bit between them, too: the number less its leading doubles is nothing in the end.
+    // All bits agree: subtracting the leading double again and again ends at zero.
     Dyadic rest = made;
     Integer other = whole;
     for (int part = 0; part < 64 && rest.sign() != 0; ++part) {
@@ -146,8 +149,8 @@ TEST(Dyadic, polynomials_agree_with_big_integers) {
   }
 }
 
-/// A few powers of two at the ends of digits and of short numbers: what is carried or borrowed
-/// between them runs through all digits.
+/// Sums of a few powers of two near the ends of digits, so that carries and borrows run through all
+/// digits.
 struct Runs {
   Dyadic number;
   Integer integer;  // times 2^kRunScale
@@ -169,7 +172,8 @@ struct Runs {
   }
 };
 
-/// That a number is an integer times 2^-scale, by its sign, its ends and all between them.
+/// Checks that a number is an integer times 2^-scale: sign, lowest and highest bit, and all bits
+/// between them.
 void expect_is(const Dyadic& number, const Integer& integer, int scale) {
   ASSERT_EQ(number.sign(), integer.sign());
   if (integer == 0) return;
@@ -178,13 +182,13 @@ void expect_is(const Dyadic& number, const Integer& integer, int scale) {
   const int high = static_cast<int>(msb(size));
   ASSERT_EQ(number.lowest_bit(), low - scale);
   ASSERT_EQ(number.highest_bit(), high - scale);
-  // Of its 60 upper bits no more than the last few are missing.
+  // Only the last few of the upper 60 bits may be missing.
   const Integer top = high >= 60 ? Integer(size >> (high - 60)) : Integer(size << (60 - high));
   const double mantissa = static_cast<double>(static_cast<std::uint64_t>(top)) * 0x1p-60;
   const double scaled = number.scaled(scale - high);
   ASSERT_LE(std::abs(std::abs(scaled) - mantissa), 0x1p-50);
   ASSERT_EQ(scaled < 0.0, integer.sign() < 0);
-  // Bits that are set, one after the other from below, leave nothing.
+  // Subtracting all set bits, from the lowest up, leaves zero.
   Dyadic rest = integer.sign() < 0 ? -number : number;
   for (int bit = low; bit <= high; ++bit) {
     if (!bit_test(size, static_cast<unsigned>(bit))) continue;
@@ -194,7 +198,7 @@ void expect_is(const Dyadic& number, const Integer& integer, int scale) {
   ASSERT_EQ(rest.sign(), 0);
 }
 
-TEST(Dyadic, carries_and_borrows_run_through_all_digits) {
+TEST(Dyadic, carries_through_all_digits_match_big_integers) {
   Random random(12);
   constexpr int kUnit = Runs::kRunScale;
   for (int i = 0; i < 1500; ++i) {
@@ -215,10 +219,10 @@ TEST(Dyadic, carries_and_borrows_run_through_all_digits) {
   }
 }
 
-TEST(Dyadic, roots_are_no_larger_than_they_have_to_be) {
+TEST(Dyadic, root_of_near_squares_is_tight) {
   Random random(13);
   for (int i = 0; i < 1000; ++i) {
-    // Squares of numbers with few bits, and what lies beside them.
+    // Squares of numbers with few bits, and their neighbours.
     const double root = std::ldexp(static_cast<double>(1 + random.below(1U << 25U)),
                                    static_cast<int>(random.below(400)) - 200);
     const Dyadic square = Dyadic(root) * root;

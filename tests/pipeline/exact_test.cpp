@@ -1,3 +1,6 @@
+// exact_overlap: verdicts on small integer shapes compared with integers (lattice_truth), hand-made
+// cases at one unit in the last place, and lengths that span the range of double.
+
 #include <gtest/gtest.h>
 #include "pipeline/exact/exact_overlap.h"
 #include "pipeline/solver/solver.h"
@@ -61,7 +64,7 @@ void set_orientation(Random& random, Pose& pose) {
   for (int k = 0; k < 4; ++k) pose.orientation[k] = turn[k];
 }
 
-/// Columns of the hull of shape `side`.
+/// Vertex columns of the hull on one side.
 using HullColumns = double[3][6];
 
 void set_lattice(Random& random, Pair& pair, HullColumns (&columns)[2]) {
@@ -89,7 +92,7 @@ void set_lattice(Random& random, Pair& pair, HullColumns (&columns)[2]) {
   }
 }
 
-/// Checks pairs of two kinds on a lattice, where many touch.
+/// Checks pairs of two kinds on a lattice, where many touch exactly.
 void expect_lattice_truth(ShapeKind a, ShapeKind b, std::size_t count) {
   Random random(static_cast<std::uint64_t>(a) * 8 + static_cast<std::uint64_t>(b) + 100);
   Pair pair;
@@ -112,7 +115,7 @@ void expect_lattice_truth(ShapeKind a, ShapeKind b, std::size_t count) {
 constexpr ShapeKind kCores[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box,
                                 ShapeKind::triangle, ShapeKind::hull};
 
-TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
+TEST(ExactOverlap, verdict_resolves_one_ulp) {
   Pair pair;
   pair.boxes[0] = {{0.1, 0.3, 0.7}, 0.0};
   pair.boxes[1] = {{0.1, 0.3, 0.7}, 0.0};
@@ -132,15 +135,15 @@ TEST(ExactOverlap, sees_one_unit_in_the_last_place) {
   EXPECT_EQ(pair.verdict(ShapeKind::sphere, ShapeKind::sphere), ExactVerdict::separated);
 }
 
-TEST(ExactOverlap, half_turns_with_rounded_quaternions_are_decided) {
+TEST(ExactOverlap, rounded_half_turn_quaternions_are_decided) {
   Pair pair;
-  // cos(pi / 2) in double is 6e-17: what a library makes of a half turn.
+  // cos(pi / 2) is 6e-17 in double: libraries produce such quaternions for half turns.
   for (Pose& pose : pair.poses) pose.orientation[0] = std::cos(std::acos(-1.0) / 2.0);
   pair.poses[0].orientation[2] = 1.0;
   pair.poses[1].orientation[1] = 1.0;
   pair.poses[1].position[1] = 2.0;
   for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
-  // Turned about x by a trifle, the second box lowers a corner into the first.
+  // The tiny turn about x lowers a corner of the second box into the first.
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
   for (BoxShape& box : pair.boxes) box.rounding = 0.25;
   pair.poses[1].position[1] = 2.5;
@@ -149,7 +152,7 @@ TEST(ExactOverlap, half_turns_with_rounded_quaternions_are_decided) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::separated);
 }
 
-TEST(ExactOverlap, half_spaces_touch_the_lowest_point) {
+TEST(ExactOverlap, half_space_touches_lowest_point) {
   Pair pair;
   pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 1.0};
   pair.poses[1].orientation[1] = 1.0;  // a quarter turn about x: local z becomes -y
@@ -168,18 +171,18 @@ TEST(ExactOverlap, half_spaces_touch_the_lowest_point) {
     pair.poses[1].position[2] = std::nextafter(3.0, 2.0);
     EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::overlapping);
   }
-  // A normal nearly along an axis, whose length is 1 in double.
+  // A normal nearly along an axis whose length rounds to 1.
   pair.half_spaces[0] = {{0.0, 0x1p-60, 1.0}, 1.0};
   pair.poses[1].position[2] = 3.0;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::sphere), ExactVerdict::overlapping);
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::overlapping);
-  // Stood on a tilted plane of slope 3:4 a disc reaches 4/5 of its radius down.
+  // On a plane of slope 3:4 a disc reaches 4/5 of its radius down.
   pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};
   pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
   pair.cylinders[1] = {4.0, 0.0, 0.0};
   pair.poses[1].position[2] = 3.0;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
-  // With a rounding of 1 it stands 5/4 higher: as far as 1 along the normal.
+  // A rounding of 1 raises it by 5/4, which is 1 along the normal.
   pair.cylinders[1].rounding = 1.0;
   pair.poses[1].position[2] = 4.25;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
@@ -205,7 +208,7 @@ TEST(ExactOverlap, half_spaces_are_apart_only_if_opposite) {
   EXPECT_EQ(verdict(), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, discs_are_decided_where_bounds_from_both_sides_suffice) {
+TEST(ExactOverlap, discs_are_decided_if_both_bounds_suffice) {
   Pair pair;
   pair.cylinders[0] = {1.0, 2.0, 0.0};
   pair.cones[1] = {1.0, 1.0, 0.5};
@@ -220,7 +223,7 @@ TEST(ExactOverlap, discs_are_decided_where_bounds_from_both_sides_suffice) {
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cone), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, cylinders_lie_and_stand_on_boxes) {
+TEST(ExactOverlap, cylinders_on_boxes_resolve_one_ulp) {
   Pair pair;
   pair.boxes[0] = {{1.0, 1.0, 1.0}, 0.0};
   pair.cylinders[1] = {0.5, 0.25, 0.0};
@@ -238,14 +241,14 @@ TEST(ExactOverlap, cylinders_lie_and_stand_on_boxes) {
   EXPECT_EQ(verdict(std::nextafter(1.5, 1.0)), ExactVerdict::overlapping);
 }
 
-/// A hull of so many of the vertices in the columns.
+/// Makes a hull of the first `count` vertices of the columns.
 void set_hull(HullShape& hull, const HullColumns& columns, std::uint32_t count) {
   hull.vertex_count = count;
   hull.rounding = 0.0;
   for (int k = 0; k < 3; ++k) hull.vertex[k] = columns[k];
 }
 
-TEST(ExactOverlap, segments_on_one_line_touch_whichever_way_is_tried_first) {
+TEST(ExactOverlap, collinear_segments_touch_for_any_axis) {
   for (int along = 0; along < 3; ++along) {
     HullColumns columns{};
     columns[along][0] = -1.0;
@@ -264,8 +267,8 @@ TEST(ExactOverlap, segments_on_one_line_touch_whichever_way_is_tried_first) {
   }
 }
 
-TEST(ExactOverlap, a_point_on_a_prism_is_told_from_one_in_it) {
-  // Around the z axis, which lies in the side x = 0 or, with the last two vertices, inside.
+TEST(ExactOverlap, point_on_prism_touches_and_inside_overlaps) {
+  // A ring around the z axis. The axis is in the side x = 0, or inside with the last two vertices.
   constexpr double kRing[][2] = {{0.0, 0.0}, {0.0, 1.0}, {-2.0, -1.0}, {0.0, -3.0}, {0.5, 0.2}};
   double columns[3][10];
   std::size_t count = 0;
@@ -289,11 +292,11 @@ TEST(ExactOverlap, a_point_on_a_prism_is_told_from_one_in_it) {
   EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::hull, up), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, segments_along_each_axis_meet_the_triangles_they_pierce) {
+TEST(ExactOverlap, segment_through_triangle_is_not_separated) {
   for (int along = 0; along < 3; ++along) {
     Pair pair;
     pair.capsules[1] = {0.0, 1.0};
-    // From z to the axis.
+    // Turns z to the axis.
     pair.poses[1].orientation[0] = along == 2 ? 1.0 : 0.5;
     if (along == 0) pair.poses[1].orientation[2] = 0.5;
     if (along == 1) pair.poses[1].orientation[1] = -0.5;
@@ -309,7 +312,7 @@ TEST(ExactOverlap, segments_along_each_axis_meet_the_triangles_they_pierce) {
   }
 }
 
-TEST(ExactOverlap, planes_of_normals_of_any_length_are_decided) {
+TEST(ExactOverlap, planes_with_long_normals_are_decided) {
   Pair pair;
   pair.half_spaces[0] = {{0.0, 0.0, 4.0}, 4.0};
   pair.boxes[1] = {{1.0, 1.0, 2.0}, 0.0};
@@ -319,7 +322,7 @@ TEST(ExactOverlap, planes_of_normals_of_any_length_are_decided) {
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::separated);
 }
 
-TEST(ExactOverlap, is_the_same_if_the_way_to_try_is_no_number_or_none) {
+TEST(ExactOverlap, invalid_axis_of_turned_boxes_is_ignored) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const double axes[][3] = {{0.0, 0.0, 0.0}, {kInfinity, 0.0, 0.0}, {1.0, kNan, 0.0}};
@@ -334,26 +337,26 @@ TEST(ExactOverlap, is_the_same_if_the_way_to_try_is_no_number_or_none) {
   }
 }
 
-TEST(ExactOverlap, of_numbers_that_span_too_far_is_right_or_undecided) {
+TEST(ExactOverlap, wide_number_ranges_are_right_or_undecided) {
   const double up[3] = {0.0, 0.0, 1.0};
   Pair pair;
   pair.cylinders[0] = {1e300, 1e300, 0.0};
   pair.boxes[1] = {{1e-300, 1e-300, 1e-300}, 0.0};
   pair.poses[1].position[2] = 2e300;
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::box, up), ExactVerdict::separated);
-  // A point over a triangle.
+  // A point above a triangle.
   pair.triangles[0] = {{{-1e300, 1e-300, 0.0}, {1e300, -1e-300, 0.0}, {0.0, 1e300, 0.0}}, 0.0};
   pair.spheres[1].radius = 0.0;
   pair.poses[1].position[2] = 1e-300;
   EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere, up), ExactVerdict::separated);
-  // So far that their sum is infinite.
+  // The sum of these coordinates overflows.
   HullColumns far;
   for (auto& column : far) std::fill(std::begin(column), std::end(column), 1.5e308);
   far[0][1] = far[1][2] = -1.5e308;
   set_hull(pair.hulls[0], far, 3);
   pair.poses[1] = {};
   EXPECT_EQ(pair.verdict(ShapeKind::hull, ShapeKind::box, up), ExactVerdict::separated);
-  // And so far that but their products with a direction are.
+  // The sum of these does not overflow, but their products with a direction do.
   for (int i = 0; i < 3; ++i) {
     far[0][i] = 1e308 + i * 1e307;
     far[1][i] = far[2][i] = i;
@@ -367,13 +370,13 @@ TEST(ExactOverlap, of_numbers_that_span_too_far_is_right_or_undecided) {
   pair.boxes[0] = {{1.0, 1.0, 1.0}, 1e-300};
   pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.0};
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
-  // Turns of which nothing is known any more.
+  // Turns by a denormal angle: products of the two quaternions span too far.
   for (BoxShape& box : pair.boxes) box = {{1.0, 1.0, 1.0}, 0.0};
   for (Pose& pose : pair.poses) pose.orientation[1] = std::numeric_limits<double>::denorm_min();
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box, up), ExactVerdict::undecided);
 }
 
-TEST(ExactOverlap, of_rims_so_small_that_products_lose_digits_is_exact) {
+TEST(ExactOverlap, tiny_rims_are_decided_exactly) {
   const double up[3] = {0.0, 0.0, 1.0};
   Pair pair;
   pair.boxes[0] = {{1e-275, 1e-275, 1e-275}, 0.0};
@@ -384,7 +387,7 @@ TEST(ExactOverlap, of_rims_so_small_that_products_lose_digits_is_exact) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cone, up), ExactVerdict::separated);
 }
 
-/// One of the 24 turns that keep axes on axes.
+/// Sets one of the 24 rotations that map axes to axes.
 void set_quarter_turns(Random& random, Pose& pose) {
   static const double kTurns[][4] = {{1, 0, 0, 0}, {0, 0, 3, 0},  {1, 1, 0, 0},  {0, -2, 0, 2},
                                      {0, 1, 1, 0}, {1, 0, -1, 0}, {1, 1, -1, 1}, {-5, 5, 5, 5}};
@@ -392,7 +395,7 @@ void set_quarter_turns(Random& random, Pose& pose) {
   for (int k = 0; k < 4; ++k) pose.orientation[k] = turn[k];
 }
 
-TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero) {
+TEST(ExactOverlap, quarter_turned_cylinders_touch_at_distance_zero) {
   Random random(29);
   int seen[3] = {};
   int lying = 0;
@@ -410,7 +413,7 @@ TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero
       pair.boxes[side] = {{digit(random, 1, 3), digit(random, 1, 3), digit(random, 1, 3)},
                           rounding};
       pair.spheres[side].radius = digit(random, 1, 3);
-      // Across an axis.
+      // Perpendicular to an axis.
       TriangleShape& triangle = pair.triangles[side];
       triangle = {{{-1.0, -4.0, 2.0}, {4.0, -1.0, 2.0}, {0.0, 5.0, 2.0}}, rounding};
       for (auto& vertex : triangle.vertex) vertex[1] += digit(random, -2, 2);
@@ -423,13 +426,13 @@ TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero
                    ShapeId::of(other, 1), pair.poses[1], ContactLevel::distance, 0.0, counts);
     const ExactVerdict verdict = pair.verdict(ShapeKind::cylinder, other);
     if (verdict == ExactVerdict::undecided) {
-      // Rounded rims that cross, and triangles whose planes are reached through.
+      // Rounded rims that cross, and triangles whose planes are pierced, may be undecided.
       ASSERT_TRUE((rounded && other == ShapeKind::cylinder) || other == ShapeKind::triangle) << i;
       continue;
     }
     ++seen[static_cast<int>(verdict)];
     if (other == ShapeKind::triangle && verdict == ExactVerdict::touching) ++lying;
-    // The roots of small integers are no closer than that.
+    // Roots of small integers are either equal or farther apart than this.
     const bool zero = std::abs(answer.distance) < 1e-9;
     ASSERT_EQ(verdict == ExactVerdict::touching, zero) << i << ' ' << answer.distance;
     if (!zero) {
@@ -440,7 +443,7 @@ TEST(ExactOverlap, cylinders_of_quarter_turns_touch_where_their_distance_is_zero
   for (const int count : seen) EXPECT_GT(count, 0);
 }
 
-TEST(ExactOverlap, points_touch_the_corners_sides_and_insides_of_triangles) {
+TEST(ExactOverlap, points_touch_corners_sides_and_insides_of_triangles) {
   Random random(31);
   for (int round = 0; round < 300; ++round) {
     Pair pair{};
@@ -459,7 +462,7 @@ TEST(ExactOverlap, points_touch_the_corners_sides_and_insides_of_triangles) {
     }
     EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
     EXPECT_EQ(pair.mirrored(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
-    // Out of the plane, by one unit in the last place of what lies in it.
+    // Move the point out of the plane by one unit in the last place of a coordinate in it.
     const int k = static_cast<int>(random.below(3));
     double across[3];
     for (int i = 0; i < 3; ++i) {
@@ -496,14 +499,14 @@ TEST(ExactOverlap, numbers_too_far_apart_are_undecided) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::undecided);
 }
 
-TEST(ExactOverlap, upright_boxes_are_decided_whatever_their_numbers_span) {
+TEST(ExactOverlap, upright_boxes_of_any_range_are_decided) {
   Random random(77);
   Pair pair;
   int seen[3] = {};
   for (std::size_t i = 0; i < scaled(2000); ++i) {
     int sign = -1;
     for (int k = 0; k < 3; ++k) {
-      // Each axis has its own scale, up to all of double.
+      // Each axis has its own scale, over the whole range of double.
       const double unit = std::ldexp(1.0, static_cast<int>(random.below(2000)) - 1000);
       double reach = 0.0;
       for (int side = 0; side < 2; ++side) {
@@ -524,8 +527,8 @@ TEST(ExactOverlap, upright_boxes_are_decided_whatever_their_numbers_span) {
   for (const int verdict : seen) EXPECT_GT(verdict, 0);
 }
 
-/// Against the same boxes whose frames are turned so that x becomes y, y z, and z x.
-TEST(ExactOverlap, upright_boxes_are_decided_as_those_of_turned_frames) {
+/// Compares with the boxes in a frame that maps x to y, y to z, and z to x.
+TEST(ExactOverlap, upright_boxes_match_permuted_frames) {
   Random random(21);
   int verdicts[3] = {};
   for (int round = 0; round < 4000; ++round) {
@@ -559,7 +562,7 @@ TEST(ExactOverlap, upright_boxes_are_decided_as_those_of_turned_frames) {
   for (const int count : verdicts) EXPECT_GT(count, 100);
 }
 
-TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
+TEST(ExactOverlap, turned_boxes_of_any_range_are_decided) {
   Random random(78);
   Pair pair;
   HullColumns columns[2];
@@ -568,7 +571,8 @@ TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
     set_lattice(random, pair, columns);
     for (BoxShape& box : pair.boxes) box.rounding = 0.0;
     double& half = pair.boxes[0].half[random.below(3)];
-    // Between nothing and little the verdict is that of both, if these agree.
+    // If the verdicts for extents 0 and 0x1p-100 agree, any extent between them has the same
+    // verdict.
     half = 0.0;
     const ExactVerdict flat = pair.verdict(ShapeKind::box, ShapeKind::box);
     half = 0x1p-100;
@@ -582,7 +586,7 @@ TEST(ExactOverlap, turned_boxes_are_decided_whatever_their_numbers_span) {
   EXPECT_GT(asked, 50);
 }
 
-TEST(ExactOverlap, shapes_over_level_planes_are_decided_whatever_their_numbers_span) {
+TEST(ExactOverlap, shapes_over_level_planes_are_decided) {
   Pair pair;
   pair.boxes[1] = {{1.0, 0x1p-900, 0x1p900}, 0.0};
   pair.poses[1].position[2] = 0x1p900;
@@ -601,7 +605,7 @@ TEST(ExactOverlap, shapes_over_level_planes_are_decided_whatever_their_numbers_s
   }
 }
 
-TEST(ExactOverlap, upright_cylinders_are_decided_if_their_numbers_span_1300_bits) {
+TEST(ExactOverlap, upright_cylinders_spanning_1300_bits_are_decided) {
   Pair pair;
   pair.cylinders[0] = {0x1p-600, 1.0, 0.0};
   pair.cylinders[1] = {0x1p690, 1.0, 0.0};
@@ -613,7 +617,7 @@ TEST(ExactOverlap, upright_cylinders_are_decided_if_their_numbers_span_1300_bits
   EXPECT_EQ(pair.verdict(ShapeKind::cylinder, ShapeKind::cylinder), ExactVerdict::separated);
 }
 
-TEST(ExactOverlap, polytopes_are_decided_if_their_numbers_span_900_bits) {
+TEST(ExactOverlap, polytopes_spanning_900_bits_are_decided) {
   constexpr double kLarge = 0x1p449;
   constexpr double kSmall = 0x1p-450;
   Pair pair;
@@ -626,7 +630,7 @@ TEST(ExactOverlap, polytopes_are_decided_if_their_numbers_span_900_bits) {
   EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::triangle), ExactVerdict::separated);
 }
 
-TEST(ExactOverlap, is_undecided_where_two_turns_together_span_too_far) {
+TEST(ExactOverlap, turns_spanning_too_far_are_undecided) {
   Pair pair;
   pair.triangles[0] = {{{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {0.0, 1.0, 0.0}}, 0.0};
   pair.capsules[1] = {0.0, 1.0};
@@ -637,7 +641,7 @@ TEST(ExactOverlap, is_undecided_where_two_turns_together_span_too_far) {
   EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::capsule), ExactVerdict::undecided);
 }
 
-TEST(ExactOverlap, half_spaces_and_lengths_too_far_apart_are_undecided) {
+TEST(ExactOverlap, half_spaces_with_distant_lengths_are_undecided) {
   Pair pair;
   const double turn[4] = {2.0, 1.0, 0.0, 0.0};
   std::copy_n(turn, 4, pair.poses[0].orientation);
@@ -652,10 +656,10 @@ TEST(ExactOverlap, half_spaces_and_lengths_too_far_apart_are_undecided) {
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::undecided);
 }
 
-TEST(ExactOverlap, discs_are_taken_for_polygons_of_sixteen_corners) {
+TEST(ExactOverlap, discs_are_approximated_by_sixteen_corners) {
   Pair pair;
   pair.cylinders[0] = {1.0, 1.0, 0.0};
-  // By the angle whose sine is 4/5.
+  // Turned by the angle whose sine is 4/5.
   pair.poses[0].orientation[0] = 2.0;
   pair.poses[0].orientation[3] = 1.0;
   constexpr double kSixteenth[2] = {0.92387953251128674, 0.38268343236508977};
@@ -674,16 +678,16 @@ TEST(ExactOverlap, discs_are_taken_for_polygons_of_sixteen_corners) {
   }
 }
 
-TEST(ExactOverlap, discs_touch_sides_and_corners_of_level_triangles) {
+TEST(ExactOverlap, discs_touch_sides_and_corners_of_triangles) {
   Pair pair;
   pair.cylinders[0] = {2.0, 1.0, 0.0};
   const auto verdict = [&] { return pair.verdict(ShapeKind::cylinder, ShapeKind::triangle); };
-  // A side across y, of which only the middle is near, on the top of the cylinder.
+  // A side parallel to x on the top of the cylinder: only its middle is near the disc.
   const auto verdict_of = [&](double low) {
     pair.triangles[1] = {{{-3.0, low, 1.0}, {3.0, low, 1.0}, {0.0, 6.0, 1.0}}, 0.0};
     return verdict();
   };
-  // Level across each axis of the world.
+  // The plane of the triangle is perpendicular to each axis of the world in turn.
   const double turns[][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0}};
   for (const auto& turn : turns) {
     for (Pose& pose : pair.poses) std::copy_n(turn, 4, pose.orientation);
@@ -697,7 +701,7 @@ TEST(ExactOverlap, discs_touch_sides_and_corners_of_level_triangles) {
   }
 }
 
-TEST(ExactOverlap, points_beyond_a_side_of_a_triangle_in_its_plane_are_apart_from_it) {
+TEST(ExactOverlap, coplanar_points_beyond_triangle_side_are_separated) {
   Pair pair{};
   pair.triangles[0] = {{{0.0, 0.0, 0.0}, {4.0, 0.0, 4.0}, {0.0, 4.0, 1.0}}, 0.0};
   const auto& vertex = pair.triangles[0].vertex;
@@ -716,7 +720,7 @@ TEST(ExactOverlap, points_beyond_a_side_of_a_triangle_in_its_plane_are_apart_fro
   }
 }
 
-TEST(ExactOverlap, half_spaces_of_numbers_too_far_apart_are_undecided) {
+TEST(ExactOverlap, half_spaces_turned_by_tiny_angles_are_undecided) {
   Pair pair;
   for (Pose& pose : pair.poses) pose.orientation[1] = 1e-300;
   pair.poses[1].position[0] = 1.0;
@@ -728,7 +732,7 @@ TEST(ExactOverlap, half_spaces_of_numbers_too_far_apart_are_undecided) {
   }
 }
 
-TEST(ExactOverlap, half_spaces_hold_what_lies_deep_in_them) {
+TEST(ExactOverlap, shapes_deep_in_half_spaces_overlap) {
   Pair pair;
   pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
   pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.5};
@@ -743,7 +747,7 @@ TEST(ExactOverlap, half_spaces_hold_what_lies_deep_in_them) {
   }
 }
 
-TEST(ExactOverlap, of_shapes_that_are_not_hulls_of_points_and_discs_is_undecided) {
+TEST(ExactOverlap, smooth_shapes_are_undecided) {
   Pair pair;
   pair.boxes[0] = {{1.0, 1.0, 1.0}, 0.0};
   pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
@@ -755,7 +759,7 @@ TEST(ExactOverlap, of_shapes_that_are_not_hulls_of_points_and_discs_is_undecided
   }
 }
 
-TEST(ExactOverlap, an_axis_that_is_none_will_do) {
+TEST(ExactOverlap, invalid_axis_of_upright_boxes_is_ignored) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const double axes[][3] = {{inf, 0, 0}, {inf, -inf, 0}, {nan, 0, 0}, {1, nan, 0}, {0, 0, 0}};
@@ -769,7 +773,7 @@ TEST(ExactOverlap, an_axis_that_is_none_will_do) {
   }
 }
 
-TEST(ExactOverlap, discs_of_the_smallest_numbers_are_decided) {
+TEST(ExactOverlap, discs_of_smallest_numbers_are_decided) {
   Pair pair;
   constexpr double kSmall = 1e-280;
   pair.boxes[0] = {{kSmall, kSmall, kSmall}, 0.0};
@@ -778,7 +782,7 @@ TEST(ExactOverlap, discs_of_the_smallest_numbers_are_decided) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cylinder), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, boxes_of_the_largest_numbers_are_decided) {
+TEST(ExactOverlap, boxes_of_largest_numbers_are_decided) {
   constexpr double kLarge = 8e307;
   Pair pair;
   for (BoxShape& box : pair.boxes) box = {{kLarge, kLarge, kLarge}, 0.0};
@@ -788,7 +792,7 @@ TEST(ExactOverlap, boxes_of_the_largest_numbers_are_decided) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), ExactVerdict::overlapping);
 }
 
-TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
+TEST(ExactOverlap, verdicts_match_integer_arithmetic) {
   for (const ShapeKind a : kCores) {
     for (const ShapeKind b : kCores) {
       const bool large = (a == ShapeKind::box || a == ShapeKind::hull) &&
@@ -798,7 +802,7 @@ TEST(ExactOverlap, agrees_with_integers_on_small_shapes) {
   }
 }
 
-TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
+TEST(ExactOverlap, common_motion_keeps_verdict) {
   Random random(17);
   for (const ShapeKind a : {ShapeKind::triangle, ShapeKind::hull}) {
     for (const ShapeKind b : {ShapeKind::triangle, ShapeKind::hull}) {
@@ -806,7 +810,7 @@ TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
         Pair pair;
         HullColumns columns[2];
         set_lattice(random, pair, columns);
-        // Their places differ by their vertices only, so that any pose of both leaves them exact.
+        // Only the vertices set the shapes apart, so that a common pose keeps the verdict exact.
         pair.poses[0] = pair.poses[1] = {};
         const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
                                                  ShapeId::of(b, 1), pair.poses[1]);
@@ -819,7 +823,7 @@ TEST(ExactOverlap, verdicts_turn_with_both_shapes) {
   }
 }
 
-TEST(ExactOverlap, answers_do_not_depend_on_size_or_on_where_both_stand) {
+TEST(ExactOverlap, scale_and_common_position_keep_verdict) {
   for (const int exponent : {-900, -60, 0, 60, 900}) {
     const double unit = std::ldexp(1.0, exponent);
     Pair pair;
@@ -838,7 +842,7 @@ TEST(ExactOverlap, answers_do_not_depend_on_size_or_on_where_both_stand) {
   }
 }
 
-TEST(ExactOverlap, any_axis_will_do) {
+TEST(ExactOverlap, any_axis_gives_same_verdict) {
   const double inf = std::numeric_limits<double>::infinity();
   const double axes[][3] = {{0, 0, 0},     {NAN, 1, 0},       {inf, 0, 0}, {1e-320, 1e-310, 0},
                             {1e300, 1, 0}, {1e-200, -1, 1e9}, {-1, 0, 0}};

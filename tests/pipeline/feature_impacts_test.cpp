@@ -1,4 +1,4 @@
-// Impacts of vertices with faces and of edges with edges: none is missed, no time is late.
+// Impacts of vertices with faces and of edges with edges: no impact is missed, and no time is late.
 
 #include <winnow/pipeline/feature_impacts.h>
 #include "tests/pipeline/feature_oracle.h"
@@ -35,8 +35,8 @@ Vec3d random_lattice(Random& random, int size) {
   return {number(), number(), number()};
 }
 
-/// Points anywhere, moved by up to `motion`; at an offset far away, in one plane, or some of them
-/// at one place.
+/// Random points, moved by up to `motion`. Some sets are far away, some are planar, and some points
+/// coincide.
 FeatureStep random_step(Random& random, double motion) {
   FeatureStep step;
   const Vec3d offset = random.chance(0.2) ? random_vector(random, 1e9) : Vec3d();
@@ -51,7 +51,8 @@ FeatureStep random_step(Random& random, double motion) {
   return step;
 }
 
-/// Touches exactly at half of the step, at a corner, on a border or inside; degenerate at times.
+/// Returns a step whose features touch exactly at its middle: at a corner, on a border or inside,
+/// and sometimes degenerate.
 FeatureStep touching_step(FeaturePair kind, Random& random) {
   const auto part = [&](int most) {
     return static_cast<double>(random.below(static_cast<std::size_t>(most) + 1));
@@ -84,7 +85,7 @@ FeatureImpact impact_of(FeaturePair kind, const FeatureStep& step,
   return impact;
 }
 
-TEST(FeatureImpacts, are_what_exact_arithmetic_says) {
+TEST(FeatureImpacts, impacts_match_exact_arithmetic) {
   Random random(11);
   std::size_t unsettled = 0;
   std::size_t hits = 0;
@@ -110,7 +111,7 @@ TEST(FeatureImpacts, are_what_exact_arithmetic_says) {
   EXPECT_LT(unsettled, 2 * count / 10);
 }
 
-TEST(FeatureImpacts, are_never_missed_where_features_touch_exactly) {
+TEST(FeatureImpacts, exact_touches_are_never_missed) {
   Random random(12);
   for (std::size_t i = 0; i < scaled(20000); ++i) {
     for (const FeaturePair kind : kFeaturePairs) {
@@ -125,7 +126,7 @@ TEST(FeatureImpacts, are_never_missed_where_features_touch_exactly) {
   }
 }
 
-TEST(FeatureImpacts, do_not_come_before_features_are_as_near_as_asked) {
+TEST(FeatureImpacts, impacts_start_at_requested_separation) {
   Random random(13);
   for (std::size_t i = 0; i < scaled(2000); ++i) {
     for (const FeaturePair kind : kFeaturePairs) {
@@ -133,7 +134,7 @@ TEST(FeatureImpacts, do_not_come_before_features_are_as_near_as_asked) {
       const double separation = random.log_uniform(1e-6, 0.3);
       const FeatureImpact impact = impact_of(kind, step, {.min_separation = separation});
       const double until = impact.hit ? impact.time : 1.0;
-      // Who starts nearer than that does so at time 0.
+      // Features that start nearer than the separation have an impact at time 0.
       for (double part = 0.0; until > 0.0 && part < 1.0; part += 0x1p-6) {
         EXPECT_GT(feature_distance(kind, step.start, step.end, part * until), separation * 0.999999)
             << i;
@@ -147,7 +148,8 @@ TEST(FeatureImpacts, do_not_come_before_features_are_as_near_as_asked) {
   }
 }
 
-/// A vertex, or an edge, that goes through a plane beside a face, or past an edge, at a gap.
+/// A vertex or an edge that crosses a face's plane beside the face, or passes another edge, at a
+/// gap.
 FeatureStep passing_step(FeaturePair kind, Random& random, double gap) {
   FeatureStep step;
   if (kind == FeaturePair::vertex_face) {
@@ -161,7 +163,7 @@ FeatureStep passing_step(FeaturePair kind, Random& random, double gap) {
     step.end = step.start;
     step.end[2].z() = step.end[3].z() = -random.uniform(0.2, 1.0);
   }
-  // Another view of it, so that no axis keeps the features apart.
+  // Rotate the step so that no axis separates the features.
   Vec3d axis = random_vector(random, 1.0);
   axis /= axis.norm();
   const double w = random.uniform(0.2, 0.9);
@@ -172,7 +174,7 @@ FeatureStep passing_step(FeaturePair kind, Random& random, double gap) {
   return step;
 }
 
-TEST(FeatureImpacts, are_not_seen_where_features_pass_each_other) {
+TEST(FeatureImpacts, passing_features_have_no_impact) {
   Random random(14);
   for (std::size_t i = 0; i < scaled(5000); ++i) {
     for (const FeaturePair kind : kFeaturePairs) {
@@ -182,7 +184,7 @@ TEST(FeatureImpacts, are_not_seen_where_features_pass_each_other) {
   }
 }
 
-TEST(FeatureImpacts, of_what_rests_or_starts_in_touch_are_at_once) {
+TEST(FeatureImpacts, touching_start_hits_at_time_zero) {
   const FeatureStep face{{Vec3d(0.25, 0.25, 0.0), Vec3d(), Vec3d(1, 0, 0), Vec3d(0, 1, 0)},
                          {Vec3d(0.25, 0.25, 1.0), Vec3d(), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}};
   EXPECT_EQ(impact_of(FeaturePair::vertex_face, face).time, 0.0);
@@ -195,7 +197,7 @@ TEST(FeatureImpacts, of_what_rests_or_starts_in_touch_are_at_once) {
   EXPECT_EQ(impact_of(FeaturePair::edge_edge, lines).time, 0.0);
 }
 
-TEST(FeatureImpacts, hold_at_any_size) {
+TEST(FeatureImpacts, scaled_steps_keep_impacts) {
   Random random(15);
   for (std::size_t i = 0; i < scaled(500); ++i) {
     for (const FeaturePair kind : kFeaturePairs) {
@@ -211,7 +213,7 @@ TEST(FeatureImpacts, hold_at_any_size) {
   }
 }
 
-TEST(FeatureImpacts, of_bad_input_are_refused) {
+TEST(FeatureImpacts, bad_input_is_refused) {
   const double large = std::numeric_limits<double>::max();
   for (const FeaturePair kind : kFeaturePairs) {
     FeatureStep step;
@@ -239,7 +241,7 @@ TEST(FeatureImpacts, of_bad_input_are_refused) {
   }
 }
 
-/// Steps of all sorts in columns, some of them with bad numbers.
+/// Steps of all kinds in columns, some with bad numbers.
 struct FeatureTable {
   std::vector<FeatureStep> step;
   std::vector<double> column[24];
@@ -265,7 +267,7 @@ struct FeatureTable {
   }
 };
 
-TEST(FeatureImpacts, of_columns_are_the_same_bytes_on_every_instruction_set) {
+TEST(FeatureImpacts, columns_match_on_every_isa) {
   for (const FeaturePair kind : kFeaturePairs) {
     const FeatureTable table(kind, scaled(3000) + 5);
     for (const double separation : {0.0, 1e-3}) {
@@ -291,7 +293,7 @@ TEST(FeatureImpacts, of_columns_are_the_same_bytes_on_every_instruction_set) {
   }
 }
 
-TEST(FeatureImpacts, of_columns_that_do_not_fit_are_refused) {
+TEST(FeatureImpacts, mismatched_columns_are_refused) {
   const FeatureTable table(FeaturePair::edge_edge, 9);
   std::vector<double> times(8);
   EXPECT_EQ(feature_impacts(FeaturePair::edge_edge, table.view(), times), Status::size_mismatch);

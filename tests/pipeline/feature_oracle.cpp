@@ -1,3 +1,6 @@
+// Reference implementation of feature impacts: bisects the step in exact arithmetic. Used by the
+// tests of feature impacts and deformable meshes.
+
 #include "tests/pipeline/feature_oracle.h"
 
 #include "pipeline/exact/exact_vector.h"
@@ -16,7 +19,7 @@ struct CornerPair {
   std::size_t b;
 };
 
-/// Which points' differences are the corners of the polygon.
+/// Returns the pairs of points whose differences are the corners of the polygon.
 std::vector<CornerPair> corners_of(FeaturePair kind) {
   if (kind == FeaturePair::vertex_face) return {{0, 1}, {0, 2}, {0, 3}};
   return {{0, 2}, {1, 2}, {1, 3}, {0, 3}};
@@ -26,7 +29,7 @@ ExactVector exact(const Vec3d& v) {
   return {{Dyadic(v.x()), Dyadic(v.y()), Dyadic(v.z())}};
 }
 
-/// The point of a polygon that is nearest to the origin, roughly.
+/// Returns approximately the point of a polygon nearest to the origin.
 Vec3d nearest_point(const std::vector<Vec3d>& corner) {
   Vec3d best = corner[0];
   const auto consider = [&](const Vec3d& q) {
@@ -60,7 +63,7 @@ class ExactSearch {
     }
   }
 
-  /// Goes on with [low, high], unless what comes before has settled the answer.
+  /// Bisects [low, high], unless an earlier interval has settled the answer.
   void run(double low, double high, int halvings) {
     if (settled_) return;
     const std::vector<ExactVector> first = at(low);
@@ -123,7 +126,7 @@ class ExactSearch {
     const ExactVector w = exact(along);
     for (std::size_t k = 0; k < first.size(); ++k) {
       const std::size_t next = (k + 1) % first.size();
-      // Bernstein coefficients of a quadratic polynomial; the middle one twice.
+      // Bernstein coefficients of a quadratic polynomial. The middle one is doubled.
       const ExactVector mixed = cross(first[k], last[next]) + cross(last[k], first[next]);
       if (dot(w, cross(first[k], first[next])).sign() <= 0 || dot(w, mixed).sign() <= 0 ||
           dot(w, cross(last[k], last[next])).sign() <= 0) {

@@ -4,8 +4,9 @@
 
 namespace winnow::test {
 
-/// What is true of two features in motion, by exact arithmetic alone: no touch before `from`; and,
-/// if `touch`, one in [from, to], if `apart`, none at all. Neither where it could not be settled.
+/// Facts about two moving features, proved in exact arithmetic. No touch before `from`. If `touch`,
+/// they touch in [from, to]; if `apart`, they never touch. Neither is set if the question stays
+/// open.
 struct ExactImpact {
   bool touch = false;
   bool apart = false;
@@ -13,14 +14,14 @@ struct ExactImpact {
   double to = 1.0;
 };
 
-/// Cuts the step in halves until each is settled: by a plane through the origin that exactly has
-/// all corners of the polygon of differences on one side at both ends; or by a volume of opposite
-/// signs at both ends while the origin, seen along a fixed direction, is inside of the polygon
-/// throughout. At most 2^-halvings of the step is left unsettled.
+/// Bisects the step until each interval is settled, in one of two ways: a plane through the origin
+/// has all corners of the polygon of differences strictly on one side at both ends; or the signed
+/// volume changes sign while the origin, seen along a fixed direction, stays inside the polygon. At
+/// most 2^-halvings of the step stays unsettled.
 [[nodiscard]] ExactImpact exact_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
                                        const std::array<Vec3d, 4>& end, int halvings = 44);
 
-/// The distance of the features at a time, about as exact as a double.
+/// Returns the distance of the features at a time, to about double precision.
 [[nodiscard]] double feature_distance(FeaturePair kind, const std::array<Vec3d, 4>& start,
                                       const std::array<Vec3d, 4>& end, double time);
 

@@ -1,6 +1,6 @@
-// Shapes whose cores are flat, a segment or a point, in one plane, in parallel ones or in one line,
-// rounded or not: what parts them may lie within the plane, where no normal of theirs is. Tier
-// robust has to agree with the solver. WINNOW_TEST_SCALE=100 makes it a million pairs.
+// Shapes whose cores are flat polygons, segments or points, coplanar, parallel or collinear,
+// rounded or not. Their separating direction may lie within the plane, where neither shape has a
+// normal. Tier robust must agree with the solver. WINNOW_TEST_SCALE=100 makes it a million pairs.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kMargin = 0.25;
 
-/// What one pair a call says.
+/// Returns the result of the single-pair function.
 PairAnswers ask_alone(const PairScene& scene, BodyPair pair, const NarrowOptions& options) {
   PairAnswer answer;
   EXPECT_EQ(collide(scene.pool, scene.shapes[pair.a], scene.poses[pair.a], scene.shapes[pair.b],
@@ -37,7 +37,7 @@ PairAnswers ask_alone(const PairScene& scene, BodyPair pair, const NarrowOptions
   return all;
 }
 
-/// Faults by what is wrong, of which the first few are told.
+/// Counts faults by kind and prints the first few.
 class Judge {
  public:
   explicit Judge(const PairScene& scene) : scene_(scene) {}
@@ -91,7 +91,7 @@ std::vector<KindPair> flat_kind_pairs() {
 
 class FlatCores : public testing::TestWithParam<KindPair> {};
 
-TEST_P(FlatCores, agree_with_the_solver_at_every_level) {
+TEST_P(FlatCores, all_levels_match_solver) {
   const auto [a, b] = GetParam();
   Random random(static_cast<std::uint64_t>(a) * 16 + static_cast<std::uint64_t>(b));
   PairScene scene;

@@ -1,4 +1,5 @@
-// The kernels of boxes and triangles against a plain twin in long double.
+// The kernels of boxes and triangles compared with a plain reference implementation in long double
+// (flat_twin.h).
 
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/simd/isa.h>
@@ -18,7 +19,7 @@
 namespace winnow::test {
 namespace {
 
-// Pairs of two kinds, body 2 i against body 2 i + 1.
+// Pairs of two kinds: body 2 i with body 2 i + 1.
 struct Scene {
   ShapeKind kind[2];
   ShapePool pool;
@@ -111,7 +112,7 @@ Pose random_pose(Random& random, double reach) {
   return pose;
 }
 
-// Orientations whose axes are parallel to the world's, but for turns as small as `turn`.
+// Returns an orientation with axes parallel to the world's, or off by at most `turn`.
 Pose aligned_pose(Random& random, double turn) {
   Pose pose;
   for (double& x : pose.position) x = static_cast<double>(random.below(7)) * 0.5 - 1.5;
@@ -121,7 +122,7 @@ Pose aligned_pose(Random& random, double turn) {
   return pose;
 }
 
-// Adds a shape of the kind: `wild` ones are flat, thin, points, or far larger than others.
+// Adds a shape of the kind. With `wild` it may be flat, thin, a point, or far larger than others.
 std::uint32_t add_shape(Random& random, Scene& scene, ShapeKind kind, const Pose& pose, bool wild) {
   const double rounding = random.chance(0.25) ? random.uniform(0.0, 0.3) : 0.0;
   const double size = wild && random.chance(0.3) ? random.log_uniform(1e-6, 1e4) : 1.0;
@@ -171,7 +172,7 @@ Scene hostile_scene(ShapeKind a, ShapeKind b, std::size_t count) {
   return scene;
 }
 
-// All lengths of a pair.
+// Returns the sum of all lengths of a pair.
 double scale_of(const FlatTwin& a, const FlatTwin& b) {
   long double scale = a.rounding + b.rounding;
   for (const FlatTwin* t : {&a, &b}) {
@@ -199,7 +200,7 @@ std::vector<Twins> twins_of(const Scene& scene) {
   return twins;
 }
 
-// The twin itself is right to a few roundings.
+// Relative error of the reference implementation: a few roundings.
 constexpr long double kTwinError = 1e-17L;
 
 void expect_overlaps(const std::vector<Twins>& twins, const Answers& answers) {
@@ -226,9 +227,9 @@ void expect_distances(const std::vector<Twins>& twins, const Answers& answers) {
     const LongVector n = answers.normal_of(i);
     const double tolerance = t.scale * 1e-10;
     ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, 1e-13) << i;
-    // What the normal separates is the distance.
+    // The shapes are separated along the normal by the distance.
     ASSERT_NEAR(static_cast<double>(separation(t.a, t.b, n)), d, tolerance) << i;
-    // Both points lie on the shapes.
+    // Both witness points lie on the shapes.
     const LongVector on_a = answers.point_of(i);
     const LongVector on_b = on_a + n * d;
     const double slack = t.scale * 1e-6;
@@ -289,15 +290,15 @@ void expect_all_right(const Scene& scene) {
   }
 }
 
-TEST_P(FlatKernels, random_pairs_are_answered_within_their_bounds) {
+TEST_P(FlatKernels, random_pairs_stay_within_error_bounds) {
   expect_all_right(random_scene(GetParam().a, GetParam().b, scaled(1'000)));
 }
 
-TEST_P(FlatKernels, hostile_pairs_are_right_or_left_to_the_solver) {
+TEST_P(FlatKernels, hostile_pairs_are_right_or_not_certified) {
   expect_all_right(hostile_scene(GetParam().a, GetParam().b, scaled(3'000)));
 }
 
-TEST_P(FlatKernels, random_pairs_are_practically_never_left_to_the_solver) {
+TEST_P(FlatKernels, random_pairs_are_almost_always_certified) {
   const Scene scene = random_scene(GetParam().a, GetParam().b, 4'096);
   for (const auto level : {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     const Answers answers = run(scene, level);
@@ -306,8 +307,8 @@ TEST_P(FlatKernels, random_pairs_are_practically_never_left_to_the_solver) {
   }
 }
 
-TEST_P(FlatKernels, swapped_pairs_of_one_kind_give_the_mirrored_answer) {
-  if (GetParam().a != GetParam().b) GTEST_SKIP() << "one order only";
+TEST_P(FlatKernels, swapped_pairs_give_mirrored_answers) {
+  if (GetParam().a != GetParam().b) GTEST_SKIP() << "these kinds have only one order";
   Scene scene = random_scene(GetParam().a, GetParam().b, 515);
   const Answers given = run(scene, ContactLevel::distance);
   const Answers manifold = run(scene, ContactLevel::manifold, 0.1);
@@ -335,7 +336,7 @@ TEST_P(FlatKernels, swapped_pairs_of_one_kind_give_the_mirrored_answer) {
   for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
 }
 
-TEST_P(FlatKernels, answers_are_the_same_bits_everywhere_in_a_batch_and_on_all_instruction_sets) {
+TEST_P(FlatKernels, answers_match_at_any_batch_position_and_isa) {
   Scene scene = hostile_scene(GetParam().a, GetParam().b, 301);
   for (const auto level : {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     const Answers whole = run(scene, level, 0.1);
@@ -369,7 +370,7 @@ TEST_P(FlatKernels, answers_are_the_same_bits_everywhere_in_a_batch_and_on_all_i
   }
 }
 
-TEST_P(FlatKernels, bad_poses_and_sizes_out_of_range_are_left_to_the_solver) {
+TEST_P(FlatKernels, bad_poses_and_huge_sizes_are_not_certified) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Scene scene = random_scene(GetParam().a, GetParam().b, 64);

@@ -1,3 +1,6 @@
+// Random pairs of shapes with flat cores: coplanar, parallel or collinear, at random scales and
+// rounded or not. Used by flat_cores_test.cpp.
+
 #include "tests/pipeline/flat_pairs.h"
 
 #include <gtest/gtest.h>
@@ -13,19 +16,18 @@ namespace {
 
 using Turn = Eigen::Quaterniond;
 
-// Exact but for its length, which poses need not have.
+// Not normalized, so that they are exact. Poses need no unit quaternions.
 const Turn kUpright(1.0, 0.0, 0.0, 0.0);
-const Turn kLying(1.0, 0.0, 1.0, 0.0);  // z to x
+const Turn kLying(1.0, 0.0, 1.0, 0.0);  // maps z to x
 const Turn kOnSide(1.0, 1.0, 0.0, 0.0);
 
-/// A shape, and how its frame is turned so that its core lies in the plane z = 0, along x if it is
-/// a segment.
+/// A shape, and the turn that puts its core in the plane z = 0, along x if it is a segment.
 struct LyingShape {
   ShapeId id;
   Turn turn = kUpright;
 };
 
-/// Draws the numbers.
+/// Generates shapes and poses from random numbers.
 class FlatMaker {
  public:
   FlatMaker(PairScene& scene, Random& random) : scene_(scene), random_(random) {}
@@ -65,14 +67,14 @@ class FlatMaker {
     return size * random_.uniform(-1.0, 1.0);
   }
 
-  /// 0 a point, 1 a segment, 2 flat, 3 a solid.
+  /// Returns 0 for a point, 1 for a segment, 2 for a flat core, 3 for a solid.
   int dimension() {
     if (in_line_) return random_.chance(0.2) ? 0 : 1;
     const double chosen = random_.unit();
     return chosen < 0.1 ? 0 : chosen < 0.3 ? 1 : chosen < 0.9 ? 2 : 3;
   }
 
-  /// Corners of a core in the plane.
+  /// Returns corners of a core in the plane.
   std::vector<Eigen::Vector3d> corners(int dimension, std::size_t count, double size) {
     std::vector<Eigen::Vector3d> points;
     for (std::size_t i = 0; i < count; ++i) {
@@ -171,7 +173,7 @@ class FlatMaker {
     }
   }
 
-  /// That of both shapes.
+  /// Returns a turn for both shapes.
   Turn common_turn() {
     static const Turn kTurns[] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0},
                                   {1, 1, 1, 1}, {1, 2, 2, 0}, {3, 0, 1, 1}};
@@ -188,7 +190,7 @@ class FlatMaker {
     return {std::cos(half), 0.0, 0.0, std::sin(half)};
   }
 
-  /// Out of the plane.
+  /// Returns a turn out of the plane.
   Turn tilt() {
     if (random_.chance(0.7)) return kUpright;
     const double angle = random_.log_uniform(1e-17, 0.1);
@@ -196,7 +198,7 @@ class FlatMaker {
     return {1.0, angle * std::cos(way), angle * std::sin(way), 0.0};
   }
 
-  /// From a to b.
+  /// Returns the offset from a to b.
   Eigen::Vector3d way(double size) {
     if (random_.chance(0.1)) return {0.0, 0.0, 0.0};
     const double reach = on_lattice_ ? 1.0 : 2.0;

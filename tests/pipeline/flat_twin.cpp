@@ -35,7 +35,7 @@ struct Search {
   }
 };
 
-// The part of v that is perpendicular to e; none if that is rounding alone.
+// Returns the part of v perpendicular to e, or zero if it is only rounding.
 LongVector across(const LongVector& v, const LongVector& e) {
   if (!(e.norm() > 0.0L) || !(v.norm() > 0.0L)) return v;
   const LongVector u = e.normalized();
@@ -43,7 +43,7 @@ LongVector across(const LongVector& v, const LongVector& e) {
   return w.norm() > 1e-15L * v.norm() ? LongVector(w - u * u.dot(w)) : LongVector::Zero();
 }
 
-// Zero where two vectors are parallel but for rounding.
+// Returns the cross product, or zero if the vectors are parallel up to rounding.
 LongVector product(const LongVector& e, const LongVector& f) {
   const LongVector n = e.cross(f);
   return n.norm() > 1e-17L * e.norm() * f.norm() ? n : LongVector::Zero();
@@ -96,7 +96,7 @@ long double signed_distance(const FlatTwin& a, const FlatTwin& b) {
   for (const LongVector& e : a.edges) {
     for (const LongVector& f : b.edges) search.look(product(e, f));
   }
-  // Directions that begin or end at a vertex: only where shapes are apart can they be best.
+  // Directions from a vertex can be best only if the shapes are apart.
   for (const LongVector& v : a.vertices) {
     for (const LongVector& w : b.vertices) {
       const LongVector d = w - v;

@@ -10,8 +10,8 @@ namespace winnow::test {
 
 using LongVector = Eigen::Matrix<long double, 3, 1>;
 
-/// A box or triangle where it stands, plainly: its core's vertices, the directions of its edges and
-/// the normals of its faces and of their sides.
+/// A box or triangle in world space: the vertices of its core, the directions of its edges, and the
+/// normals of its faces and their sides.
 struct FlatTwin {
   std::vector<LongVector> vertices;
   std::vector<LongVector> edges;
@@ -20,15 +20,15 @@ struct FlatTwin {
 
   FlatTwin(const BoxShape& box, const Pose& pose, const double origin[3]);
   FlatTwin(const TriangleShape& triangle, const Pose& pose, const double origin[3]);
-  /// One point.
+  /// A single point.
   explicit FlatTwin(const LongVector& point) : vertices{point} {}
 };
 
-/// The distance, negative by the depth: the largest separation along all directions in which
-/// features of any kind can face each other, less the roundings.
+/// Returns the signed distance: the largest separation along all directions in which features can
+/// face each other, less the roundings.
 [[nodiscard]] long double signed_distance(const FlatTwin& a, const FlatTwin& b);
 
-/// How far the shapes are apart along a direction of any length, less the roundings.
+/// Returns the separation of the shapes along a direction of any length, less the roundings.
 [[nodiscard]] long double separation(const FlatTwin& a, const FlatTwin& b, const LongVector& axis);
 
 }  // namespace winnow::test

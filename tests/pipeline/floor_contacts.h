@@ -7,7 +7,7 @@
 
 namespace winnow::test {
 
-/// Where a shape at a pose touches the floor, which is z <= 0 and is added to the pool.
+/// Returns the contacts of a shape with the floor z <= 0, which is added to the pool.
 inline std::vector<ContactPoint> contacts_on_floor(ShapePool& pool, ShapeId id, const Pose& pose,
                                                    double margin) {
   ShapeId floor;

@@ -1,3 +1,6 @@
+// HeightField: box, sweep and proximity traversals compared with all triangles, active edges
+// compared with a mesh of the same triangles, refused input and memory.
+
 #include <gtest/gtest.h>
 #include <winnow/pipeline/height_field.h>
 #include "pipeline/mesh/height_grid.h"
@@ -19,7 +22,7 @@ using Slots = std::vector<std::uint32_t>;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Waves with two holes.
+/// A wavy height field with two holes.
 struct Field {
   std::uint32_t columns;
   std::uint32_t rows;
@@ -77,7 +80,7 @@ Slots brute_overlap(const HeightField& field, const double min[3], const double 
   return expected;
 }
 
-TEST(HeightFields, show_the_triangles_that_a_box_meets_after_any_update) {
+TEST(HeightFields, box_overlap_after_updates_matches_brute_force) {
   Random random(8);
   Field f(90, 40);
   for (std::size_t k = 0; k < scaled(120); ++k) {
@@ -113,7 +116,8 @@ struct Shown {
   }
 };
 
-/// All are shown that may be within the limit, and after the visitor says so only what is nearer.
+/// Checks that a traversal visits all triangles within the limit and none beyond it, and that it
+/// ends at the nearest triangle once the visitor returns a smaller limit.
 template <typename Traverse, typename Measure>
 void expect_traversal(const HeightField& field, double limit, Traverse&& traverse,
                       Measure&& measure) {
@@ -143,7 +147,7 @@ void expect_traversal(const HeightField& field, double limit, Traverse&& travers
   EXPECT_LE(some.numbers.size(), all.numbers.size());
 }
 
-TEST(HeightFields, show_what_a_sweep_meets_and_what_is_near) {
+TEST(HeightFields, sweep_and_near_queries_match_brute_force) {
   Random random(9);
   const Field f(50, 70);
   for (std::size_t k = 0; k < scaled(60); ++k) {
@@ -192,9 +196,9 @@ TEST(HeightFields, show_what_a_sweep_meets_and_what_is_near) {
   }
 }
 
-TEST(HeightFields, have_the_active_edges_of_the_same_mesh) {
+TEST(HeightFields, active_edges_match_equal_mesh) {
   Field f(12, 9);
-  // A mesh of the triangles that are there.
+  // A mesh of all triangles except the holes.
   MeshData data{"field", {}, {}};
   Slots number;
   for (std::uint32_t i = 0; i < f.field.triangles(); ++i) {
@@ -222,7 +226,7 @@ TEST(HeightFields, have_the_active_edges_of_the_same_mesh) {
   EXPECT_FALSE(f.field.triangle(f.field.triangles(), shape));
 }
 
-TEST(HeightFields, refuse_bad_input_and_stay_as_they_were) {
+TEST(HeightFields, bad_input_is_refused_and_changes_nothing) {
   Field f(20, 10);
   const Aabb before = f.field.bounds();
   const auto refused = [&](const HeightSamples& samples) {
@@ -255,7 +259,7 @@ TEST(HeightFields, refuse_bad_input_and_stay_as_they_were) {
   EXPECT_EQ(f.field.radius(), 0.0);
 }
 
-TEST(HeightFields, account_for_their_memory_and_survive_its_refusal) {
+TEST(HeightFields, footprint_is_exact_and_refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   const std::vector<float> h(64 * 64, 1.0F);
@@ -277,7 +281,7 @@ TEST(HeightFields, account_for_their_memory_and_survive_its_refusal) {
   EXPECT_EQ(field.update(3, 4, {h, 10, 10}), Status::ok);
   EXPECT_EQ(memory.requests(), requests);
   const HeightField moved = std::move(field);
-  EXPECT_EQ(field.triangles(), 0U);  // NOLINT(bugprone-use-after-move): what it is left as
+  EXPECT_EQ(field.triangles(), 0U);  // NOLINT(bugprone-use-after-move): moved-from is empty
   EXPECT_EQ(moved.triangles(), 63U * 63U * 2U);
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+// Reference implementation of Contacts::previous_pair and previous_point. Used by
+// warm_start_test.cpp and the contacts fuzzer.
+
 #include <gtest/gtest.h>
 #include <winnow/winnow.h>
 #include <Eigen/Geometry>
@@ -14,12 +17,11 @@
 
 namespace winnow::test {
 
-/// Keeps the whole last frame and looks for each point of this one in all of it, by the words of
-/// Contacts::previous_point. Points that are equally near, but for rounding, may stand for each
-/// other.
+/// Stores the whole last frame and searches all of it for each point, by the definition of
+/// Contacts::previous_point. Accepts either of two old points that are equally near up to rounding.
 class HistoryTwin {
  public:
-  /// `radius_of(a, b)`: the radius of the smaller of two bodies.
+  /// `radius_of(a, b)` returns the radius of the smaller of two bodies.
   template <typename RadiusOf>
   void compare(const Scene& scene, const Contacts& contacts, bool reduced, RadiusOf&& radius_of) {
     ASSERT_EQ(contacts.previous_pair().size(), contacts.size());
@@ -53,14 +55,14 @@ class HistoryTwin {
   std::size_t by_place = 0;
 
  private:
-  /// Keys of a pair, and the kinds of its shapes: with other kinds it is another pair.
+  /// Keys and kinds of shapes of a pair: a pair with other kinds is a different pair.
   using PairName = std::array<std::uint32_t, 6>;
 
   struct KeptPoint {
     std::uint32_t index;
     std::uint32_t part[2];
     std::uint64_t feature;
-    /// In the frames of both bodies.
+    /// Position in the frames of both bodies.
     Eigen::Vector3d local[2];
     bool taken;
   };
@@ -70,7 +72,7 @@ class HistoryTwin {
     std::vector<KeptPoint> points;
   };
 
-  /// Of squares of distances: rounding.
+  /// Tolerance for rounding.
   static constexpr double kSlack = 1e-9;
 
   [[nodiscard]] static Eigen::Vector3d in_frame_of(const Pose& pose, const Eigen::Vector3d& world) {
@@ -145,7 +147,7 @@ class HistoryTwin {
     }
   }
 
-  /// The nearest one that is left, if it is within reach.
+  /// Checks that the scene chose the nearest remaining old point, or none if it is out of reach.
   void compare_place(const Contacts& contacts, const KeptPoint& point,
                      std::vector<KeptPoint>& before, double reach) {
     double least = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// What the hooks of the process are told. A program of its own: other tests would be told of, too.
+// Calls of the process-wide hooks. A separate program, since the hooks would also see the calls of
+// other tests.
 
 #include <gtest/gtest.h>
 #include <winnow/core/hooks.h>
@@ -51,7 +52,7 @@ struct Hooks : testing::Test {
   }
 };
 
-TEST_F(Hooks, tell_the_stages_of_a_scene_in_their_order_and_nested) {
+TEST_F(Hooks, scene_stages_are_ordered_and_nested) {
   ShapePool shapes;
   CompositePool composites(shapes);
   ShapeId ball;
@@ -70,8 +71,8 @@ TEST_F(Hooks, tell_the_stages_of_a_scene_in_their_order_and_nested) {
 
   EXPECT_EQ(contacts.size(), 3U);
   EXPECT_TRUE(is_nested && under_way.empty());
-  // Balls are answered before the triangle is looked for; partitions refresh, and build, when they
-  // are asked for pairs.
+  // The balls are solved before the triangle is found. Partitions refresh and build on the first
+  // query of pairs.
   std::vector<WorkStage> shapes_alone;
   for (const WorkStage stage : begun) {
     if (stage >= WorkStage::mid_phase) shapes_alone.push_back(stage);
@@ -83,7 +84,7 @@ TEST_F(Hooks, tell_the_stages_of_a_scene_in_their_order_and_nested) {
   }
 }
 
-TEST_F(Hooks, that_are_taken_away_are_told_nothing_more) {
+TEST_F(Hooks, removed_hooks_are_not_called) {
   EXPECT_EQ(set_stage_hook(nullptr), &note_stage);
   EXPECT_EQ(set_log_hook(nullptr), &note_entry);
   Partition partition(linear_bvh());
@@ -94,7 +95,7 @@ TEST_F(Hooks, that_are_taken_away_are_told_nothing_more) {
   EXPECT_TRUE(told.empty());
 }
 
-TEST_F(Hooks, tell_what_the_automatic_choice_did) {
+TEST_F(Hooks, automatic_choice_is_logged) {
   const auto boxes = uniform_boxes(500);
   std::vector<Key> keys(boxes.size());
   Partition partition(automatic());
@@ -110,7 +111,7 @@ TEST_F(Hooks, tell_what_the_automatic_choice_did) {
                                      std::string(before) + ": " + std::string(choice.reason)});
 }
 
-TEST_F(Hooks, tell_every_call_that_was_refused_and_why) {
+TEST_F(Hooks, refused_calls_are_logged_with_reason) {
   Partition partition(linear_bvh());
   Key key;
   EXPECT_EQ(partition.insert(Aabb{}, 0, key), Status::invalid_bounds);
@@ -125,7 +126,7 @@ TEST_F(Hooks, tell_every_call_that_was_refused_and_why) {
                                             "refusal Scene::move: invalid_key"}));
 }
 
-TEST_F(Hooks, have_names_for_all_stages) {
+TEST_F(Hooks, all_stages_have_names) {
   for (std::size_t i = 0; i < kWorkStages; ++i) {
     EXPECT_STRNE(to_string(static_cast<WorkStage>(i)), "unknown");
   }

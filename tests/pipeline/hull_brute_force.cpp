@@ -19,7 +19,7 @@ Matrix rotation(const Pose& pose) {
   return r.normalized().toRotationMatrix();
 }
 
-/// A hull in the axes of the world, relative to a point.
+/// A hull in world axes, relative to a point.
 struct Placed {
   Placed(const HullShape& shape, const Pose& pose, const Pose& origin) : hull(shape) {
     const Matrix turn = rotation(pose);
@@ -31,7 +31,7 @@ struct Placed {
       vertex.push_back(turn * Vector(shape.vertex[0][i], shape.vertex[1][i], shape.vertex[2][i]) +
                        shift);
     }
-    // From the corners: stored normals are rounded.
+    // Recomputed from the corners: stored normals are rounded.
     for (std::uint32_t f = 0; f < shape.face_count; ++f) {
       Vector n = Vector::Zero();
       const Vector& c = corner(f, 0);
@@ -69,7 +69,8 @@ long double depth(const Placed& a, const Placed& b) {
     const Vector d = (a.end(e, 1) - a.end(e, 0)).normalized();
     for (std::uint32_t f = 0; f < b.hull.edge_count; ++f) {
       const Vector n = d.cross((b.end(f, 1) - b.end(f, 0)).normalized());
-      // Parallel edges make no face; nearly parallel ones are faces' normals.
+      // Parallel edges span no face; the normals of nearly parallel ones are covered by face
+      // normals.
       if (n.norm() < 1e-9L) continue;
       least = std::min(least, overlap_along(a, b, n.normalized()));
       least = std::min(least, overlap_along(a, b, -n.normalized()));

@@ -5,9 +5,9 @@
 
 namespace winnow::test {
 
-/// Signed distance of two hulls without rounding: where they are apart over all pairs of features,
-/// where they overlap over all normals of faces and products of edges, without any pruning, in long
-/// double. O(vertices x edges^2).
+/// Returns the signed distance of two hulls without rounding, in long double and without pruning:
+/// the least over all pairs of features if they are apart, the least overlap along all face normals
+/// and edge cross products if they overlap. O(vertices x edges^2).
 [[nodiscard]] long double brute_force_distance(const HullShape& a, const Pose& pose_a,
                                                const HullShape& b, const Pose& pose_b);
 

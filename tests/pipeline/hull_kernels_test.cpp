@@ -1,5 +1,5 @@
-// The kernel of hulls against a search through all features, and against itself: on every
-// instruction set, turned round, at other places of a batch.
+// The kernel of hulls compared with a search over all features, and with itself: on every ISA, with
+// swapped bodies, at other positions of a batch.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -26,7 +26,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Answers of one job, in columns as wide as the job.
+/// Answers of one job in columns.
 struct Answers {
   Answers(const PairScene& scene, int level, ShapeKind a = ShapeKind::hull,
           ShapeKind b = ShapeKind::hull)
@@ -72,7 +72,7 @@ struct Answers {
 
   std::uint32_t count;
   std::vector<std::uint8_t> overlap;
-  /// Distance, error bound, normal, point.
+  /// Distance, error bound, normal (3), point (3).
   std::vector<double> column[8];
   std::vector<std::uint32_t> first;
   std::vector<std::uint32_t> contacts;
@@ -84,10 +84,10 @@ struct Answers {
 
 enum class Style { ball, sphere_large, box, plate, rich, rounded, prism };
 
-/// How hulls stand to each other: upright ones have faces and edges in parallel.
+/// Relative orientation of hulls. Upright ones have parallel faces and edges.
 enum class Turn { any, upright, none };
 
-/// Upright.
+/// Returns the corners of an upright prism.
 Points prism_of(std::uint64_t sides, double half_height) {
   Points points;
   for (std::uint64_t i = 0; i < 2 * sides; ++i) {
@@ -158,7 +158,7 @@ long double truth(const PairScene& scene, std::uint32_t i) {
   return brute_force_distance(a, scene.poses[p.a], b, scene.poses[p.b]) - a.rounding - b.rounding;
 }
 
-TEST_P(HullKernels, answers_are_within_their_bounds_of_a_search_through_all_features) {
+TEST_P(HullKernels, answers_match_brute_force_within_error_bounds) {
   const bool rounded = GetParam() == Style::rounded;
   const PairScene scene = scene_of(GetParam(), scaled(150), 1);
   std::vector<long double> distance;
@@ -186,7 +186,7 @@ TEST_P(HullKernels, answers_are_within_their_bounds_of_a_search_through_all_feat
   EXPECT_LE(answers.uncertified.size(), answers.count / (rounded ? 5 : 10));
 }
 
-/// How far a point is outside of a hull, at most.
+/// Returns an upper bound of how far a point is outside a hull.
 double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d& world) {
   const HullShape& hull = scene.pool.tables().hulls[scene.shapes[body].index()];
   const double* q = scene.poses[body].orientation;
@@ -210,7 +210,7 @@ void expect_points_on_both(const PairScene& scene, bool rounded) {
     const Eigen::Vector3d a =
         answers.point(i) + Eigen::Map<const Eigen::Vector3d>(scene.poses[p.a].position);
     const Eigen::Vector3d b = a + answers.column[0][i] * answers.normal(i);
-    // On the rounding around an edge a point is outside of no face.
+    // A point on the rounding of an edge may be inside all face planes.
     EXPECT_LE(outside(scene, p.a, a), doubt) << i;
     EXPECT_LE(outside(scene, p.b, b), doubt) << i;
     if (rounded) continue;
@@ -219,7 +219,7 @@ void expect_points_on_both(const PairScene& scene, bool rounded) {
   }
 }
 
-TEST_P(HullKernels, points_lie_on_both_hulls) {
+TEST_P(HullKernels, witness_points_lie_on_both_hulls) {
   for (const Turn turn : {Turn::any, Turn::upright, Turn::none}) {
     const PairScene scene = scene_of(GetParam(), scaled(400), 2, turn);
     SCOPED_TRACE(testing::Message() << "turn " << static_cast<int>(turn));
@@ -227,7 +227,7 @@ TEST_P(HullKernels, points_lie_on_both_hulls) {
   }
 }
 
-TEST_P(HullKernels, turned_round_pairs_have_mirrored_answers) {
+TEST_P(HullKernels, swapped_pairs_give_mirrored_answers) {
   PairScene scene = scene_of(GetParam(), scaled(100), 3);
   const Answers one(scene, 1);
   PairScene& turned = scene;
@@ -247,7 +247,7 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-TEST_P(HullKernels, all_instruction_sets_answer_alike_to_the_bit) {
+TEST_P(HullKernels, answers_match_on_every_isa) {
   const PairScene scene = scene_of(GetParam(), scaled(150), 4);
   for (int level = 0; level < 3; ++level) {
     const Answers expected(scene, level);
@@ -263,7 +263,7 @@ TEST_P(HullKernels, all_instruction_sets_answer_alike_to_the_bit) {
   }
 }
 
-TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
+TEST_P(HullKernels, batch_position_does_not_change_answers) {
   PairScene scene = scene_of(GetParam(), scaled(150), 5);
   const Answers forth(scene, 1);
   std::reverse(scene.pairs.begin(), scene.pairs.end());
@@ -277,7 +277,7 @@ TEST_P(HullKernels, an_answer_does_not_depend_on_the_place_in_the_batch) {
   }
 }
 
-TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
+TEST_P(HullKernels, parallel_hulls_stay_within_error_bounds) {
   const PairScene scene = scene_of(GetParam(), scaled(60), 6, Turn::none);
   const Answers answers(scene, 2);
   for (std::uint32_t i = 0; i < answers.count; ++i) {
@@ -291,12 +291,12 @@ TEST_P(HullKernels, parallel_hulls_are_within_their_bounds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, HullKernels,
+INSTANTIATE_TEST_SUITE_P(Styles, HullKernels,
                          testing::Values(Style::ball, Style::sphere_large, Style::box, Style::plate,
                                          Style::rich, Style::rounded, Style::prism));
 
-// Features in parallel have no one point in which they touch: no reason to ask the solver.
-TEST(UprightPrisms, are_not_left_to_the_solver) {
+// Parallel features touch in more than one point, which is no reason to call the solver.
+TEST(UprightPrisms, parallel_features_are_certified) {
   for (const Turn turn : {Turn::upright, Turn::none}) {
     const PairScene scene = scene_of(Style::prism, 400, 7, turn);
     for (int level = 0; level < 3; ++level) {
@@ -345,7 +345,7 @@ void PrintTo(const KindsAndStyle& k, std::ostream* out) {
 
 class CoresAndHulls : public testing::TestWithParam<KindsAndStyle> {
  protected:
-  /// Fills a scene with pairs of both kinds, in their order.
+  /// Adds pairs whose bodies have kinds a and b in this order.
   static void add(PairScene& scene, std::size_t count) {
     const auto [a, b, style] = GetParam();
     Random random(9);
@@ -356,7 +356,7 @@ class CoresAndHulls : public testing::TestWithParam<KindsAndStyle> {
   }
 };
 
-TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) {
+TEST_P(CoresAndHulls, answers_match_solver_on_every_isa) {
   const auto [a, b, style] = GetParam();
   PairScene scene;
   add(scene, scaled(200));
@@ -388,8 +388,8 @@ TEST_P(CoresAndHulls, answers_are_those_of_the_solver_on_every_instruction_set) 
   }
 }
 
-// Of vertices at height zero, as those of a triangle in its own plane are, numbers are denormal.
-TEST_P(CoresAndHulls, answers_are_the_same_where_denormal_numbers_are_flushed) {
+// Vertices at height zero, such as a triangle in its own plane has, produce denormal numbers.
+TEST_P(CoresAndHulls, flushed_denormals_do_not_change_answers) {
   const auto [a, b, style] = GetParam();
   if (style != PairStyle::lattice && style != PairStyle::ordinary) return;
   PairScene scene;
@@ -424,7 +424,7 @@ std::vector<KindsAndStyle> all_cores_and_hulls() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, CoresAndHulls, testing::ValuesIn(all_cores_and_hulls()));
+INSTANTIATE_TEST_SUITE_P(Kinds, CoresAndHulls, testing::ValuesIn(all_cores_and_hulls()));
 
 }  // namespace
 }  // namespace winnow::test

@@ -1,4 +1,4 @@
-// What is computed in place of mathematical libraries, whose last digits differ.
+// Functions computed without the C library, whose last digits differ between machines.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(Hypotenuse, is_right_to_an_ulp_whatever_the_lengths) {
+TEST(Hypotenuse, error_is_at_most_one_ulp) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const double x = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.below(1800)) - 900);
@@ -27,7 +27,7 @@ TEST(Hypotenuse, is_right_to_an_ulp_whatever_the_lengths) {
   }
 }
 
-TEST(Hypotenuse, of_the_least_and_greatest_numbers_neither_overflows_nor_vanishes) {
+TEST(Hypotenuse, extreme_numbers_do_not_overflow_or_underflow) {
   constexpr double kLeast = 0x1p-1074;
   EXPECT_EQ(hypotenuse(0.0, -0.0), 0.0);
   EXPECT_EQ(hypotenuse(3 * kLeast, 4 * kLeast), 5 * kLeast);
@@ -35,15 +35,15 @@ TEST(Hypotenuse, of_the_least_and_greatest_numbers_neither_overflows_nor_vanishe
   EXPECT_EQ(hypotenuse(DBL_MAX, 1.0), DBL_MAX);
 }
 
-// Of these std::hypot has another last digit on some machines.
-TEST(Hypotenuse, is_the_same_on_every_machine) {
+// std::hypot rounds these differently on some machines.
+TEST(Hypotenuse, results_match_on_every_machine) {
   EXPECT_EQ(hypotenuse(0x1.afc6ee0bf2c94p-3, 0x1.ae08b6db8c605p-4), 0x1.e25a3164e4df5p-3);
   EXPECT_EQ(hypotenuse(-0x1.4477333de437cp-1, 0x1.4b0bdc90827bcp-9), 0x1.4477dc1f10afap-1);
   EXPECT_EQ(hypotenuse(0x1.76ebdffb7ee66p+28, -0x1.910018dca413bp+6), 0x1.76ebdffb7ef3cp+28);
   EXPECT_EQ(hypotenuse(0x1.141f1d77ac737p+4, -0x1.c7624fbd8cfc8p+3), 0x1.65e4611fa7899p+4);
 }
 
-TEST(DirectionsAround, are_parts_of_a_turn) {
+TEST(DirectionsAround, table_entries_divide_full_turn) {
   const auto expect_parts = [](const auto& directions) {
     const double step = 2 * std::acos(-1.0) / static_cast<double>(std::size(directions));
     for (std::size_t k = 0; k < std::size(directions); ++k) {

@@ -1,5 +1,5 @@
-// Times of impact of many pairs at once: the same as of each by itself, on every instruction set,
-// and beside those of the search that has one pair at a time.
+// Times of impact of many pairs at once: equal to single-pair queries on every ISA, and close to
+// the scalar search for one pair.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/time_of_impact.h>
@@ -17,7 +17,7 @@
 namespace winnow::test {
 namespace {
 
-/// Pairs of all kinds, which move in all ways, in any order.
+/// Pairs of all kinds and motion styles in random order.
 struct Crowd {
   explicit Crowd(std::size_t count, std::uint64_t seed) : random(seed) {
     const std::vector<ShapeKind> kinds = moving_kinds();
@@ -28,7 +28,7 @@ struct Crowd {
     }
     set_motions();
   }
-  /// Of one pair of kinds.
+  /// Pairs of two given kinds.
   Crowd(ShapeKind a, ShapeKind b, std::size_t count, std::uint64_t seed) : random(seed) {
     add_pairs(scene, a, b, PairStyle::ordinary, count, random);
     set_motions();
@@ -66,7 +66,7 @@ void expect_same(const ImpactResult& a, std::size_t i, const ImpactResult& b, st
   }
 }
 
-TEST(ImpactBatches, answer_as_each_pair_is_answered_alone) {
+TEST(ImpactBatches, mixed_batch_matches_single_pairs) {
   const Crowd crowd(scaled(1500), 81);
   ImpactResult together;
   crowd.find(crowd.pairs, together);
@@ -78,8 +78,8 @@ TEST(ImpactBatches, answer_as_each_pair_is_answered_alone) {
   }
 }
 
-// Which makes full blocks of lanes.
-TEST(ImpactBatches, of_one_pair_of_kinds_answer_as_each_pair_is_answered_alone) {
+// Pairs of the same kinds fill whole blocks of lanes.
+TEST(ImpactBatches, batch_of_equal_kinds_matches_single_pairs) {
   const std::vector<ShapeKind> kinds = moving_kinds();
   ImpactResult together;
   ImpactResult alone;
@@ -96,7 +96,7 @@ TEST(ImpactBatches, of_one_pair_of_kinds_answer_as_each_pair_is_answered_alone) 
   }
 }
 
-TEST(ImpactBatches, are_the_same_on_every_instruction_set) {
+TEST(ImpactBatches, impacts_match_on_every_isa) {
   const Crowd crowd(scaled(1500), 82);
   const Isa before = active_isa();
   ImpactResult first;
@@ -111,8 +111,8 @@ TEST(ImpactBatches, are_the_same_on_every_instruction_set) {
   EXPECT_EQ(set_isa(before), Status::ok);
 }
 
-// One answer may be early, within the tolerance, where the other is not.
-TEST(ImpactBatches, find_what_the_search_for_one_pair_finds) {
+// Results may differ within the tolerance: either may stop early.
+TEST(ImpactBatches, batch_is_close_to_scalar_search) {
   const Crowd crowd(scaled(1500), 83);
   ImpactResult result;
   crowd.find(crowd.pairs, result);

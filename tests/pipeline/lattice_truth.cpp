@@ -1,3 +1,6 @@
+// Reference verdicts for exact_overlap on small integer shapes, in integer arithmetic: all points,
+// segments and triangles of the Minkowski difference. Used by exact_test.cpp.
+
 #include "tests/pipeline/lattice_truth.h"
 
 #include <algorithm>
@@ -78,7 +81,8 @@ struct Turn {
       : w(std::lround(pose.orientation[0])),
         v(vector_of(pose.orientation[1], pose.orientation[2], pose.orientation[3])),
         square(w * w + dot(v, v)) {}
-  /// R p times the square of the quaternion's length, by p (w^2 - v^2) + 2 v (v p) + 2 w v x p.
+  /// Returns the rotation of p times the squared length of the quaternion: p (w^2 - v^2) + 2 v (v
+  /// p) + 2 w v x p.
   [[nodiscard]] Vector operator()(const Vector& p) const {
     const Vector turned = cross(v, p);
     const Integer along = 2 * dot(v, p);
@@ -92,8 +96,8 @@ struct Turn {
   Integer square;
 };
 
-/// All points within the hull of w are on one side of some plane through the origin: then one that
-/// two of the points span does it, unless all lie in a plane.
+/// The origin is outside the hull of w if a plane through the origin has all points on one side. It
+/// suffices to test planes spanned by two of the points, unless all points are coplanar.
 [[nodiscard]] bool origin_is_inside(const std::vector<Vector>& w) {
   bool solid = false;
   for (std::size_t i = 0; i < w.size(); ++i) {
@@ -114,7 +118,7 @@ struct Turn {
   return solid;
 }
 
-/// Sign of the least distance of the origin from points, segments and triangles - sqrt(square).
+/// Sign of (least distance of the origin from points, segments and triangles) - sqrt(square).
 class Nearest {
  public:
   explicit Nearest(Integer square) : square_(square) {}

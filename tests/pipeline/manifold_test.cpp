@@ -1,5 +1,5 @@
-// Contacts that a body can stand on: as many as there are, true to the pair's depth, and the same
-// whatever the shape is called.
+// Contact manifolds: the number of points, their depths compared with the pair's depth, and equal
+// manifolds for equal shapes given as different kinds.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -47,8 +47,8 @@ ShapeId box_shape(ShapePool& pool, const Eigen::Vector3d& half, bool as_hull) {
   return id;
 }
 
-/// Boxes that rest on boxes, tilted a little, sunk in a little: first given as boxes, then box on
-/// hull, hull on box and hull on hull, in the same places.
+/// Returns boxes that rest on boxes, slightly tilted and sunk in. Each pair appears four times in
+/// the same poses: box-box, box-hull, hull-box and hull-hull.
 PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, Random& random) {
   PairScene scene;
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,8 +85,8 @@ double depth_of(const PairAnswers& answer) {
   return deepest;
 }
 
-/// How many points of one are no point of the other.
-std::size_t strangers(const PairAnswers& of, const PairAnswers& in, double tolerance) {
+/// Returns the number of points of `of` that have no counterpart in `in`.
+std::size_t unmatched_points(const PairAnswers& of, const PairAnswers& in, double tolerance) {
   const auto near = [&](const ContactPoint& c, const ContactPoint& d) {
     double apart = std::abs(double{c.depth} - double{d.depth});
     for (int i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ std::size_t strangers(const PairAnswers& of, const PairAnswers& in, double toler
       }));
 }
 
-TEST(Manifolds, of_cubes_tilted_by_a_ten_thousandth_have_four_points) {
+TEST(Manifolds, slightly_tilted_cubes_have_four_points) {
   PairScene scene;
   const Eigen::Vector3d half(1, 1, 1);
   scene.shapes = {box_shape(scene.pool, half, true), box_shape(scene.pool, half, true)};
@@ -115,7 +115,7 @@ TEST(Manifolds, of_cubes_tilted_by_a_ten_thousandth_have_four_points) {
   }
 }
 
-TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
+TEST(Manifolds, box_given_as_hull_matches_box) {
   Random random(5);
   const double tilts[][2] = {{1e-12, 1e-6}, {1e-6, 1e-4}, {1e-4, 1e-2}, {1e-2, 0.1}};
   for (const auto& tilt : tilts) {
@@ -129,7 +129,7 @@ TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
           const PairAnswers& as_boxes = answers[i / 4 * 4];
           ASSERT_GE(as_boxes.contacts.size(), 2U) << i;
           ASSERT_EQ(answers[i].contacts.size(), as_boxes.contacts.size()) << i;
-          // Where two axes are as good, and where two corners are, either may be taken.
+          // If two axes or two corners are equally good, either may be chosen.
           const double same = 2e-5 + answers[i].error_bound + as_boxes.error_bound;
           ASSERT_NEAR(depth_of(answers[i]), depth_of(as_boxes), same) << i;
         }
@@ -138,7 +138,7 @@ TEST(Manifolds, of_a_box_are_the_same_if_it_is_given_as_a_hull) {
   }
 }
 
-TEST(Manifolds, of_resting_hulls_hardly_need_the_solver) {
+TEST(Manifolds, resting_hulls_rarely_need_solver) {
   Random random(6);
   for (const double tilt : {1e-14, 1e-10, 1e-7, 1e-5, 1e-3}) {
     const PairScene scene = resting_boxes(500, tilt, 3.0 * tilt, random);
@@ -149,7 +149,7 @@ TEST(Manifolds, of_resting_hulls_hardly_need_the_solver) {
   }
 }
 
-TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
+TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
   PairScene scene;
   scene.shapes.resize(2);
   ASSERT_EQ(scene.pool.add(CapsuleShape{0.2222824254022642, 0.026282565200887533}, scene.shapes[0]),
@@ -182,9 +182,9 @@ TEST(Manifolds, of_a_capsule_deep_in_a_hull_have_a_point_as_deep) {
   }
 }
 
-// Over the corner, the edge and the face of a cube, and in it; each turned in every way, and both
-// ways round.
-TEST(Manifolds, of_a_ball_and_a_hull_are_the_point_halfway_called_by_the_closest_feature) {
+// A ball near the corner, the edge and the face of a cube, and inside it; each in random
+// orientations and both orders of the bodies.
+TEST(Manifolds, ball_on_hull_has_midpoint_and_closest_feature) {
   constexpr double kRadius = 0.5;
   const Eigen::Vector3d half(1.0, 1.5, 2.0);
   const struct {
@@ -256,8 +256,8 @@ TEST(Manifolds, of_a_ball_and_a_hull_are_the_point_halfway_called_by_the_closest
   }
 }
 
-/// Any two kinds but two half-spaces.
-TEST(Manifolds, have_a_point_as_deep_as_the_pair_and_none_beyond_the_margin) {
+/// All pairs of kinds except two half-spaces.
+TEST(Manifolds, points_include_deepest_and_respect_margin) {
   const std::vector<ShapeKind> kinds = all_kinds();
   Random random(23);
   for (const PairStyle style : kPairStyles) {
@@ -303,8 +303,9 @@ constexpr Kinds kKinds[] = {{capsule, capsule},  {sphere, box},  {sphere, hull},
 
 class ManifoldsOf : public testing::TestWithParam<Kinds> {};
 
-/// Which of two corners that add as much is kept, and whether two places that are nearly one are
-/// one point, a rounding decides: manifolds of the solver for poses that differ by no more.
+/// Manifolds of the solver for slightly perturbed poses. Rounding decides which of two equally good
+/// corners is kept, and whether two nearby points are merged, so that a manifold is accepted if it
+/// matches one of these.
 class Neighbours {
  public:
   static constexpr double kNudge = 4e-6;
@@ -326,12 +327,12 @@ class Neighbours {
   }
   void solve() { solved_ = ask(scene_, {.tier = NarrowTier::reference, .margin = kMargin}); }
 
-  /// True if the manifold is that of one of those that were added at this place in the order.
+  /// Returns true if the manifold matches one of those added as number `place`.
   [[nodiscard]] bool have(const PairAnswers& found, std::size_t place, double tolerance) const {
     const auto first = solved_.begin() + static_cast<std::ptrdiff_t>(place * kCount);
     return std::any_of(first, first + kCount, [&](const PairAnswers& solved) {
       return found.contacts.size() == solved.contacts.size() &&
-             strangers(found, solved, tolerance) == 0;
+             unmatched_points(found, solved, tolerance) == 0;
     });
   }
 
@@ -341,7 +342,7 @@ class Neighbours {
   std::vector<PairAnswers> solved_;
 };
 
-TEST_P(ManifoldsOf, lanes_are_those_of_the_solver) {
+TEST_P(ManifoldsOf, lanes_match_solver) {
   constexpr std::size_t kBatch = 10000;
   for (std::size_t done = 0; done < scaled(200000); done += kBatch) {
     PairScene scene;
@@ -359,7 +360,7 @@ TEST_P(ManifoldsOf, lanes_are_those_of_the_solver) {
       if (solved[i].contacts.empty()) continue;
       ASSERT_NEAR(depth_of(found[i]), -found[i].distance, 0.1 * tolerance(i)) << done + i;
       if (found[i].contacts.size() == solved[i].contacts.size() &&
-          strangers(found[i], solved[i], tolerance(i)) == 0) {
+          unmatched_points(found[i], solved[i], tolerance(i)) == 0) {
         continue;
       }
       neighbours.add(pairs[i], extent(scene, pairs[i]));

@@ -1,3 +1,5 @@
+// mesh_overlap with a hull: the traversal compared with distances of all triangles from the hull.
+
 #include <gtest/gtest.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
@@ -29,7 +31,7 @@ Matrix3d random_turn(Random& random) {
   return Eigen::AngleAxisd(random.uniform(0.0, 3.0), axis.normalized()).toRotationMatrix();
 }
 
-/// A hull near a corner of a mesh, which stands in the hull's frame turned, scaled and mirrored.
+/// A hull near a corner of a mesh. The mesh is rotated, scaled and mirrored in the hull's frame.
 struct HullOnMesh {
   ShapePool shapes;
   ShapeId hull;
@@ -63,7 +65,7 @@ struct HullOnMesh {
     return at;
   }
 
-  /// Slots that the traversal leaves in, of all there are.
+  /// Returns the slots that the traversal reports.
   [[nodiscard]] Slots find(const TriangleMesh& mesh, double reach) const {
     MeshHull asked{shape(), {}, reach};
     for (int row = 0; row < 3; ++row) {
@@ -84,7 +86,7 @@ struct HullOnMesh {
     return slots;
   }
 
-  /// Of every triangle from the hull, by slot.
+  /// Returns the distance of every triangle from the hull, by slot.
   [[nodiscard]] std::vector<double> distances(const TriangleMesh& mesh) {
     const std::uint32_t count = view_of(mesh).triangle_count;
     std::vector<ShapeId> ids{hull};
@@ -112,7 +114,7 @@ struct HullOnMesh {
   }
 };
 
-TEST(MeshHulls, find_every_triangle_within_reach_and_leave_out_most_others) {
+TEST(MeshHulls, all_triangles_within_reach_are_found) {
   Random random(31);
   std::size_t near = 0;
   std::size_t kept = 0;
@@ -142,12 +144,12 @@ TEST(MeshHulls, find_every_triangle_within_reach_and_leave_out_most_others) {
     }
   }
   EXPECT_GT(near, scaled(300));
-  // Apart from what an axis of two edges alone shows.
+  // The remaining false positives are separated only by a cross product of two edges.
   EXPECT_LT(kept, dropped / 50);
   EXPECT_LT(kept, near);
 }
 
-TEST(MeshHulls, that_are_out_of_the_range_of_floats_leave_triangles_in) {
+TEST(MeshHulls, numbers_beyond_float_keep_all_triangles) {
   Random random(32);
   TriangleMesh mesh;
   ASSERT_EQ(terrain(4).build(mesh), Status::ok);

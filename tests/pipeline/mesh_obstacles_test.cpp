@@ -1,5 +1,5 @@
-// Meshes that bend and rigid shapes that move: against distances at single times, which leave no
-// time out.
+// Impacts of deformable meshes with moving rigid shapes, compared with distances at sampled times
+// that together cover the whole step (motion_twin.h).
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kGap = 1e-6;
 
-/// Triangles that share no vertices, each of which moves and bends in its own way.
+/// Triangles without shared vertices, each with its own motion and deformation.
 struct BendingSoup {
   std::vector<Vec3d> start;
   std::vector<Vec3d> end;
@@ -49,7 +49,7 @@ struct BendingSoup {
   }
 };
 
-/// A shape as what it is made of, in the frame of its body.
+/// A shape and its convex parts in the frame of the body.
 struct Obstacle {
   ShapeId shape;
   std::vector<ShapeId> parts;
@@ -91,7 +91,7 @@ class ObstacleTwin {
     return least;
   }
 
-  /// No two points approach each other faster.
+  /// Returns an upper bound of the speed at which two points approach each other.
   [[nodiscard]] double speed(std::uint32_t face) const {
     double most = 0.0;
     double far = 0.0;
@@ -117,7 +117,7 @@ class ObstacleTwin {
   const BendingSoup& soup_;
 };
 
-/// Shapes of all sorts, about a unit in size.
+/// Shapes of all kinds, of size about 1.
 class Obstacles {
  public:
   Obstacles() {
@@ -187,7 +187,7 @@ std::vector<MeshShapeImpact> impacts_of(const DeformableMesh& mesh, const MeshOb
   return all;
 }
 
-TEST(MeshObstacles, are_met_never_late_and_with_a_gap_within_the_tolerance) {
+TEST(MeshObstacles, impacts_are_never_late_and_within_tolerance) {
   Obstacles obstacles;
   Random random(17);
   std::size_t hits = 0;
@@ -229,7 +229,7 @@ TEST(MeshObstacles, are_met_never_late_and_with_a_gap_within_the_tolerance) {
   EXPECT_LT(unproved, obstacles.all.size() * 6 * faces / 20);
 }
 
-TEST(MeshObstacles, are_kept_at_a_separation) {
+TEST(MeshObstacles, impacts_keep_requested_separation) {
   Obstacles obstacles;
   Random random(18);
   const BendingSoup soup(scaled(100), {}, random);
@@ -247,7 +247,7 @@ TEST(MeshObstacles, are_kept_at_a_separation) {
   }
 }
 
-TEST(MeshObstacles, are_met_in_the_same_order_on_any_number_of_threads) {
+TEST(MeshObstacles, order_matches_on_any_threads_and_isa) {
   Obstacles obstacles;
   Random random(19);
   const BendingSoup soup(300, {}, random);
@@ -277,7 +277,7 @@ TEST(MeshObstacles, are_met_in_the_same_order_on_any_number_of_threads) {
   EXPECT_GT(expected.size(), 20U);
 }
 
-TEST(MeshObstacles, that_are_none_are_refused) {
+TEST(MeshObstacles, invalid_obstacles_are_refused) {
   Obstacles obstacles;
   Random random(20);
   const BendingSoup soup(4, {}, random);

@@ -1,3 +1,6 @@
+// TriangleMesh: storage, bounds, memory, refused input, refit, and the detection of active
+// (non-internal) edges.
+
 #include <gtest/gtest.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include "pipeline/mesh/mesh_traversal.h"
@@ -21,7 +24,7 @@ using Vertices = std::vector<Eigen::Vector3f>;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// The caller's numbers of the triangles whose boxes meet [min, max], in order.
+/// Returns the sorted caller's numbers of the triangles whose boxes overlap [min, max].
 Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max[3]) {
   Slots slots(mesh.triangles());
   SlotSink sink{slots.data(), slots.size(), 0};
@@ -32,7 +35,7 @@ Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max
   return slots;
 }
 
-/// Active edges by the caller's numbers.
+/// Returns the active edges by the caller's triangle numbers.
 std::vector<unsigned> edges_of(const TriangleMesh& mesh) {
   std::vector<unsigned> edges(mesh.triangles());
   for (std::size_t slot = 0; slot < edges.size(); ++slot) {
@@ -50,7 +53,7 @@ std::vector<unsigned> edges_of(const Vertices& vertices, const Slots& corners,
   return edges_of(mesh);
 }
 
-TEST(TriangleMeshes, hold_each_triangle_once_with_its_own_corners) {
+TEST(TriangleMeshes, each_triangle_is_stored_once_with_its_corners) {
   for (const MeshData& data : sample_meshes()) {
     TriangleMesh mesh;
     ASSERT_EQ(data.build(mesh), Status::ok);
@@ -68,7 +71,7 @@ TEST(TriangleMeshes, hold_each_triangle_once_with_its_own_corners) {
   }
 }
 
-TEST(TriangleMeshes, read_strided_columns_of_either_precision_and_short_indices_alike) {
+TEST(TriangleMeshes, strided_input_of_any_precision_builds_equal_mesh) {
   const MeshData data = torus(9, 7);
   struct Row {
     double unused;
@@ -100,7 +103,7 @@ TEST(TriangleMeshes, read_strided_columns_of_either_precision_and_short_indices_
   }
 }
 
-/// What a bound of a slot's box stands for.
+/// Returns the decoded value of a bound of a slot's box.
 double box_bound(const MeshView& view, std::uint32_t slot, std::size_t bound) {
   const std::size_t axis = bound % 3;
   return static_cast<double>(view.origin[axis]) +
@@ -108,7 +111,7 @@ double box_bound(const MeshView& view, std::uint32_t slot, std::size_t bound) {
              static_cast<double>(view.step[axis]);
 }
 
-TEST(TriangleMeshes, triangles_of_more_vertices_than_triangles_are_in_boxes_of_their_own) {
+TEST(TriangleMeshes, triangle_soup_stores_box_per_triangle) {
   TriangleMesh closed;
   ASSERT_EQ(torus(24, 12).build(closed), Status::ok);
   EXPECT_EQ(view_of(closed).box, nullptr);
@@ -133,7 +136,7 @@ TEST(TriangleMeshes, triangles_of_more_vertices_than_triangles_are_in_boxes_of_t
   }
 }
 
-TEST(TriangleMeshes, list_the_vertices_of_leaves_where_neighbours_share_them) {
+TEST(TriangleMeshes, leaves_with_shared_vertices_list_them) {
   TriangleMesh shared;
   ASSERT_EQ(terrain(20).build(shared), Status::ok);
   EXPECT_EQ(view_of(shared).corner[0], nullptr);
@@ -146,7 +149,7 @@ TEST(TriangleMeshes, list_the_vertices_of_leaves_where_neighbours_share_them) {
   EXPECT_NE(view_of(apart).corner[0], nullptr);
 }
 
-TEST(TriangleMeshes, tell_where_listed_vertices_are_in_the_boxes_of_their_leaves) {
+TEST(TriangleMeshes, leaf_points_are_rounded_to_their_box) {
   std::size_t crowded = 0;
   for (const MeshData& data : {terrain(30), terrain(100)}) {
     TriangleMesh mesh;
@@ -175,10 +178,10 @@ TEST(TriangleMeshes, tell_where_listed_vertices_are_in_the_boxes_of_their_leaves
   EXPECT_GT(crowded, 0U);
   TriangleMesh littered;
   ASSERT_EQ(littered_terrain(16).build(littered), Status::ok);
-  EXPECT_EQ(view_of(littered).leaf_point, nullptr) << "it would take too much";
+  EXPECT_EQ(view_of(littered).leaf_point, nullptr) << "it would take too much memory";
 }
 
-TEST(TriangleMeshes, take_at_most_24_bytes_a_triangle_and_account_for_each) {
+TEST(TriangleMeshes, mesh_takes_at_most_24_bytes_per_triangle) {
   for (const MeshData& data : {torus(100, 50), terrain(70)}) {
     CountingMemory memory;
     TriangleMesh mesh(&memory);
@@ -193,12 +196,12 @@ TEST(TriangleMeshes, take_at_most_24_bytes_a_triangle_and_account_for_each) {
     ASSERT_EQ(mesh.refit(data.points()), Status::ok);
     EXPECT_EQ(memory.requests(), warm) << "only the first refit allocates";
     const TriangleMesh moved = std::move(mesh);
-    EXPECT_EQ(mesh.triangles(), 0U);  // NOLINT(bugprone-use-after-move): what it is left as
+    EXPECT_EQ(mesh.triangles(), 0U);  // NOLINT(bugprone-use-after-move): moved-from is empty
     EXPECT_EQ(moved.footprint().total().reserved, memory.outstanding());
   }
 }
 
-TEST(TriangleMeshes, are_the_same_built_by_any_number_of_threads) {
+TEST(TriangleMeshes, parallel_build_matches_serial_build) {
   const MeshData data = torus(200, 60);
   TriangleMesh serial;
   ASSERT_EQ(data.build(serial), Status::ok);
@@ -217,7 +220,7 @@ TEST(TriangleMeshes, are_the_same_built_by_any_number_of_threads) {
   }
 }
 
-TEST(TriangleMeshes, refuse_bad_input_and_stay_as_they_were) {
+TEST(TriangleMeshes, bad_input_is_refused_and_changes_nothing) {
   const MeshData good = torus(6, 5);
   TriangleMesh mesh;
   ASSERT_EQ(good.build(mesh), Status::ok);
@@ -257,7 +260,7 @@ TEST(TriangleMeshes, refuse_bad_input_and_stay_as_they_were) {
   EXPECT_EQ(edges_of(mesh), edges);
 }
 
-TEST(TriangleMeshes, stay_as_they_were_when_memory_is_refused) {
+TEST(TriangleMeshes, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   TriangleMesh mesh(&memory);
@@ -291,7 +294,7 @@ TEST(TriangleMeshes, stay_as_they_were_when_memory_is_refused) {
   EXPECT_NE(edges_of(mesh), edges);
 }
 
-TEST(TriangleMeshes, refitted_find_what_rebuilt_ones_find) {
+TEST(TriangleMeshes, refitted_mesh_matches_rebuilt_mesh) {
   Random random(6);
   for (const MeshData& data : sample_meshes()) {
     TriangleMesh mesh;
@@ -316,7 +319,7 @@ TEST(TriangleMeshes, refitted_find_what_rebuilt_ones_find) {
   }
 }
 
-TEST(ActiveEdges, of_a_flat_floor_are_its_border_however_it_is_wound_or_welded) {
+TEST(ActiveEdges, flat_floor_has_only_border_edges) {
   MeshData floor = terrain(3);
   for (auto& v : floor.vertices) v.z() = 0.5F;
   const auto is_border = [&](std::uint32_t u, std::uint32_t v) {
@@ -340,21 +343,22 @@ TEST(ActiveEdges, of_a_flat_floor_are_its_border_however_it_is_wound_or_welded) 
     split.vertices.push_back(floor.vertices[corner]);
   }
   expect_border(split, edges_of(split.vertices, split.corners));
-  // A sliver closed to a segment between two triangles parts them not, and may be left out.
+  // A triangle degenerated to a segment between two triangles does not separate them, and is
+  // ignored.
   Slots corners = floor.corners;
   corners.insert(corners.end(), {0, 5, 5, 5, 0, 0});
   const auto edges = edges_of(floor.vertices, corners);
   expect_border(floor, edges);
   EXPECT_EQ(edges[floor.triangles()], 0U);
   EXPECT_EQ(edges[floor.triangles() + 1], 0U);
-  // One triangle turned over, edges 0 and 2 of which are now 2 and 0.
+  // Flip one triangle. Its edges 0 and 2 change places.
   corners = floor.corners;
   std::swap(corners[3 * 8 + 1], corners[3 * 8 + 2]);
   EXPECT_EQ(edges_of(floor.vertices, corners)[8], 0U);
 }
 
-TEST(ActiveEdges, are_those_that_bend_outward_by_more_than_the_angle) {
-  // Two triangles with the edge from (0, 0, 0) to (0, 1, 0), the right one tilted by `bend`.
+TEST(ActiveEdges, convex_edges_beyond_angle_are_active) {
+  // Two triangles share the edge from (0, 0, 0) to (0, 1, 0). The right one is tilted by `bend`.
   const auto shared_edge = [](double bend, double angle, bool flip) {
     const Vertices v = {
         {0, 0, 0},
@@ -373,7 +377,7 @@ TEST(ActiveEdges, are_those_that_bend_outward_by_more_than_the_angle) {
     EXPECT_FALSE(shared_edge(-bend, 0.02, false)) << bend;
     EXPECT_FALSE(shared_edge(bend, bend + 0.01, false)) << bend;
     EXPECT_TRUE(shared_edge(bend, bend - 0.01, false)) << bend;
-    // Without an agreed outside both bends count.
+    // Without a consistent winding both bends count.
     EXPECT_TRUE(shared_edge(bend, 0.02, true)) << bend;
     EXPECT_TRUE(shared_edge(-bend, 0.02, true)) << bend;
     EXPECT_FALSE(shared_edge(-bend, bend + 0.01, true)) << bend;
@@ -385,7 +389,7 @@ TEST(ActiveEdges, are_those_that_bend_outward_by_more_than_the_angle) {
   EXPECT_FALSE(shared_edge(kHalfTurn, kHalfTurn, false));
 }
 
-TEST(ActiveEdges, of_three_triangles_and_of_slivers_are_all_active) {
+TEST(ActiveEdges, edges_of_fans_and_slivers_are_active) {
   const Vertices v = {{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 2, 0}};
   const auto fan = edges_of(v, {0, 1, 2, 1, 0, 3, 0, 1, 4});
   EXPECT_EQ(fan, (std::vector<unsigned>{7, 7, 7}));

@@ -1,3 +1,6 @@
+// Traversals of mesh trees (overlap, pairs, sweep, near, rays) on every ISA, compared with tests of
+// all triangles in long double.
+
 #include "pipeline/mesh/mesh_traversal.h"
 #include <gtest/gtest.h>
 #include "pipeline/mesh/mesh_rays.h"
@@ -31,7 +34,7 @@ struct TwinTriangle {
   }
 };
 
-/// The triangles of a mesh by slot, once they are placed.
+/// Returns the placed triangles of a mesh by slot.
 std::vector<TwinTriangle> twin(const MeshView& mesh, const MeshPlacement& placement = {}) {
   std::vector<TwinTriangle> result(mesh.triangle_count);
   for (std::size_t slot = 0; slot < result.size(); ++slot) {
@@ -59,7 +62,7 @@ Real dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// How far b, grown by the margin, lies from a along an axis; below zero if they overlap on it.
+/// Returns the gap between a and b, b grown by the margin, along an axis. Negative if they overlap.
 Real gap_along(const TwinTriangle& a, const TwinTriangle& b, const double margin[3],
                const Point& axis) {
   const Real length = std::sqrt(dot(axis, axis));
@@ -87,8 +90,8 @@ Real box_gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3
   return result;
 }
 
-/// The largest gap along the axes of the frame and the normals, and with `all` along the cross
-/// products of edges too: above zero only if the triangles, one of them grown, do not meet.
+/// Returns the largest gap along the frame's axes and the normals, and with `all` also along cross
+/// products of edges. If the triangles, one of them grown, overlap, no gap is positive.
 Real gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3], bool all) {
   Real result = box_gap(a, b, margin);
   if (result > 0) return result;
@@ -105,7 +108,7 @@ Real gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3], b
   return result;
 }
 
-/// Calls body on every instruction set and expects the same result from each.
+/// Calls body on every ISA and expects equal results.
 template <typename Body>
 auto on_all_isas(Body&& body) {
   std::vector<decltype(body())> results;
@@ -131,7 +134,7 @@ class Meshes : public testing::Test {
 using Slots = std::vector<std::uint32_t>;
 using SlotPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Traverses twice: first without room, then with what was counted.
+/// Traverses twice: first without capacity, then with the counted capacity.
 template <typename Traverse>
 Slots collect(Traverse&& traverse) {
   SlotSink sink;
@@ -177,8 +180,8 @@ MeshPlacement random_placement(Random& random, double reach) {
   return placement;
 }
 
-/// Every pair that meets is found, once, and none whose boxes are apart by more than 64 u of the
-/// coordinates.
+/// Checks that each overlapping pair is found exactly once, and no pair whose boxes are apart by
+/// more than 64 ulps of the coordinates.
 void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacement& placement,
                   const double margin[3]) {
   const SlotPairs found =
@@ -202,8 +205,8 @@ void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacem
   EXPECT_EQ(apart, 0U);
 }
 
-/// The distance of a point from a triangle: from its plane if the foot is inside, else from an
-/// edge.
+/// Returns the distance of a point from a triangle: from its plane if the projection is inside,
+/// else from an edge.
 Real distance(const TwinTriangle& t, const Point& point) {
   const auto& c = t.corner;
   const Point normal = cross(minus(c[1], c[0]), minus(c[2], c[0]));
@@ -222,7 +225,7 @@ Real distance(const TwinTriangle& t, const Point& point) {
   return inside ? std::abs(dot(normal, minus(point, c[0]))) / length : nearest;
 }
 
-TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
+TEST_F(Meshes, trees_of_different_depth_find_all_pairs) {
   TriangleMesh deep;
   TriangleMesh shallow;
   ASSERT_EQ(torus(70, 40).build(deep), Status::ok);
@@ -235,7 +238,7 @@ TEST_F(Meshes, trees_of_different_depth_find_their_pairs) {
   expect_pairs(shallow, deep, tilted, margin);
 }
 
-TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
+TEST_F(Meshes, small_buffer_delivers_all_pairs_in_order) {
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.4, 0.2, 0.1}};
   const double margin[3] = {0, 0, 0};
   const MeshView& mesh = view_of(meshes_[0]);
@@ -258,7 +261,7 @@ TEST_F(Meshes, pairs_can_be_taken_from_a_small_room_as_they_are_found) {
   }
 }
 
-TEST_F(Meshes, pairs_that_planes_tell_apart_are_dropped) {
+TEST_F(Meshes, pairs_separated_by_planes_are_dropped) {
   const TriangleMesh& mesh = meshes_[0];
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1.3, 0.2, 0.1}};
   const double margin[3] = {0, 0, 0};
@@ -269,8 +272,8 @@ TEST_F(Meshes, pairs_that_planes_tell_apart_are_dropped) {
   for (const auto& [i, j] : found) EXPECT_LE(gap(own[i], placed[j], margin, false), 1e-5L);
 }
 
-TEST_F(Meshes, scales_and_offsets_of_any_size_miss_nothing) {
-  // A mesh meets itself in every triangle, whatever the scale of both.
+TEST_F(Meshes, extreme_scales_and_margins_miss_no_pair) {
+  // At any common scale, a mesh overlaps itself in every triangle.
   for (const float scale : {1e-40F, 1e-30F, 1.0F, 1e30F, 1e37F}) {
     MeshData data = torus(12, 8);
     for (auto& v : data.vertices) v *= scale;
@@ -287,7 +290,7 @@ TEST_F(Meshes, scales_and_offsets_of_any_size_miss_nothing) {
     MeshPlacement placement;
     for (int k = 0; k < 3; ++k) placement.matrix[k][k] = huge;
     const double margin[3] = {0, 0, huge};
-    // Slot 0 of the huge mesh is grown over all of the small one.
+    // With this margin every triangle of the huge mesh overlaps the whole small one.
     const SlotPairs found =
         on_all_isas([&] { return overlap_pairs(view_of(mesh), view_of(mesh), placement, margin); });
     for (const auto& [i, j] : found) EXPECT_LT(std::max(i, j), mesh.triangles());
@@ -312,7 +315,8 @@ struct Seen {
   }
 };
 
-/// When the box moving from [min, max] first meets a triangle's box, up to the last end of it.
+/// Returns the time when the box [min, max] starts to overlap a triangle's box, or infinity if it
+/// does not until the limit.
 Real meeting_time(const TwinTriangle& triangle, const double min[3], const double max[3],
                   const double direction[3], Real limit, Real slack) {
   Real first = 0;
@@ -331,7 +335,7 @@ Real meeting_time(const TwinTriangle& triangle, const double min[3], const doubl
   return first <= last ? first : std::numeric_limits<Real>::infinity();
 }
 
-TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told) {
+TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
   Random random(3);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = twin(view_of(mesh));
@@ -346,7 +350,8 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
         max[axis] = min[axis] + (random.chance(0.5) ? 0.0 : r * random.uniform(0, 0.1));
         direction[axis] = random.chance(0.2) ? 0.0 : r * random.uniform(-1, 1);
       }
-      // A direction whose inverse is infinite is taken for none, and the way for part of the box.
+      // The inverse of this component overflows, so the traversal treats it as zero and enlarges
+      // the box instead.
       const bool slow = random.chance(0.1);
       if (slow) direction[0] = 1e-310;
       const double limit = random.chance(0.3) ? std::numeric_limits<double>::infinity() : 1.5;
@@ -365,9 +370,10 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
         if (set.count(slot) == 0 || slow) continue;
         EXPECT_FALSE(
             std::isinf(meeting_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
-            << "what is not met is not shown, however late the limit";
+            << "visited a triangle that the sweep never reaches";
       }
-      // Told the earliest time after the first leaf, it shows what is earlier yet and ends.
+      // The visitor returns the earliest time after the first leaf. The traversal may then visit
+      // only earlier leaves.
       Seen seen{{}, static_cast<double>(earliest), false};
       mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), shown.size());
@@ -383,7 +389,7 @@ TEST_F(Meshes, a_sweep_shows_the_triangles_it_may_meet_and_ends_where_it_is_told
   }
 }
 
-/// A point of a triangle, on an edge or a corner now and then.
+/// Returns a random point of a triangle, sometimes on an edge or a corner.
 Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
   double weight[3];
   for (double& w : weight) w = random.chance(0.3) ? 0.0 : random.uniform(0, 1);
@@ -411,7 +417,7 @@ LoneSurfaceRay lone(const SurfaceRay& ray) {
   return result;
 }
 
-TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
+TEST_F(Meshes, ray_visits_triangle_at_which_it_aims) {
   Random random(11);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = twin(view_of(mesh));
@@ -467,7 +473,7 @@ TEST_F(Meshes, a_ray_is_shown_every_triangle_that_it_is_aimed_at) {
   }
 }
 
-/// Whether a ray from `from`, at the pace of `way`, is shown a triangle at which it is aimed.
+/// Returns whether a ray from `from` along `way` is given the triangle at which it is aimed.
 bool is_shown(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& way,
               std::uint32_t aim) {
   SurfaceRay ray{};
@@ -494,7 +500,7 @@ bool is_shown(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen
   return sought.is_seen;
 }
 
-TEST(MeshRays, are_shown_triangles_of_flat_and_of_thin_meshes_from_near_and_far) {
+TEST(MeshRays, rays_hit_flat_and_thin_meshes) {
   Random random(17);
   constexpr std::uint32_t kCells = 24;
   for (const double height : {0.0, 1e-30, 1e-12, 1e-4, 1.0}) {
@@ -532,8 +538,7 @@ TEST(MeshRays, are_shown_triangles_of_flat_and_of_thin_meshes_from_near_and_far)
   }
 }
 
-/// What each of several rays is shown, in any order: where it meets triangles, or -1 where that is
-/// in doubt.
+/// The triangles that each of several rays is given: the time of the hit, or -1 if it is in doubt.
 struct SeenByRays {
   std::map<std::uint32_t, double> slots[kRaysAtOnce];
 
@@ -552,7 +557,7 @@ struct SeenByRays {
   }
 };
 
-TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
+TEST_F(Meshes, ray_packet_matches_single_rays) {
   Random random(13);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = twin(view_of(mesh));
@@ -585,17 +590,17 @@ TEST_F(Meshes, rays_that_go_together_are_shown_what_each_is_shown_alone) {
   }
 }
 
-/// Notes pairs, and leaves the limit as it is.
+/// Records pairs and keeps the limit.
 struct SeenPairs {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
 
   static double visit(void* context, std::uint32_t a, std::uint32_t b, double limit) {
-    EXPECT_TRUE(static_cast<SeenPairs*>(context)->pairs.emplace(a, b).second) << "shown twice";
+    EXPECT_TRUE(static_cast<SeenPairs*>(context)->pairs.emplace(a, b).second) << "visited twice";
     return limit;
   }
 };
 
-TEST_F(Meshes, pairs_with_corners_within_the_limit_are_shown_whatever_the_direction) {
+TEST_F(Meshes, near_pairs_are_visited_for_any_direction) {
   Random random(12);
   for (std::size_t k = 0; k < scaled(30); ++k) {
     const TriangleMesh& a = meshes_[random.below(meshes_.size())];
@@ -631,8 +636,8 @@ TEST_F(Meshes, pairs_with_corners_within_the_limit_are_shown_whatever_the_direct
   }
 }
 
-/// The nearest points of a triangle's edges to a point, and of its inside where the point is above
-/// that.
+/// Returns the points of a triangle's edges nearest to a point, and the projection onto the
+/// triangle if it is inside.
 std::vector<Point> nearest_points(const TwinTriangle& triangle, const Point& to) {
   const auto& corner = triangle.corner;
   const auto along = [](const Point& from, const Point& way, Real share) {
@@ -657,7 +662,7 @@ std::vector<Point> nearest_points(const TwinTriangle& triangle, const Point& to)
   return points;
 }
 
-TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
+TEST_F(Meshes, triangles_near_box_are_visited_at_any_scale) {
   Random random(4);
   for (const TriangleMesh& mesh : meshes_) {
     for (std::size_t k = 0; k < scaled(40); ++k) {
@@ -712,13 +717,13 @@ TEST_F(Meshes, what_is_near_a_box_is_shown_at_any_scale_of_the_mesh) {
                                    minus(triangle.corner[2], triangle.corner[0]));
         if (k % 2 != 0 || !(dot(normal, normal) > 0)) continue;
         EXPECT_LE(least, static_cast<Real>(limit * (1 + 1e-4) + 1e-6 * mesh.radius()))
-            << "of a point, triangles are measured, not their boxes";
+            << "for a point the triangle is measured, not its box";
       }
     }
   }
 }
 
-TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
+TEST_F(Meshes, decoded_nodes_contain_their_triangles) {
   for (const TriangleMesh& mesh : meshes_) {
     const MeshView& view = view_of(mesh);
     const auto triangles = twin(view);
@@ -739,7 +744,7 @@ TEST_F(Meshes, decoded_nodes_contain_the_triangles_below_them) {
   }
 }
 
-TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
+TEST_F(Meshes, box_overlap_matches_triangle_boxes) {
   Random random(1);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = twin(view_of(mesh));
@@ -752,7 +757,7 @@ TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
         min[axis] = static_cast<double>(mesh.bounds().min[a] +
                                         size[a] * static_cast<float>(random.uniform(-0.1, 1.0)));
         max[axis] = min[axis] + static_cast<double>(size[a]) * random.uniform(0.0, 0.3);
-        // Boxes that end at a corner touch it.
+        // A box that ends at a corner touches it.
         const auto& corner = triangles[random.below(triangles.size())].corner[0];
         if (random.chance(0.2)) max[axis] = static_cast<double>(corner[axis]);
         if (random.chance(0.1)) max[axis] = std::numeric_limits<double>::infinity();
@@ -772,7 +777,7 @@ TEST_F(Meshes, a_box_finds_the_triangles_whose_boxes_it_meets_and_no_others) {
   }
 }
 
-TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose_boxes_are_apart) {
+TEST_F(Meshes, mesh_pairs_match_brute_force) {
   Random random(2);
   for (const TriangleMesh& a : meshes_) {
     const TriangleMesh& b = meshes_[random.below(meshes_.size())];
@@ -784,7 +789,7 @@ TEST_F(Meshes, two_meshes_find_every_pair_of_triangles_that_meets_and_none_whose
   }
 }
 
-TEST_F(Meshes, a_ball_finds_the_triangles_that_come_near_its_middle) {
+TEST_F(Meshes, ball_overlap_matches_triangle_distances) {
   Random random(11);
   std::size_t dropped = 0;
   for (const TriangleMesh& mesh : meshes_) {

@@ -1,3 +1,6 @@
+// CompositePool::expand and visit: pairs of primitives compared with all pairs of primitives of two
+// bodies.
+
 #include "tests/pipeline/composite_world.h"
 
 #include "pipeline/solver/solver.h"
@@ -15,7 +18,7 @@ namespace {
 
 using Touch = std::tuple<std::size_t, std::uint32_t, std::uint32_t>;
 
-/// Every part of a against every part of b, for all pairs.
+/// Pairs every primitive of a with every primitive of b, for all pairs of bodies.
 void expand_all(const CompositeWorld& world, PrimitivePairs& out, std::vector<std::size_t>& owner) {
   for (std::size_t i = 0; i < world.pairs.size(); ++i) {
     const BodyPair& pair = world.pairs[i];
@@ -47,7 +50,7 @@ void expand_all(const CompositeWorld& world, PrimitivePairs& out, std::vector<st
   }
 }
 
-/// Pairs of parts that are no farther apart than `near`.
+/// Returns the pairs of primitives no farther apart than `near`.
 std::set<Touch> touching(const CompositeWorld& world, const PrimitivePairs& pairs,
                          const std::vector<std::size_t>& owner, double near) {
   NarrowPhase narrow;
@@ -82,7 +85,7 @@ bool same(const Column<T>& a, const Column<T>& b) {
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-TEST(MidPhase, finds_every_pair_of_primitives_that_all_against_all_finds) {
+TEST(MidPhase, primitive_pairs_match_brute_force) {
   Random random(1);
   CompositeWorld world;
   world.add_shapes(random);
@@ -96,7 +99,7 @@ TEST(MidPhase, finds_every_pair_of_primitives_that_all_against_all_finds) {
     ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, margin,
                                       Execution::serial(), pairs),
               Status::ok);
-    // Poses far from the origin differ by rounding.
+    // Far from the origin poses are rounded differently.
     const double slack = 1e-9;
     const std::set<Touch> sure = touching(world, all, owner, margin - slack);
     const std::set<Touch> perhaps = touching(world, all, owner, margin + slack);
@@ -108,7 +111,7 @@ TEST(MidPhase, finds_every_pair_of_primitives_that_all_against_all_finds) {
   }
 }
 
-TEST(MidPhase, is_the_same_on_any_number_of_threads_and_any_instruction_set) {
+TEST(MidPhase, pairs_match_on_any_threads_and_isa) {
   Random random(2);
   CompositeWorld world;
   world.add_shapes(random);
@@ -134,7 +137,7 @@ TEST(MidPhase, is_the_same_on_any_number_of_threads_and_any_instruction_set) {
   }
 }
 
-TEST(MidPhase, allocates_nothing_the_second_time_and_counts_every_byte) {
+TEST(MidPhase, second_call_allocates_nothing_and_footprint_is_exact) {
   CountingMemory memory;
   {
     Random random(3);
@@ -172,7 +175,7 @@ TEST(MidPhase, allocates_nothing_the_second_time_and_counts_every_byte) {
   }
 }
 
-TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
+TEST(MidPhase, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(4);
   CompositeWorld world;
@@ -223,7 +226,7 @@ TEST(MidPhase, a_refused_request_for_memory_changes_nothing) {
   }
 }
 
-TEST(MidPhase, what_is_not_there_touches_nothing) {
+TEST(MidPhase, unknown_shapes_give_no_pairs) {
   Random random(13);
   CompositeWorld world;
   world.add_shapes(random);
@@ -241,7 +244,7 @@ TEST(MidPhase, what_is_not_there_touches_nothing) {
   EXPECT_GT(pairs.first[5], 0U);
 }
 
-TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
+TEST(MidPhase, extreme_poses_and_scales_give_no_nan) {
   Random random(12);
   CompositeWorld world;
   world.add_shapes(random);
@@ -264,7 +267,7 @@ TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
     ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, margin,
                                       Execution::serial(), pairs),
               Status::ok);
-    // An all but endless margin keeps every pair: a few tell as much.
+    // A nearly infinite margin keeps every pair. A sample is enough.
     const std::size_t count = std::min<std::size_t>(pairs.pairs.size(), 2000);
     pairs.pairs.set_size(count);
     NarrowResult result;
@@ -274,7 +277,7 @@ TEST(MidPhase, any_valid_pose_and_scale_gives_what_the_narrow_phase_takes) {
   }
 }
 
-TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
+TEST(Visits, visits_find_all_primitives_in_reach) {
   Random random(10);
   CompositeWorld world;
   world.add_shapes(random);
@@ -299,7 +302,7 @@ TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
       };
       world.composites.visit(id, pose, box, {note, &swept});
       world.composites.visit_near(id, pose, box, 0.7, {note, &near});
-      // A box against parts that are seen as shapes: answered by the narrow phase.
+      // Compares with the narrow phase: a box against each primitive.
       CompositeWorld probe;
       ShapeId cube = add(probe.shapes,
                          BoxShape{{0.5 * (box.max[0] - box.min[0]), 0.5 * (box.max[1] - box.min[1]),
@@ -339,7 +342,7 @@ TEST(Visits, show_what_all_boxes_would_and_the_nearest_first) {
   }
 }
 
-TEST(Visits, end_when_told_to) {
+TEST(Visits, negative_limit_ends_visit) {
   Random random(11);
   CompositeWorld world;
   world.add_shapes(random);

@@ -1,3 +1,6 @@
+// Reference computations of moving pairs in long double, and a proof by sampled distances that two
+// shapes stay apart before a time. Used by tests of times of impact.
+
 #include "tests/pipeline/motion_twin.h"
 
 #include <algorithm>
@@ -22,7 +25,7 @@ Real norm_of(const double (&v)[3]) {
                    static_cast<Real>(v[2]) * v[2]);
 }
 
-/// The orientation at a time; the series of the C library in long double.
+/// Computes the orientation at a time in long double.
 void turn_to(const RigidMotion& motion, double time, double (&orientation)[4]) {
   const Real angle = norm_of(motion.turn);
   const Real half = angle * time / 2;
@@ -40,7 +43,7 @@ void turn_to(const RigidMotion& motion, double time, double (&orientation)[4]) {
   for (int i = 0; i < 4; ++i) orientation[i] = static_cast<double>(p[i]);
 }
 
-/// The farthest point from the shape's position; 0 of a half-space.
+/// Returns the largest distance of a point from the shape's position, or 0 for a half-space.
 double reach_of(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
   switch (id.kind()) {
@@ -77,7 +80,7 @@ double reach_of(const ShapeTables& tables, ShapeId id) {
   }
 }
 
-/// Half of what it measures across.
+/// Returns half the size of a shape.
 double extent_of(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
   if (id.kind() == ShapeKind::hull) return tables.hulls[i].radius + tables.hulls[i].rounding;
@@ -112,13 +115,13 @@ void set_direction(Random& random, double length, double (&v)[3]) {
     }
     if (square < 0.01 || square > 1.0) continue;
     for (double& x : v) x *= length / std::sqrt(square);
-    // Along an axis as often as not: faces and edges stay parallel.
+    // Often along an axis, so that faces and edges stay parallel.
     if (random.chance(0.3)) v[random.below(3)] = v[random.below(3)] = 0.0;
     return;
   }
 }
 
-/// How far and how much each of them moves.
+/// Sets random velocities of the given style.
 void set_motion(MotionStyle style, double size, Random& random, RigidMotion& motion) {
   constexpr double kHalfTurn = 3.14159265358979;
   double way = size * random.log_uniform(0.1, 10.0);
@@ -261,7 +264,8 @@ Before before(const std::function<DistanceAt(double)>& distance, double speed, d
   std::vector<Span> open{{0.0, time}};
   bool proved = true;
   for (std::size_t looks = 0; !open.empty(); ++looks) {
-    // The latest one is the shortest: all are shown at some depth before the looks are used up.
+    // Take the last, shortest interval first, so that every depth is reached within the limit of
+    // samples.
     const Span span = open.back();
     open.pop_back();
     const double middle = 0.5 * (span.from + span.to);

@@ -11,29 +11,29 @@
 
 namespace winnow::test {
 
-/// Two shapes and how they move.
+/// Two shapes and their motions.
 struct MovingShapes {
   ShapeId shape[2];
   RigidMotion motion[2];
 };
 
-/// How the pairs of a test move.
+/// The kinds of random motion in tests.
 enum class MotionStyle {
-  /// Straight on.
+  /// Translation only.
   travelling,
-  /// About an axis, by up to half a turn.
+  /// Rotation only, by up to half a turn.
   turning,
-  /// Both, by up to half a turn.
+  /// Translation and rotation by up to half a turn.
   moving,
-  /// Up to twenty turns.
+  /// Rotation by up to twenty turns.
   whirling,
   /// From up to 1e6 sizes away.
   bullet,
-  /// 1e9 from the origin.
+  /// At 1e9 sizes from the origin.
   far_away,
-  /// From where they are found, perhaps overlapping.
+  /// Starts in the poses of the scene, possibly overlapping.
   touching,
-  /// By little, past each other.
+  /// Small motions past each other.
   grazing,
 };
 inline constexpr MotionStyle kMotionStyles[] = {
@@ -41,52 +41,51 @@ inline constexpr MotionStyle kMotionStyles[] = {
     MotionStyle::bullet,     MotionStyle::far_away, MotionStyle::touching, MotionStyle::grazing};
 [[nodiscard]] const char* to_string(MotionStyle style);
 
-/// All kinds but convex sets of the program's own.
+/// Returns all kinds, user shapes included.
 [[nodiscard]] std::vector<ShapeKind> moving_kinds();
 
-/// Makes a pair of a scene pass at some time where the scene has it.
+/// Returns motions that bring a pair of a scene into its poses at some time.
 [[nodiscard]] MovingShapes moving_pair(const PairScene& scene, BodyPair pair, MotionStyle style,
                                        Random& random);
 
-/// Distance of two moving shapes at a time: places computed in long double, the distance by the
-/// solver, which stands in for exact arithmetic within its own bound.
+/// Distance of two moving shapes at a time. Poses are computed in long double, the distance by the
+/// solver, within its error bound.
 struct DistanceAt {
   double distance;
   double error;
 };
 [[nodiscard]] DistanceAt distance_at(const ShapePool& pool, const MovingShapes& pair, double time);
 
-/// No two points of the shapes approach each other faster.
+/// Returns an upper bound of the speed at which two points of the shapes approach each other.
 [[nodiscard]] double speed_bound(const ShapePool& pool, const MovingShapes& pair);
 
-/// What can be said of the shapes before a time.
+/// The relation of two shapes before a time.
 enum class Before : std::uint8_t {
-  /// Proved: no ball of the size of the distance at some times leaves one between them out.
+  /// Proved: the sampled distances exclude any overlap between the samples.
   apart,
-  /// Apart wherever looked at, too near each other for a proof.
+  /// Apart at all samples, but too near for a proof.
   likely_apart,
   /// They overlap at some time.
   met,
 };
 [[nodiscard]] Before before(const ShapePool& pool, const MovingShapes& pair, double time,
                             std::size_t most_looks);
-/// The same of anything whose distance at a time is known, and falls no faster than `speed`.
-/// Distances may be wrong by `doubt` beyond their error.
+/// As above for any distance function that changes no faster than `speed`. Distances may be off by
+/// `doubt` beyond their error bound.
 [[nodiscard]] Before before(const std::function<DistanceAt(double)>& distance, double speed,
                             double doubt, double time, std::size_t most_looks);
 
-/// Where a body is at a time, from `origin`, computed in long double.
+/// Returns the pose of a body at a time relative to `origin`, computed in long double.
 [[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]);
 
-/// The smaller of the largest distances of the shapes' points from their middles; of the other
-/// where one is a point or has no end.
+/// Returns the smaller half size of the two shapes, or the other one if it is zero or unbounded.
 [[nodiscard]] double size_of(const ShapePool& pool, const MovingShapes& pair);
 
-/// What the solver may be wrong by beyond its bound: of curved shapes beside others many times as
-/// large.
+/// Returns the error of the solver beyond its bound: not zero for curved shapes beside much larger
+/// ones.
 [[nodiscard]] double doubt_of(const ShapePool& pool, const MovingShapes& pair);
 
-/// What a gap is resolved to at best.
+/// Returns the smallest gap that can be resolved.
 [[nodiscard]] double resolution_of(const ShapePool& pool, const MovingShapes& pair);
 
 }  // namespace winnow::test

@@ -1,5 +1,5 @@
-// Answers depend on the pair alone: not on its place in the batch, the instruction set, the number
-// of threads or what was asked before; and the levels agree with each other.
+// Answers depend only on the pair, not on its position in the batch, the ISA, the number of threads
+// or earlier calls; and the contact levels agree with each other.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distanc
                                     ContactLevel::manifold};
 constexpr double kMargin = 0.25;
 
-/// Pairs of all kinds in one list, in a random order.
+/// Pairs of all kinds in one list, in random order.
 PairScene shuffled_scene(std::size_t count) {
   Random random(17);
   PairScene scene;
@@ -57,7 +57,7 @@ class Batches : public testing::Test {
   PairScene scene_ = shuffled_scene(scaled(20));
 };
 
-TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) {
+TEST_F(Batches, answers_match_on_every_isa_and_thread_count) {
   const Isa widest = available_isas().back();
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
@@ -83,14 +83,14 @@ TEST_F(Batches, answers_are_the_same_on_every_instruction_set_and_thread_count) 
   }
 }
 
-TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
+TEST_F(Batches, batch_position_and_earlier_calls_change_nothing) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
       const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
       const auto together = ask(scene_, options);
       NarrowPhase phase;
       NarrowResult result;
-      // Pieces of many sizes, so that pairs meet other lanes and ends of batches.
+      // Batches of many sizes put the pairs into different lanes and at the ends of batches.
       std::vector<PairAnswers> apart;
       const std::span<const BodyPair> pairs(scene_.pairs);
       for (std::size_t at = 0, size = 1; at < pairs.size(); at += size, size = size % 37 + 1) {
@@ -106,7 +106,7 @@ TEST_F(Batches, the_place_in_the_batch_and_earlier_calls_do_not_matter) {
   }
 }
 
-TEST_F(Batches, a_pair_by_itself_is_answered_as_among_others) {
+TEST_F(Batches, batch_of_one_matches_large_batch) {
   NarrowPhase phase;
   NarrowResult result;
   for (const NarrowTier tier : kTiers) {
@@ -117,7 +117,7 @@ TEST_F(Batches, a_pair_by_itself_is_answered_as_among_others) {
     for (const ContactLevel level : kLevels) together.push_back(ask(scene_, options_of(level)));
     std::vector<PairAnswers> alone;
     std::vector<PairAnswers> expected;
-    // The levels take turns in one result.
+    // The levels alternate in one result.
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
       const std::size_t level = i / 2 % 3;
       ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), {&scene_.pairs[i], 1},
@@ -132,7 +132,7 @@ TEST_F(Batches, a_pair_by_itself_is_answered_as_among_others) {
   }
 }
 
-/// Of the one pair of `scene` that is i-th, by the function for one.
+/// Returns the answer of the single-pair function for pair i.
 PairAnswers ask_one(const PairScene& scene, std::size_t i, const NarrowOptions& options) {
   const BodyPair pair = scene.pairs[i];
   PairAnswer answer;
@@ -153,7 +153,7 @@ PairAnswers ask_one(const PairScene& scene, std::size_t i, const NarrowOptions& 
   return answers;
 }
 
-TEST_F(Batches, pairs_with_own_margins_answer_as_alone) {
+TEST_F(Batches, per_pair_margins_match_single_queries) {
   Random random(18);
   std::vector<double> margins;
   for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
@@ -174,12 +174,12 @@ TEST_F(Batches, pairs_with_own_margins_answer_as_alone) {
   }
 }
 
-TEST_F(Batches, the_function_for_one_pair_answers_as_a_narrow_phase_does) {
+TEST_F(Batches, single_pair_function_matches_narrow_phase) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
       const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
       std::vector<PairAnswers> alone(scene_.pairs.size());
-      // Any number of threads may ask.
+      // The function is safe to call from several threads.
       const auto work = Execution::parallel();
       Threads(3).run([&] {
         work.for_each(alone.size(), [&](std::size_t i) { alone[i] = ask_one(scene_, i, options); });
@@ -194,13 +194,13 @@ void expect_same_verdicts(const PairScene& scene) {
   const std::vector<PairAnswers> together = ask(scene, options);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     if (ask_one(scene, i, options).overlap == together[i].overlap) continue;
-    ADD_FAILURE() << "together they " << (together[i].overlap ? "overlap" : "are apart") << "\n"
+    ADD_FAILURE() << "in a batch they " << (together[i].overlap ? "overlap" : "are apart") << "\n"
                   << reproduction(scene, scene.pairs[i]);
     return;
   }
 }
 
-TEST(OnePair, has_the_verdict_that_it_has_among_others) {
+TEST(OnePair, verdict_matches_batch) {
   Random random(18);
   for (const PairStyle style : kPairStyles) {
     for (const ShapeKind a : kConvexKinds) {
@@ -215,7 +215,7 @@ TEST(OnePair, has_the_verdict_that_it_has_among_others) {
   }
 }
 
-/// Pairs of a shape at random places near the first `others` bodies.
+/// Adds pairs of a shape at random poses with the first `others` bodies.
 void add_near(PairScene& scene, ShapeId shape, std::size_t others, std::size_t count,
               Random& random) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -230,9 +230,9 @@ void add_near(PairScene& scene, ShapeId shape, std::size_t others, std::size_t c
   }
 }
 
-// A set need not hold the origin of its frame, nor a ball of a tapered capsule within the other
-// one.
-TEST(OnePair, has_that_verdict_if_its_middle_is_no_point_of_it) {
+// The origin of a user shape may be outside it, and one ball of a tapered capsule may contain the
+// other.
+TEST(OnePair, verdict_matches_batch_for_off_centre_shapes) {
   Random random(19);
   PairScene scene;
   const auto add = [&](const auto& shape) {
@@ -257,8 +257,8 @@ TEST(OnePair, has_that_verdict_if_its_middle_is_no_point_of_it) {
   expect_same_verdicts(scene);
 }
 
-TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
-  constexpr std::size_t kMany = 50000;  // several tasks sort them
+TEST_F(Batches, order_of_many_pairs_matches_on_threads) {
+  constexpr std::size_t kMany = 50000;  // enough for several sorting tasks
   const std::size_t few = scene_.pairs.size();
   for (std::size_t i = 0; scene_.pairs.size() < kMany; ++i) {
     scene_.pairs.push_back(scene_.pairs[i * 7919 % few]);
@@ -271,7 +271,8 @@ TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
   };
   NarrowResult serial;
   collide(Execution::serial(), serial);
-  // Stable: of one kind in the order of the input, a mirrored pair among the others.
+  // The order is stable: pairs of the same kinds keep the input order, swapped pairs among the
+  // others.
   for (const NarrowRun& run : serial.runs()) {
     for (std::uint32_t i = 1; i < run.count; ++i) {
       ASSERT_LT(serial.pair_of(run.first + i - 1), serial.pair_of(run.first + i));
@@ -288,7 +289,7 @@ TEST_F(Batches, many_pairs_are_put_in_one_order_on_any_number_of_threads) {
   }
 }
 
-TEST_F(Batches, levels_agree) {
+TEST_F(Batches, contact_levels_agree) {
   for (const NarrowTier tier : kTiers) {
     const auto yes_no = ask(scene_, {.level = ContactLevel::boolean, .tier = tier});
     const auto distances = ask(scene_, {.level = ContactLevel::distance, .tier = tier});
@@ -314,7 +315,7 @@ TEST_F(Batches, levels_agree) {
   }
 }
 
-TEST_F(Batches, pairs_within_the_margin_have_contacts_as_deep_as_they_are) {
+TEST_F(Batches, deepest_contact_within_margin_matches_distance) {
   for (const NarrowTier tier : kTiers) {
     for (const double margin : {0.0, kMargin}) {
       const auto answers = ask(scene_, {.tier = tier, .margin = margin});

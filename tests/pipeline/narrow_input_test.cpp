@@ -1,4 +1,4 @@
-// Bad input, and what memory is asked for.
+// Refused input of the narrow phase, and its memory.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class NarrowInput : public testing::Test {
   [[nodiscard]] Status collide(const NarrowOptions& options = {}) {
     return phase_.collide(scene_.pool, scene_.bodies(), scene_.pairs, options, result_);
   }
-  /// Refused, the result empty, and the next good call is answered as if nothing had been.
+  /// Checks that the call is refused and the result is empty.
   void expect_refused(Status expected, const NarrowOptions& options = {}) {
     EXPECT_EQ(collide(options), expected);
     EXPECT_EQ(result_.size(), 0U);
@@ -46,14 +46,14 @@ class NarrowInput : public testing::Test {
   NarrowResult result_;
 };
 
-TEST_F(NarrowInput, no_pairs_are_no_answers) {
+TEST_F(NarrowInput, empty_pairs_give_empty_result) {
   scene_.pairs.clear();
   EXPECT_EQ(collide(), Status::ok);
   EXPECT_EQ(result_.size(), 0U);
   EXPECT_EQ(phase_.collide(scene_.pool, {}, {}, {}, result_), Status::ok);
 }
 
-TEST_F(NarrowInput, a_result_that_was_moved_from_is_empty) {
+TEST_F(NarrowInput, moved_from_result_is_empty) {
   for (const ContactLevel level :
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     NarrowResult from;
@@ -67,14 +67,14 @@ TEST_F(NarrowInput, a_result_that_was_moved_from_is_empty) {
   }
 }
 
-TEST_F(NarrowInput, a_bad_margin_is_refused) {
+TEST_F(NarrowInput, bad_margin_is_refused) {
   for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
     ASSERT_EQ(collide(), Status::ok);
     expect_refused(Status::invalid_argument, {.margin = margin});
   }
 }
 
-TEST_F(NarrowInput, one_bad_margin_among_many_is_refused) {
+TEST_F(NarrowInput, one_bad_margin_of_many_is_refused) {
   std::vector<double> margins(scene_.pairs.size(), 0.125);
   for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
     margins.back() = margin;
@@ -83,7 +83,7 @@ TEST_F(NarrowInput, one_bad_margin_among_many_is_refused) {
   }
 }
 
-TEST_F(NarrowInput, margins_of_other_pairs_are_refused) {
+TEST_F(NarrowInput, wrong_number_of_margins_is_refused) {
   const std::vector<double> margins(scene_.pairs.size() + 1, 0.125);
   for (const std::size_t count : {std::size_t{1}, margins.size() - 2, margins.size()}) {
     ASSERT_EQ(collide(), Status::ok);
@@ -91,7 +91,7 @@ TEST_F(NarrowInput, margins_of_other_pairs_are_refused) {
   }
 }
 
-TEST_F(NarrowInput, a_body_that_is_not_there_is_refused) {
+TEST_F(NarrowInput, body_index_out_of_range_is_refused) {
   const auto count = static_cast<std::uint32_t>(scene_.shapes.size());
   for (const std::uint32_t body : {count, count + 7, ~0U}) {
     for (const bool is_a : {true, false}) {
@@ -105,12 +105,12 @@ TEST_F(NarrowInput, a_body_that_is_not_there_is_refused) {
   }
 }
 
-TEST_F(NarrowInput, shapes_without_poses_are_refused) {
+TEST_F(NarrowInput, missing_pose_is_refused) {
   scene_.poses.pop_back();
   expect_refused(Status::size_mismatch);
 }
 
-TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
+TEST_F(NarrowInput, unknown_shape_is_refused) {
   ShapeId sphere;
   ASSERT_EQ(scene_.pool.add(SphereShape{1.0}, sphere), Status::ok);
   for (const ShapeId id : {ShapeId{}, ShapeId::of(ShapeKind::cone, 1000), ShapeId{9U << 28U},
@@ -125,7 +125,7 @@ TEST_F(NarrowInput, a_shape_that_the_pool_does_not_hold_is_refused) {
   }
 }
 
-TEST_F(NarrowInput, a_pair_by_itself_is_refused_as_among_others) {
+TEST_F(NarrowInput, single_bad_pair_fails_like_batch) {
   const auto body = static_cast<std::uint32_t>(scene_.shapes.size());
   scene_.shapes.insert(scene_.shapes.end(), {ShapeId{}, ShapeId::of(ShapeKind::box, 1U << 20U)});
   scene_.poses.resize(scene_.shapes.size());
@@ -147,8 +147,8 @@ TEST_F(NarrowInput, a_pair_by_itself_is_refused_as_among_others) {
   EXPECT_EQ(phase_.bad_body(), ~0U);
 }
 
-TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) {
-  constexpr std::size_t kMany = 100000;  // several tasks look at them
+TEST_F(NarrowInput, bad_pairs_of_many_fail_on_any_threads) {
+  constexpr std::size_t kMany = 100000;  // enough for several checking tasks
   const std::vector<BodyPair> few = scene_.pairs;
   while (scene_.pairs.size() < kMany) {
     scene_.pairs.insert(scene_.pairs.end(), few.begin(), few.end());
@@ -158,7 +158,7 @@ TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) 
     const auto refused = [&](Status expected) {
       Threads(threads).run([&] { expect_refused(expected, options); });
     };
-    // Bodies of their own: the first one in the order of the pairs is named.
+    // Two bad bodies: the narrow phase names the one whose pair comes first.
     const auto last = static_cast<std::uint32_t>(scene_.shapes.size());
     scene_.shapes.insert(scene_.shapes.end(), {ShapeId{}, ShapeId{}});
     scene_.poses.resize(scene_.shapes.size());
@@ -167,7 +167,7 @@ TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) 
     scene_.pairs[kMany - 2].a = last;
     refused(Status::invalid_key);
     EXPECT_EQ(phase_.bad_body(), last + 1);
-    // A body that is not there is told first, wherever it is.
+    // An index out of range takes precedence at any position.
     scene_.pairs[kMany - 2].a = last + 2;
     refused(Status::invalid_argument);
     EXPECT_EQ(phase_.bad_body(), ~0U);
@@ -179,7 +179,7 @@ TEST_F(NarrowInput, many_pairs_are_refused_as_few_are_on_any_number_of_threads) 
   }
 }
 
-TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
+TEST_F(NarrowInput, bad_pose_is_refused_and_named) {
   const auto reference = ask(scene_, {});
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     for (const ContactLevel level :
@@ -193,7 +193,7 @@ TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
           EXPECT_EQ(phase_.bad_body(), body);
           scene_.poses[body] = before;
         }
-        // Quaternions that a shape does not need are not looked at.
+        // Spheres ignore their quaternion.
         if (scene_.shapes[body].kind() == ShapeKind::sphere) continue;
         for (const Pose& bad : {Pose{{1, 2, 3}, {0, 0, 0, 0}}, Pose{{1, 2, 3}, {1, kNan, 0, 0}},
                                 Pose{{1, 2, 3}, {1, 0, 0, kInfinity}}}) {
@@ -210,7 +210,7 @@ TEST_F(NarrowInput, a_bad_pose_of_a_pair_is_refused_and_named) {
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_TRUE(same(after[i], reference[i])) << i;
 }
 
-TEST_F(NarrowInput, the_function_for_one_pair_refuses_as_a_narrow_phase_does_and_changes_nothing) {
+TEST_F(NarrowInput, single_pair_function_refuses_like_narrow_phase) {
   const auto expect_the_same = [&](std::uint32_t a, std::uint32_t b, const NarrowOptions& options) {
     PairAnswer answer;
     answer.distance = 17.0;
@@ -253,13 +253,13 @@ TEST_F(NarrowInput, the_function_for_one_pair_refuses_as_a_narrow_phase_does_and
   }
 }
 
-TEST_F(NarrowInput, a_bad_pose_of_a_body_that_is_in_no_pair_does_not_matter) {
+TEST_F(NarrowInput, bad_pose_outside_pairs_is_ignored) {
   scene_.shapes.push_back(scene_.shapes.front());
   scene_.poses.push_back({{kNan, 0, 0}, {0, 0, 0, 0}});
   EXPECT_EQ(collide(), Status::ok);
 }
 
-TEST_F(NarrowInput, a_body_against_itself_overlaps) {
+TEST_F(NarrowInput, body_with_itself_overlaps) {
   for (BodyPair& pair : scene_.pairs) pair.b = pair.a;
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     ASSERT_EQ(collide({.level = ContactLevel::distance, .tier = tier}), Status::ok);
@@ -270,7 +270,7 @@ TEST_F(NarrowInput, a_body_against_itself_overlaps) {
   }
 }
 
-TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
+TEST_F(NarrowInput, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto expected = ask(scene_, {});
   std::size_t refusals = 0;
@@ -296,7 +296,7 @@ TEST_F(NarrowInput, out_of_memory_is_a_status_and_leaves_nothing_behind) {
   EXPECT_GT(refusals, 3U);
 }
 
-TEST_F(NarrowInput, the_second_call_allocates_nothing) {
+TEST_F(NarrowInput, second_call_allocates_nothing) {
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {

@@ -1,4 +1,4 @@
-// What must hold of answers whatever the shapes: properties that need no oracle.
+// Properties of the answers for all kinds of shapes that can be checked without the oracle.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ NarrowOptions distances(NarrowTier tier) {
   return {.level = ContactLevel::distance, .tier = tier};
 }
 
-/// Every pair of kinds.
+/// Pairs of all kinds.
 PairScene mixed_scene(PairStyle style, std::size_t count, std::uint64_t seed) {
   Random random(seed);
   PairScene scene;
@@ -50,7 +50,7 @@ bool is_curved(const PairScene& scene, BodyPair pair) {
 
 class Properties : public testing::TestWithParam<PairStyle> {
  protected:
-  /// Reports the first few only.
+  /// Reports only the first few faults.
   void complain(const char* what, BodyPair pair, double is, double should_be) {
     if (++complaints_ > 3) return;
     ADD_FAILURE() << what << ": " << is << " instead of " << should_be << '\n'
@@ -64,7 +64,7 @@ class Properties : public testing::TestWithParam<PairStyle> {
   int complaints_ = 0;
 };
 
-TEST_P(Properties, exchanged_bodies_have_mirrored_answers) {
+TEST_P(Properties, swapped_bodies_give_mirrored_answers) {
   PairScene back = mixed_scene(GetParam(), scaled(12), 3);
   for (BodyPair& pair : back.pairs) std::swap(pair.a, pair.b);
   for (const NarrowTier tier : kTiers) {
@@ -73,23 +73,23 @@ TEST_P(Properties, exchanged_bodies_have_mirrored_answers) {
     for (std::size_t i = 0; i < there.size(); ++i) {
       const PairAnswers& p = there[i];
       const PairAnswers& q = again[i];
-      // Bodies in one place have no first and second, and rims are closed in on from one side.
+      // Coincident centres have no canonical order, and the search on rims depends on the order.
       const bool exactly =
           !is_curved(scene_, scene_.pairs[i]) && between(scene_, scene_.pairs[i]).norm() > 0.0;
       const double allowed = exactly ? 0.0 : p.error_bound + q.error_bound;
       if (p.overlap != q.overlap || !(std::abs(p.distance - q.distance) <= allowed)) {
-        complain("exchanged distance", scene_.pairs[i], q.distance, p.distance);
+        complain("swapped distance", scene_.pairs[i], q.distance, p.distance);
       }
-      // Where several normals are equally good, the frame of a decides.
+      // If several normals are equally good, the frame of a decides.
       if (GetParam() == PairStyle::ordinary &&
           (p.normal + q.normal).norm() > (exactly ? 0.0 : 1e-5)) {
-        complain("exchanged normal", scene_.pairs[i], (p.normal + q.normal).norm(), 0.0);
+        complain("swapped normal", scene_.pairs[i], (p.normal + q.normal).norm(), 0.0);
       }
     }
   }
 }
 
-TEST_P(Properties, a_common_translation_changes_nothing) {
+TEST_P(Properties, common_translation_changes_nothing) {
   PairScene near = mixed_scene(GetParam(), scaled(12), 3);
   // Positions on a grid on which all sums are exact.
   for (Pose& pose : near.poses) {
@@ -115,7 +115,7 @@ TEST_P(Properties, a_common_translation_changes_nothing) {
   }
 }
 
-TEST_P(Properties, a_common_rotation_changes_no_distance_beyond_its_bound) {
+TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
   PairScene turned = mixed_scene(GetParam(), scaled(12), 3);
   Random random(9);
   for (const BodyPair pair : turned.pairs) {
@@ -137,7 +137,7 @@ TEST_P(Properties, a_common_rotation_changes_no_distance_beyond_its_bound) {
     const auto before = ask(scene_, distances(tier));
     const auto after = ask(turned, distances(tier));
     for (std::size_t i = 0; i < before.size(); ++i) {
-      // Turning rounds positions and orientations, too.
+      // The rotation also rounds positions and orientations.
       const BodyPair pair = scene_.pairs[i];
       const double reach = between(scene_, pair).norm() + std::abs(before[i].distance) +
                            Eigen::Map<const Eigen::Vector3d>(scene_.poses[pair.a].position).norm() +
@@ -150,14 +150,14 @@ TEST_P(Properties, a_common_rotation_changes_no_distance_beyond_its_bound) {
   }
 }
 
-TEST_P(Properties, moving_b_along_the_normal_adds_to_the_distance) {
+TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     const auto before = ask(scene_, distances(tier));
     for (const double step : {0.25, 1.0}) {
       PairScene moved = mixed_scene(GetParam(), scaled(12), 3);
       std::vector<double> shift(before.size());
       for (std::size_t i = 0; i < before.size(); ++i) {
-        // One step leads out of the overlap, or as far again.
+        // A full step just separates overlapping shapes, or doubles the distance.
         shift[i] = step * std::abs(before[i].distance);
         double* position = moved.poses[moved.pairs[i].b].position;
         for (int axis = 0; axis < 3; ++axis) position[axis] += shift[i] * before[i].normal[axis];
@@ -170,7 +170,7 @@ TEST_P(Properties, moving_b_along_the_normal_adds_to_the_distance) {
         const double rounding = 1e-14 * (position + shift[i] + extent(scene_, pair));
         const double bound = before[i].error_bound + after[i].error_bound + rounding;
         const double expected = before[i].distance + shift[i];
-        // A normal that is off by 0.01 degrees leads that much less far.
+        // A normal that is off by 0.01 degrees gains that much less distance.
         const double missed = is_curved(scene_, pair) ? 1.6e-8 * shift[i] : 0.0;
         if (!(after[i].distance <= expected + bound) ||
             !(after[i].distance >= expected - bound - missed)) {
@@ -181,7 +181,7 @@ TEST_P(Properties, moving_b_along_the_normal_adds_to_the_distance) {
   }
 }
 
-TEST_P(Properties, points_lie_on_the_shapes) {
+TEST_P(Properties, witness_points_lie_on_shapes) {
   for (const NarrowTier tier : kTiers) {
     const auto answers = ask(scene_, distances(tier));
     PairScene points = mixed_scene(GetParam(), scaled(12), 3);
@@ -191,7 +191,7 @@ TEST_P(Properties, points_lie_on_the_shapes) {
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const BodyPair pair = scene_.pairs[i];
       for (const bool on_b : {false, true}) {
-        // Relative to body a, so that nothing is lost to its position.
+        // Relative to body a, so that its position costs no precision.
         const Eigen::Vector3d p =
             answers[i].point + (on_b ? answers[i].distance : 0.0) * answers[i].normal;
         const Eigen::Vector3d c = on_b ? between(scene_, pair) : Eigen::Vector3d(0, 0, 0);
@@ -218,8 +218,8 @@ TEST_P(Properties, points_lie_on_the_shapes) {
   }
 }
 
-/// All shapes and positions times 2^exponent, without rounding. No hulls, of which others are made
-/// of other points.
+/// Multiplies all shapes and positions exactly by 2^exponent. Leaves out hulls, since the pool
+/// might choose other vertices.
 PairScene scaled_scene(PairStyle style, int exponent) {
   Random random(11);
   PairScene scene;
@@ -268,8 +268,8 @@ PairScene scaled_scene(PairStyle style, int exponent) {
   return result;
 }
 
-// Products of many lengths leave the range of numbers long before the lengths do.
-TEST(Sizes, change_no_verdict_and_no_distance_beyond_its_bound) {
+// Products of lengths overflow or underflow long before the lengths do.
+TEST(Sizes, powers_of_two_keep_verdict_and_distance) {
   for (const PairStyle style : {PairStyle::ordinary, PairStyle::degenerate}) {
     const PairScene plain = scaled_scene(style, 0);
     for (const ContactLevel level :
@@ -297,7 +297,7 @@ TEST(Sizes, change_no_verdict_and_no_distance_beyond_its_bound) {
   }
 }
 
-/// Upright boxes and points whose numbers are of any size up to 10^digits and down to its inverse.
+/// Returns upright boxes and points with numbers from 10^-digits to 10^digits.
 PairScene boxes_of_any_sizes(int digits, Random& random) {
   const auto any = [&] {
     const double size = std::pow(10.0, random.uniform(-digits, digits));
@@ -315,9 +315,9 @@ PairScene boxes_of_any_sizes(int digits, Random& random) {
   return scene;
 }
 
-// How far upright boxes are apart along each axis says all; a millionth of their sizes is more than
-// these sums lose.
-TEST(Sizes, upright_boxes_are_told_apart_whatever_their_numbers_span) {
+// The gaps along the axes decide about upright boxes. These sums lose less than a millionth of the
+// sizes.
+TEST(Sizes, upright_boxes_of_any_range_are_decided) {
   for (const int digits : {3, 12, 38, 100, 150}) {
     Random random(static_cast<std::uint64_t>(digits));
     const PairScene scene = boxes_of_any_sizes(digits, random);

@@ -1,5 +1,5 @@
-// One-sided triangles: what stands in front of them gets what two-sided ones give, what stands
-// behind gets nothing, and no normal leads to the back.
+// One-sided triangles: shapes in front get the results for two-sided triangles, shapes behind get
+// none, and no normal points to the back.
 
 #include "pipeline/shapes/front.h"
 #include "tests/pipeline/composite_world.h"
@@ -25,13 +25,13 @@ namespace {
 
 using Vec = Eigen::Vector3d;
 
-/// The triangle of a part of a surface in the world, and its front.
+/// A triangle in world space: one corner and the normal of its front.
 struct FacingTriangle {
   Vec corner;
   Vec front;
 };
 
-/// The surfaces of a world, by part, as `visit` shows them.
+/// Returns the triangle of a primitive of a surface.
 [[nodiscard]] FacingTriangle facing(const Primitive& part) {
   const Eigen::Matrix3d turn = rotation_of(tame(part.pose.orientation));
   const Vec at = Vec::Map(part.pose.position);
@@ -40,7 +40,7 @@ struct FacingTriangle {
   return {corner[0], (corner[1] - corner[0]).cross(corner[2] - corner[0]) * part.front};
 }
 
-/// Shapes of every kind beside surfaces, which may have fronts.
+/// Surfaces, one-sided or not, in pairs with shapes of all convex kinds.
 struct FacingWorld : CompositeWorld {
   explicit FacingWorld(bool one_sided, std::uint64_t seed = 5) {
     Random random(seed);
@@ -53,7 +53,7 @@ struct FacingWorld : CompositeWorld {
     for (std::size_t i = 0; i < scaled(160); ++i) {
       body.push_back(surfaces[random.below(surfaces.size())]);
       pose.push_back(random_pose(random, 0.5));
-      // Balls, capsules, boxes, and so on up to the hull.
+      // A sphere, capsule, box, or another kind up to the hull.
       body.push_back(ids[random.below(6)]);
       pose.push_back(random_pose(random, 1.5));
       pairs.push_back({static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1)});
@@ -75,7 +75,7 @@ struct FacingWorld : CompositeWorld {
   std::vector<ShapeId> surfaces;
 };
 
-/// Pairs of primitives of pair i, by the part of the surface.
+/// Returns the triangles in the primitive pairs of pair i.
 [[nodiscard]] std::set<std::uint32_t> parts_met(const FacingWorld& world, std::size_t i,
                                                 double margin) {
   PrimitivePairs found;
@@ -88,7 +88,7 @@ struct FacingWorld : CompositeWorld {
   return parts;
 }
 
-TEST(OneSided, the_mid_phase_leaves_out_what_stands_behind) {
+TEST(OneSided, mid_phase_drops_triangles_seen_from_behind) {
   const FacingWorld both(false);
   const FacingWorld front(true);
   std::size_t behind = 0;
@@ -103,9 +103,9 @@ TEST(OneSided, the_mid_phase_leaves_out_what_stands_behind) {
   EXPECT_GT(behind, 10U);
 }
 
-/// A scene of one body, asked by rays, balls that move and balls that stand.
-struct AskedBody {
-  AskedBody(const FacingWorld& world, ShapeId shape)
+/// A scene of one body, queried by rays, shape casts and overlaps.
+struct QueriedBody {
+  QueriedBody(const FacingWorld& world, ShapeId shape)
       : scene(world.shapes, {.composites = &world.composites}), queries(scene) {
     Key key;
     EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(-1, 2, 0.5)}, key), Status::ok);
@@ -123,7 +123,7 @@ void expect_same(const SceneHit& a, const SceneHit& b) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(a.normal[axis], b.normal[axis]);
 }
 
-TEST(OneSided, a_compound_of_one_surface_answers_as_the_surface) {
+TEST(OneSided, compound_of_one_surface_matches_surface) {
   Random random(61);
   for (const bool one_sided : {false, true}) {
     FacingWorld world(one_sided, 9);
@@ -133,8 +133,8 @@ TEST(OneSided, a_compound_of_one_surface_answers_as_the_surface) {
       ShapeId compound;
       ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
       ASSERT_EQ(world.composites.parts(compound), world.composites.parts(surface));
-      AskedBody alone(world, surface);
-      AskedBody inside(world, compound);
+      QueriedBody alone(world, surface);
+      QueriedBody inside(world, compound);
       for (int i = 0; i < 60; ++i) {
         const Pose from = random_pose(random, 5.0);
         ShapeRay ray;
@@ -166,8 +166,8 @@ TEST(OneSided, a_compound_of_one_surface_answers_as_the_surface) {
   }
 }
 
-/// Normals from the surface, of what a scene finds for one pair at level manifold.
-TEST(OneSided, no_normal_leads_to_the_back) {
+/// Checks contact normals of scenes with one pair at level manifold.
+TEST(OneSided, normals_never_point_to_the_back) {
   const FacingWorld world(true, 6);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < world.pairs.size(); ++i) {
@@ -185,7 +185,7 @@ TEST(OneSided, no_normal_leads_to_the_back) {
       Contacts contacts;
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
-        // a is the convex shape, whose kind is smaller.
+        // The convex shape comes first: its kind is smaller.
         const std::uint32_t number = contacts.part_b()[m];
         const auto part = std::find_if(parts.begin(), parts.end(),
                                        [&](const Primitive& p) { return p.part == number; });
@@ -201,7 +201,7 @@ TEST(OneSided, no_normal_leads_to_the_back) {
   EXPECT_GT(seen, scaled(100) / 2);
 }
 
-/// A floor whose front is up, at a pose, and the same upside down.
+/// A fixed one-sided floor with its front up.
 struct FrontFloor {
   FrontFloor(bool field, bool mirrored) {
     if (field) {
@@ -249,7 +249,7 @@ struct FrontFloor {
   SceneQueries queries{scene};
 };
 
-TEST(OneSided, rays_casts_and_overlaps_come_from_the_front) {
+TEST(OneSided, queries_hit_only_from_the_front) {
   for (const bool field : {false, true}) {
     for (const bool mirrored : {false, true}) {
       if (field && mirrored) continue;
@@ -271,7 +271,7 @@ TEST(OneSided, rays_casts_and_overlaps_come_from_the_front) {
   }
 }
 
-/// Small triangles near (x, 0, 0) that face anywhere.
+/// Returns small triangles near (x, 0, 0) in random directions.
 [[nodiscard]] MeshData scattered_triangles(std::size_t count, float x, Random& random) {
   MeshData mesh;
   const auto about = [&](float middle, double by) {
@@ -288,7 +288,7 @@ TEST(OneSided, rays_casts_and_overlaps_come_from_the_front) {
   return mesh;
 }
 
-/// Bodies of a mesh, and of each of its triangles by itself.
+/// One body of a whole mesh, and one body for each of its triangles.
 struct Scattered {
   Scattered(const MeshData& mesh, bool one_sided, CompositePool& pool, Scene& scene) {
     const auto body = [&](const IndexView& triangles) {
@@ -307,7 +307,7 @@ struct Scattered {
   std::vector<Key> single;
 };
 
-TEST(OneSided, two_meshes_are_as_far_apart_as_the_nearest_triangles_that_face_each_other) {
+TEST(OneSided, mesh_distance_uses_only_facing_triangles) {
   Random random(11);
   int with_behind = 0;
   for (unsigned round = 0; round < 60; ++round) {
@@ -338,8 +338,9 @@ TEST(OneSided, two_meshes_are_as_far_apart_as_the_nearest_triangles_that_face_ea
   EXPECT_GT(with_behind, 1000);
 }
 
-/// However deep, as long as its middle is in front, a box is pushed up; then nothing holds it.
-TEST(OneSided, what_sinks_is_pushed_out_until_its_middle_is_behind) {
+/// A box is pushed up at any depth while its centre is in front of the floor, and not at all after
+/// that.
+TEST(OneSided, sinking_box_is_pushed_until_centre_passes) {
   FrontFloor floor(false, false);
   const ShapeId box = add(floor.shapes, BoxShape{{0.4, 0.3, 0.2}, 0.0});
   Key key;
@@ -356,7 +357,7 @@ TEST(OneSided, what_sinks_is_pushed_out_until_its_middle_is_behind) {
   }
 }
 
-TEST(OneSided, ids_have_sides_of_their_own_and_others_are_refused) {
+TEST(OneSided, each_id_has_its_own_side) {
   CountingMemory memory;
   ShapePool shapes(&memory);
   CompositePool composites(shapes, &memory);

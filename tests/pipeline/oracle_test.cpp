@@ -1,4 +1,4 @@
-// Answers of all tiers against the oracle.
+// Results of all tiers compared with the oracle (bench/oracle).
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, Conta
   return ask(scene, {.level = level, .tier = tier, .margin = 1e-3});
 }
 
-/// What is wrong with an answer; empty if nothing is.
+/// Returns the fault of an answer, or an empty string.
 std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const Promise& promise,
                   bool is_distance) {
   if (!truth.known) return {};
@@ -58,7 +58,7 @@ std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const P
   if (bound < 0.0) return "negative bound";
   const long double error = std::abs(static_cast<long double>(distance) - truth.distance);
   const long double scale = truth.size + std::abs(truth.distance);
-  // Depths of rims end with the rounding of square roots.
+  // Square roots limit the precision of the depths of rims.
   const double least = truth.slack > 0.0 ? 1e-10 : 0.0;
   if (error > std::max(promise.error, least) * scale) {
     return "error " + std::to_string(static_cast<double>(std::log10(error / scale)));
@@ -108,13 +108,13 @@ std::vector<KindPair> known_pairs() {
 
 class Oracle : public testing::TestWithParam<std::tuple<KindPair, PairStyle>> {};
 
-TEST_P(Oracle, agrees_with_every_tier_and_level) {
+TEST_P(Oracle, tiers_and_levels_match_oracle) {
   const auto [kinds, style] = GetParam();
   const auto [a, b] = kinds;
   Random random(static_cast<std::uint64_t>(a) * 64 + static_cast<std::uint64_t>(b) * 8 +
                 static_cast<std::uint64_t>(style));
   PairScene scene;
-  // The oracle takes its time over rims, and cannot prove that they touch.
+  // The oracle is slow for rims, and cannot prove that they touch.
   const bool round = (is_round(a) || is_round(b)) && b != ShapeKind::half_space;
   add_pairs(scene, a, b, style, scaled(round ? 2 : 100), random);
   const std::vector<oracle::Truth> truths = truths_of(scene);

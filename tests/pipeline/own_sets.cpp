@@ -81,7 +81,7 @@ double radius_of(const OwnSet& set) {
 }  // namespace
 
 SupportShape shape_of(const OwnSet& set, double rounding) {
-  // What the functions round is not to count as beyond.
+  // The radius must cover the rounding of the support functions.
   return {farthest, &set, radius_of(set) * (1.0 + 1e-15), rounding};
 }
 

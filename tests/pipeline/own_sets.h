@@ -1,6 +1,6 @@
 #pragma once
 
-// Convex sets that a program gives by their farthest points.
+// Convex shapes given by support functions (user shapes).
 
 #include <winnow/pipeline/shapes.h>
 
@@ -8,18 +8,18 @@
 
 namespace winnow::test {
 
-/// A block with half extents, a drum of radius size[0] and half length size[2], an egg with radii,
-/// or the hull of corners.
+/// A box with half extents, a cylinder of radius size[0] and half length size[2], an ellipsoid with
+/// radii, or the convex hull of corners.
 struct OwnSet {
   enum Form { block, drum, egg, corners };
 
   Form form = block;
   double size[3] = {};
-  /// Three numbers each.
+  /// Three coordinates per corner.
   std::vector<double> corner;
 };
 
-/// `set` outlives the shape.
+/// `set` must outlive the shape.
 [[nodiscard]] SupportShape shape_of(const OwnSet& set, double rounding);
 
 }  // namespace winnow::test

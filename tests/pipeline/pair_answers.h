@@ -10,7 +10,7 @@
 
 namespace winnow::test {
 
-/// What a NarrowResult says about one pair.
+/// The results of a NarrowResult for one pair.
 struct PairAnswers {
   bool overlap = false;
   double distance = 0.0;
@@ -21,13 +21,13 @@ struct PairAnswers {
   std::vector<ContactPoint> contacts;
 };
 
-/// True if all numbers are the same; zeros of either sign are.
+/// Returns true if all numbers are equal. Zeros of either sign are equal.
 [[nodiscard]] bool same(const PairAnswers& p, const PairAnswers& q);
 
-/// Answers in the order of the pairs; a test failure unless all of them are there once.
+/// Returns answers in the order of the pairs. Fails the test unless each pair has exactly one.
 [[nodiscard]] std::vector<PairAnswers> answers_of(const NarrowResult& result, std::size_t pairs);
 
-/// Asks a new NarrowPhase; a test failure if it refuses.
+/// Runs a new NarrowPhase. Fails the test if it refuses the input.
 [[nodiscard]] std::vector<PairAnswers> ask(const PairScene& scene, const NarrowOptions& options);
 
 }  // namespace winnow::test

@@ -1,3 +1,6 @@
+// Random pairs of shapes of two given kinds in several styles (ordinary, degenerate, on a lattice,
+// of extreme sizes). Used by most tests of the narrow phase, times of impact and casts.
+
 #include "tests/pipeline/pair_scenes.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +14,7 @@
 namespace winnow::test {
 namespace {
 
-/// Draws the numbers of one style.
+/// Generates shapes and poses of one style.
 class Maker {
  public:
   Maker(PairScene& scene, PairStyle style, Random& random)
@@ -52,7 +55,7 @@ class Maker {
     }
   }
 
-  /// A length of a shape of this size.
+  /// Returns a random length of a shape of this size.
   double length(double size) {
     if (style_ == PairStyle::lattice) return 0.5 * static_cast<double>(random_.below(4));
     if (style_ == PairStyle::degenerate) {
@@ -104,7 +107,7 @@ class Maker {
     return points;
   }
 
-  /// Of any form.
+  /// Adds a user shape of a random form.
   const OwnSet& own_set(double size, const double (&half)[3]) {
     OwnSet& set = scene_.own.emplace_back();
     set.form = static_cast<OwnSet::Form>(random_.below(4));
@@ -178,7 +181,7 @@ class Maker {
     return q;
   }
 
-  /// That of b, given that of a.
+  /// Returns the orientation of b, given the orientation of a.
   Quaternion other_quaternion(const Quaternion& a) {
     Quaternion q = quaternion();
     if (style_ == PairStyle::degenerate && random_.chance(0.4)) q = a;
@@ -189,7 +192,7 @@ class Maker {
     return q;
   }
 
-  /// Positions such that about half of the pairs overlap.
+  /// Sets positions so that about half of the pairs overlap.
   void place(Pose& a, Pose& b, double reach) {
     Eigen::Vector3d away = point(1.0);
     if (style_ != PairStyle::lattice) {
@@ -208,7 +211,7 @@ class Maker {
   Random& random_;
 };
 
-/// Of one shape, about the origin of its frame.
+/// Returns the extent of one shape about the origin of its frame.
 double extent_of(const ShapeTables& tables, ShapeId id) {
   const std::uint32_t i = id.index();
   switch (id.kind()) {

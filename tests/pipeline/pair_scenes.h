@@ -15,12 +15,12 @@
 
 namespace winnow::test {
 
-/// Pairs of bodies, 2i and 2i + 1 being pair i or the other way round.
+/// Pairs of bodies: pair i has the bodies 2i and 2i + 1 in either order.
 struct PairScene {
   explicit PairScene(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : pool(memory) {}
 
-  /// What shapes of the pool read; their places do not change.
+  /// User shapes that the pool refers to; their addresses do not change.
   std::deque<OwnSet> own;
   ShapePool pool;
   std::vector<ShapeId> shapes;
@@ -30,19 +30,19 @@ struct PairScene {
   [[nodiscard]] Bodies bodies() const { return {shapes, poses}; }
 };
 
-/// What is special about the pairs of a scene.
+/// The style of the random pairs of a scene.
 enum class PairStyle {
-  /// Sizes within 1:4, half of them overlap.
+  /// Sizes within 1:4; half of the pairs overlap.
   ordinary,
   /// Zero extents, slivers, needles, points; coincident positions and equal orientations.
   degenerate,
-  /// Small multiples of one half and rotations of small rational numbers: many touch exactly.
+  /// Small multiples of one half and rational rotations: many pairs touch exactly.
   lattice,
   /// Sizes up to 1:1e8.
   unequal,
   /// Orientations that differ by angles down to 1e-12.
   nearly_parallel,
-  /// Sizes from 1e-20 to 1e15, both of a pair alike.
+  /// Sizes from 1e-20 to 1e15, both shapes of a pair of similar size.
   extreme_sizes,
 };
 inline constexpr PairStyle kPairStyles[] = {PairStyle::ordinary,        PairStyle::degenerate,
@@ -53,16 +53,17 @@ inline void PrintTo(PairStyle style, std::ostream* out) {
   *out << to_string(style);
 }
 
-/// The kinds that the oracle knows against each other. Hulls only if the library makes them.
+/// Returns the kinds whose pairs the oracle supports. Hulls only if the library supports them.
 [[nodiscard]] std::vector<ShapeKind> polytope_kinds();
-/// All kinds of shape but those known by a support function, hulls only if the library makes them.
+/// Returns all kinds except shapes given by support functions. Hulls only if the library supports
+/// them.
 [[nodiscard]] std::vector<ShapeKind> all_kinds();
 
 /// Adds `count` pairs of the two kinds.
 void add_pairs(PairScene& scene, ShapeKind a, ShapeKind b, PairStyle style, std::size_t count,
                Random& random);
 
-/// A length that bounds the sizes of both shapes; of a half-space it is its offset.
+/// Returns a length that bounds the sizes of both shapes. For a half-space it uses the offset.
 [[nodiscard]] double extent(const PairScene& scene, BodyPair pair);
 
 }  // namespace winnow::test

@@ -1,5 +1,5 @@
-// Hulls that are turned against each other by next to nothing, so that float takes corners, edges
-// and faces for parallel that are not: bounds must hold all the same.
+// Hulls with almost equal orientations, whose edges and faces are parallel in float but not
+// exactly. Bounds must hold nevertheless.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -70,7 +70,8 @@ void put(const Eigen::Quaterniond& turn, const Eigen::Vector3d& place, PairScene
   scene.poses.push_back(pose);
 }
 
-/// Some that touch by faces, some anyhow; a third turned by a quarter as well.
+/// Pairs that nearly touch by faces or are placed at random. A third is also turned by a right
+/// angle.
 PairScene nearly_parallel(Form form, std::size_t count, Random& random) {
   constexpr double kRightAngle = 1.5707963267948966;
   const auto any = [&](double reach) { return random.uniform(-reach, reach); };
@@ -99,7 +100,7 @@ PairScene nearly_parallel(Form form, std::size_t count, Random& random) {
   return scene;
 }
 
-TEST(ParallelCubes, turned_by_a_ten_millionth_meet_edge_on_edge) {
+TEST(ParallelCubes, slightly_turned_cubes_touch_edge_on_edge) {
   PairScene scene;
   scene.shapes.resize(2);
   for (ShapeId& id : scene.shapes) {
@@ -111,7 +112,8 @@ TEST(ParallelCubes, turned_by_a_ten_millionth_meet_edge_on_edge) {
   scene.pairs = {{0, 1}};
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
     const PairAnswers answer = ask(scene, {.level = level}).at(0);
-    // The products of the edges in a hundred digits; the best face is 6e-9 off.
+    // Computed from the cross products of edges in a hundred digits. The best face normal is 6e-9
+    // off.
     EXPECT_NEAR(answer.distance, -0.1000001096965479, answer.error_bound);
     EXPECT_LE(answer.error_bound, 1e-12);
   }
@@ -119,7 +121,7 @@ TEST(ParallelCubes, turned_by_a_ten_millionth_meet_edge_on_edge) {
 
 class ParallelHulls : public testing::TestWithParam<Form> {};
 
-TEST_P(ParallelHulls, are_as_deep_as_the_least_of_all_directions) {
+TEST_P(ParallelHulls, depth_matches_brute_force) {
   Random random(17);
   const PairScene scene = nearly_parallel(GetParam(), scaled(8000), random);
   std::vector<double> truth;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Scenes of every kind of shape, taken apart again: all parts of all bodies one by one, for brute
-// force.
+// Scenes of all kinds of shapes, and their bodies split into convex primitives for brute force.
+// Used by tests of scene queries.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -19,10 +19,10 @@
 namespace winnow::test {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Where scenes stand, on each axis.
+/// Coordinates of the scene's centre on each axis.
 inline constexpr double kCenters[] = {0.0, 1e6, -1e8};
 
-/// A convex part about the position of its body.
+/// A convex primitive relative to the position of its body.
 struct FlatPart {
   ShapeId shape;
   Pose pose;
@@ -84,7 +84,7 @@ inline Pose random_pose(double spread, Random& random) {
   return pose;
 }
 
-/// Any direction, some along an axis or in a plane of two.
+/// Draws a random direction, sometimes along an axis or perpendicular to one.
 inline void draw_direction(double length, Random& random, double direction[3]) {
   for (int i = 0; i < 3; ++i) direction[i] = length * random.uniform(-1.0, 1.0);
   if (random.chance(0.3)) direction[random.below(3)] = 0.0;
@@ -96,7 +96,7 @@ inline double length_of(const double v[3]) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-/// A wavy sheet of 2 n^2 triangles, [-1, 1] on x and y.
+/// Adds a wavy sheet of 2 n^2 triangles over [-1, 1] x [-1, 1].
 inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
   std::vector<Vec3f> vertices;
   std::vector<std::uint32_t> corners;
@@ -117,8 +117,8 @@ inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
   return id;
 }
 
-/// `count` convex bodies of all kinds in a cube that they fill by about a tenth, and some composite
-/// ones; all about (center, center, center).
+/// Adds `count` convex bodies of all kinds in a cube of which they fill about a tenth, and some
+/// composite ones, around (center, center, center).
 inline void fill(QueryWorld& world, std::size_t count, double center, Random& random) {
   world.center = center;
   const double spread = world.size = 1.5 * std::cbrt(static_cast<double>(count));
@@ -155,7 +155,7 @@ inline void fill(QueryWorld& world, std::size_t count, double center, Random& ra
   }
 }
 
-/// The tables of a pool with a part's triangle in place of the pool's.
+/// The tables of a pool in which a primitive's triangle replaces the triangles of the pool.
 struct PartTable {
   ShapeTables tables;
   ShapeId id;
@@ -168,7 +168,7 @@ struct PartTable {
   }
 };
 
-/// Two parts, `b` displaced by `offset`, solved alone.
+/// Solves two primitives, `b` displaced by `offset`.
 inline PairAnswer solve_parts(const ShapePool& pool, const FlatPart& a, FlatPart b,
                               const double offset[3], ContactLevel level) {
   TriangleShape both[2];

@@ -31,7 +31,7 @@ using Eigen::Vector3d;
   return std::hypot(std::max(u, 0.0), std::max(v, 0.0)) + std::min(std::max(u, v), 0.0);
 }
 
-/// By the triangle that the cone turns about its axis.
+/// Returns the distance from a cone by the triangle that generates it.
 [[nodiscard]] double distance_to_cone(const Vector3d& p, double radius, double half) {
   const Vector3d flat(std::hypot(p.x(), p.y()), p.z(), 0.0);
   const Vector3d apex(0.0, half, 0.0);
@@ -70,7 +70,8 @@ RayProbes::RayProbes() {
   }
   add_cylinder(1.0, 0.0, 0.0);
   add_cone(1.0, 0.0, 0.0);
-  add_triangle({-1.0, -1.0, 0.0}, {0.0, 0.0, 0.0}, {2.0, 2.0, 0.0}, 0.5);  // a segment
+  add_triangle({-1.0, -1.0, 0.0}, {0.0, 0.0, 0.0}, {2.0, 2.0, 0.0},
+               0.5);  // degenerates to a segment
   add_capsule(0.4, 1.0);
   add_capsule(1.0, 0.0);
   add_half_space({0.0, 0.6, 0.8}, -0.5);

@@ -9,15 +9,15 @@
 
 namespace winnow::test {
 
-/// A shape, and its distance from a point in its frame: negative inside, if it has an inside.
+/// A shape and its distance function in its own frame: negative inside, if the shape has an inside.
 struct RayProbe {
   std::string name;
   ShapeId id;
   std::function<double(const Eigen::Vector3d&)> distance;
 };
 
-/// Shapes of every kind, with and without rounding, flat ones among them. Distances are found by
-/// other means than the library's.
+/// Shapes of every kind, with and without rounding, flat ones included. The distance functions do
+/// not use the library.
 class RayProbes {
  public:
   RayProbes();

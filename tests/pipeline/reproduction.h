@@ -6,7 +6,7 @@
 
 namespace winnow::test {
 
-/// The pair as an entry of a file for `winnow query`, to be asked again.
+/// Returns the pair as an entry of an input file for `winnow query`.
 [[nodiscard]] std::string reproduction(const PairScene& scene, BodyPair pair);
 
 }  // namespace winnow::test

@@ -1,4 +1,4 @@
-// A face of many vertices on a plane: few of them are kept, which have to span it.
+// A face with many vertices on a plane: the few contact points that are kept must span it.
 
 #include <gtest/gtest.h>
 #include <winnow/winnow.h>
@@ -13,7 +13,8 @@
 namespace winnow::test {
 namespace {
 
-/// A prism of so many sides, as high as its radius, whose base, at z = 0, is turned about z.
+/// Returns a prism with `sides` sides and a height equal to its radius. The base, at z = 0, is
+/// turned about z.
 std::vector<Vec3d> prism(int sides, double turn, double radius) {
   std::vector<Vec3d> points;
   for (int i = 0; i < sides; ++i) {
@@ -26,7 +27,8 @@ std::vector<Vec3d> prism(int sides, double turn, double radius) {
   return points;
 }
 
-/// Of points in the plane z = 0 that go round their middle in any order: of their convex hull.
+/// Returns the area of the convex hull of points in the plane z = 0, given in any order around
+/// their centre.
 double area_of(std::vector<ContactPoint> points) {
   std::ranges::sort(points, {},
                     [](const ContactPoint& p) { return std::atan2(p.position[1], p.position[0]); });
@@ -40,7 +42,7 @@ double area_of(std::vector<ContactPoint> points) {
   return 0.5 * twice;
 }
 
-TEST(RestingPrism, touches_a_plane_by_points_that_span_its_base) {
+TEST(RestingPrism, contact_points_span_the_base) {
   for (const double radius : {1.0, 0x1p-6, 0x1p6}) {
     for (const int sides : {5, 6, 8, 12, 16, 20}) {
       for (const double turn : {0.0, 0.1, 1.7, 4.0}) {
@@ -49,13 +51,12 @@ TEST(RestingPrism, touches_a_plane_by_points_that_span_its_base) {
         ShapePool pool;
         ShapeId hull;
         ASSERT_EQ(pool.add_hull(prism(sides, turn, radius), 0.0, hull), Status::ok);
-        // A little tilted, so that it is known which vertex is lowest.
+        // A small tilt makes the lowest vertex unique.
         Pose pose = Pose::at(0, 0, -1e-4 * radius);
         pose.orientation[1] = 1e-5;
         const auto points = contacts_on_floor(pool, hull, pose, 0.01 * radius);
         ASSERT_EQ(points.size(), 4U);
-        // A square with its corners on the circle around has an area of 2, any other four points
-        // less.
+        // A square inscribed in the unit circle has an area of 2, any other four points less.
         const double base =
             0.5 * sides * std::sin(2.0 * std::numbers::pi / sides) * radius * radius;
         EXPECT_GT(area_of(points), 0.63 * base);

@@ -1,5 +1,5 @@
-// Kernels of spheres, capsules and half-spaces against closed forms and searches in long double,
-// and against themselves: on every instruction set, turned round, at other places of a batch.
+// Kernels of spheres, capsules and half-spaces compared with closed forms and searches in long
+// double, and with themselves: on every ISA, with swapped bodies, at other positions of a batch.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -38,7 +38,7 @@ void PrintTo(const Kind& kind, std::ostream* out) {
   *out << to_string(kind.a) << "_" << to_string(kind.b);
 }
 
-/// Answers to a run of pairs, in columns.
+/// Answers of a range of pairs in columns.
 class Answers {
  public:
   Answers(const PairScene& scene, Kind kind, const BodyPair* pairs, std::size_t size, int level)
@@ -88,7 +88,7 @@ class Answers {
 
   std::uint32_t count;
   std::vector<std::uint8_t> overlap;
-  /// Distance, error bound, normal, point.
+  /// Distance, error bound, normal (3), point (3).
   std::vector<double> column[8];
   std::vector<std::uint32_t> first;
   std::vector<std::uint32_t> contacts;
@@ -99,7 +99,7 @@ class Answers {
   std::uint32_t contact_total = 0;
 };
 
-/// Pairs in the order of their kinds, as the dispatcher gives them.
+/// Returns pairs ordered by kinds, as the dispatcher passes them.
 PairScene scene_of(Kind kind, PairStyle style, std::size_t count, std::uint64_t seed) {
   PairScene scene;
   Random random(seed);
@@ -126,7 +126,7 @@ struct Twins {
 
 class RoundKernels : public testing::TestWithParam<Kind> {
  protected:
-  /// Calls body(scene, style) with scenes of every style.
+  /// Calls body(scene, style) with a scene of every style.
   template <typename Body>
   void for_styles(std::size_t count, Body&& body) {
     for (const PairStyle style : kPairStyles) {
@@ -146,7 +146,7 @@ class RoundKernels : public testing::TestWithParam<Kind> {
   }
 };
 
-TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
+TEST_P(RoundKernels, certified_signs_match_reference) {
   for_styles(1500, [&](const PairScene& scene, PairStyle style) {
     const Answers answers(scene, GetParam(), 0);
     std::size_t unknown = 0;
@@ -164,7 +164,7 @@ TEST_P(RoundKernels, certified_signs_are_those_of_the_twin) {
   });
 }
 
-TEST_P(RoundKernels, distances_are_within_their_bounds) {
+TEST_P(RoundKernels, distances_stay_within_error_bounds) {
   for_styles(1500, [&](const PairScene& scene, PairStyle style) {
     const Answers answers(scene, GetParam(), 1);
     std::size_t unknown = 0;
@@ -186,7 +186,7 @@ TEST_P(RoundKernels, distances_are_within_their_bounds) {
   });
 }
 
-TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
+TEST_P(RoundKernels, normals_separate_and_points_lie_on_shapes) {
   for_styles(1000, [&](const PairScene& scene, PairStyle) {
     const Answers answers(scene, GetParam(), 1);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
@@ -204,7 +204,7 @@ TEST_P(RoundKernels, normals_separate_and_points_lie_on_the_shapes) {
   });
 }
 
-TEST_P(RoundKernels, contacts_lie_between_the_surfaces_and_the_deepest_is_there) {
+TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
   const PairScene scene = scene_of(GetParam(), PairStyle::ordinary, scaled(2000), 3);
   const Answers answers(scene, GetParam(), 2);
   std::uint32_t total = 0;
@@ -225,7 +225,7 @@ TEST_P(RoundKernels, contacts_lie_between_the_surfaces_and_the_deepest_is_there)
       deepest = std::max(deepest, depth);
       ASSERT_GE(depth, -kMargin - close) << i;
       const LongVector p(answers.points[0][k], answers.points[1][k], answers.points[2][k]);
-      // Of two capsules that are nearly parallel both points take the depth of the closest.
+      // Both points of two nearly parallel capsules get the depth of the closest point.
       const long double aside = answers.contacts[i] > 1 ? 1e-3L * twins.scale : 0.0L;
       const long double half = std::abs(depth) * 0.5L + close + aside;
       ASSERT_LE(twin_distance(twins.a, p), half) << i;
@@ -241,7 +241,7 @@ TEST_P(RoundKernels, contacts_lie_between_the_surfaces_and_the_deepest_is_there)
   EXPECT_EQ(answers.contact_total, total);
 }
 
-/// Bytes of everything that is certified.
+/// Appends the bytes of all certified results.
 void append(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
 }
@@ -260,7 +260,7 @@ std::string bytes_of(const Answers& answers, std::size_t i, int level) {
   return bytes;
 }
 
-TEST_P(RoundKernels, answers_are_the_same_on_every_instruction_set) {
+TEST_P(RoundKernels, answers_match_on_every_isa) {
   for_styles(250, [&](const PairScene& scene, PairStyle) {
     for (int level = 0; level < 3; ++level) {
       std::vector<std::string> expected;
@@ -276,7 +276,7 @@ TEST_P(RoundKernels, answers_are_the_same_on_every_instruction_set) {
   });
 }
 
-TEST_P(RoundKernels, the_position_in_the_batch_does_not_matter) {
+TEST_P(RoundKernels, batch_position_does_not_change_answers) {
   const PairScene scene = scene_of(GetParam(), PairStyle::lattice, 45, 5);
   for_isas([&] {
     for (int level = 0; level < 3; ++level) {
@@ -293,7 +293,7 @@ TEST_P(RoundKernels, the_position_in_the_batch_does_not_matter) {
   });
 }
 
-TEST_P(RoundKernels, exchanged_bodies_have_mirrored_answers) {
+TEST_P(RoundKernels, swapped_bodies_give_mirrored_answers) {
   if (GetParam().a != GetParam().b) return;
   for_styles(1000, [&](const PairScene& scene, PairStyle) {
     std::vector<BodyPair> turned = scene.pairs;
@@ -310,7 +310,7 @@ TEST_P(RoundKernels, exchanged_bodies_have_mirrored_answers) {
   });
 }
 
-TEST_P(RoundKernels, poses_that_are_not_numbers_are_not_certified) {
+TEST_P(RoundKernels, bad_poses_are_not_certified) {
   const auto expect_uncertified = [&](const PairScene& scene, const std::string& what) {
     for_isas([&] {
       for (int level = 0; level < 3; ++level) {

@@ -1,3 +1,7 @@
+// Reference implementation of signed distances of spheres, capsules, boxes, triangles and
+// half-spaces in long double: closed forms and searches over all features. Used by the tests of
+// round kernels.
+
 #include "tests/pipeline/round_twin.h"
 
 #include <Eigen/Geometry>
@@ -112,11 +116,12 @@ Real core_overlap_along(const TwinShape& a, const TwinShape& b, const LongVector
   return far_a - near_b;
 }
 
-// The least overlap along the normals of the faces of the difference of the cores, if it is a body.
+// Returns the least overlap along the face normals of the Minkowski difference of the cores, if it
+// has volume.
 Real core_overlap(const TwinShape& a, const TwinShape& b) {
   std::vector<LongVector> axes = a.normals;
   axes.insert(axes.end(), b.normals.begin(), b.normals.end());
-  // A box's edges are along its normals, also those of length zero.
+  // The edges of a box are parallel to its normals, including edges of length zero.
   std::vector<LongVector> directions;
   if (b.kind == ShapeKind::box) directions = b.normals;
   for (const auto& f : b.edges) {

@@ -18,11 +18,11 @@ struct TwinShape {
   std::vector<LongVector> vertices;
   std::vector<std::pair<LongVector, LongVector>> edges;
   std::vector<std::array<LongVector, 3>> faces;
-  /// Unit vectors along which the shape ends in a face.
+  /// Outward unit normals of the faces.
   std::vector<LongVector> normals;
-  /// Of a half-space: normals[0] . x <= offset.
+  /// Half-spaces only: normals[0] . x <= offset.
   long double offset = 0;
-  /// Of a half-space: the magnitudes of what the offset is the sum of.
+  /// Half-spaces only: the sum of the magnitudes from which the offset is computed.
   long double reach = 0;
   long double rounding = 0;
 };
@@ -30,18 +30,18 @@ struct TwinShape {
 [[nodiscard]] TwinShape make_twin(const ShapeTables& tables, ShapeId id, const Pose& pose,
                                   const double origin[3]);
 
-/// The signed distance, by trying every feature against every other and every axis that can
-/// separate: 1e-17 of the sizes, but for penetration of cores with edges within 1e-3 of parallel.
+/// Returns the signed distance by testing all pairs of features and all separating axes. Error
+/// 1e-17 of the sizes, except for overlapping cores with edges within 1e-3 of parallel.
 [[nodiscard]] long double twin_distance(const TwinShape& a, const TwinShape& b);
 
-/// How far b must be moved along n until it is beyond a; negative if it is beyond already.
+/// Returns how far b must move along n to be beyond a. Negative if it is beyond already.
 [[nodiscard]] long double twin_overlap_along(const TwinShape& a, const TwinShape& b,
                                              const LongVector& n);
 
-/// Distance of a point from the shape, 0 inside.
+/// Returns the distance of a point from the shape, 0 inside.
 [[nodiscard]] long double twin_distance(const TwinShape& shape, const LongVector& point);
 
-/// The sum of what the shapes' extents and offset are.
+/// Returns the sum of the shapes' extents and offset.
 [[nodiscard]] long double twin_scale(const TwinShape& a, const TwinShape& b);
 
 }  // namespace winnow::test

@@ -1,5 +1,5 @@
-// Scenes of more pairs than are answered at a time, and of more bodies than get boxes at a time;
-// pairs that are left out because balls around their bodies are apart; what none of this takes.
+// Scenes with more pairs and more bodies than one internal batch holds; pairs that are rejected by
+// bounding balls; and the memory that this saves.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -20,10 +20,10 @@
 namespace winnow::test {
 namespace {
 
-/// More than twice as many pairs as a scene answers at a time.
+/// More than two batches of pairs of a scene.
 constexpr std::size_t kManyPairs = 70000;
 
-/// Bodies of which nearly all meet all, with meshes among them.
+/// Bodies that nearly all overlap each other, some of them meshes.
 class DenseWorld {
  public:
   DenseWorld() : world_(400, 77), composites_(world_.pool) {
@@ -39,7 +39,8 @@ class DenseWorld {
     squeeze();
   }
 
-  /// One scene answers everything at once, for it may have floors; it has none.
+  /// With seamless floors a scene solves all pairs in one batch. No body here is a floor, so that
+  /// the option changes nothing else.
   [[nodiscard]] SceneOptions options(bool at_once) const {
     return {.seamless_floors = at_once, .warm_start = true, .composites = &composites_};
   }
@@ -88,13 +89,13 @@ void expect_batches_are_what_is_answered_at_once(ContactLevel level, double carr
   }
 }
 
-TEST(SceneBatches, are_what_is_answered_at_once) {
+TEST(SceneBatches, batches_match_one_pass) {
   expect_batches_are_what_is_answered_at_once(ContactLevel::boolean, 0.0);
   expect_batches_are_what_is_answered_at_once(ContactLevel::manifold, 0.0);
   expect_batches_are_what_is_answered_at_once(ContactLevel::distance, 0.2);
 }
 
-TEST(SceneBatches, tell_where_each_pair_was) {
+TEST(SceneBatches, previous_pair_is_right_across_batches) {
   DenseWorld dense;
   SceneWorld& world = dense.world();
   Scene scene(world.pool, dense.options(false));
@@ -121,11 +122,11 @@ TEST(SceneBatches, tell_where_each_pair_was) {
   EXPECT_GT(contacts.ended().size(), 0U);
 }
 
-/// More than twice as many as get their boxes at a time.
+/// More than two batches of bodies.
 constexpr std::size_t kManyBodies = 40000;
 constexpr Motion kMotionOf[] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
 
-/// Balls in rows, each of which touches those beside it.
+/// Rows of balls. Each touches its neighbours in the row.
 class Rows {
  public:
   Rows() {
@@ -143,7 +144,7 @@ class Rows {
   std::vector<BodyDefinition> bodies;
 };
 
-TEST(SceneBatches, of_boxes_leave_no_body_where_it_was) {
+TEST(SceneBatches, moving_many_bodies_matches_fresh_scene) {
   Rows rows;
   CountingMemory memory;
   Scene scene(rows.pool, {.memory = &memory});
@@ -152,7 +153,7 @@ TEST(SceneBatches, of_boxes_leave_no_body_where_it_was) {
   ASSERT_EQ(scene.add(rows.bodies, keys), Status::ok);
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
   std::vector<Pose> poses(kManyBodies);
-  // A third of the touches ends, near where the bodies were and then far away.
+  // First a third of the contacts ends near the old positions, then all bodies move far away.
   for (const double far : {0.0, 1e6}) {
     for (std::size_t i = 0; i < kManyBodies; ++i) {
       Pose& pose = rows.bodies[i].pose;
@@ -176,7 +177,7 @@ TEST(SceneBatches, of_boxes_leave_no_body_where_it_was) {
   }
 }
 
-TEST(SceneBatches, of_bodies_that_leave_take_only_these) {
+TEST(SceneBatches, removing_many_bodies_keeps_the_others) {
   Rows rows;
   for (std::size_t i = 0; i < kManyBodies; ++i) rows.bodies[i].motion = kMotionOf[i % 3];
   Scene scene(rows.pool, {});
@@ -195,9 +196,9 @@ TEST(SceneBatches, of_bodies_that_leave_take_only_these) {
   EXPECT_EQ(contacts.size(), 0U);
 }
 
-// Of what is shown a contact at this level takes 85 bytes, and 8 where there are composite shapes;
-// the rest is what bodies, pairs and partitions hold.
-TEST(SceneBatches, take_few_bytes_a_contact) {
+// A contact at this level takes 85 bytes of results, and 8 more if the scene has composite shapes.
+// The remaining bytes belong to bodies, pairs and partitions.
+TEST(SceneBatches, contact_takes_few_bytes) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
@@ -238,13 +239,13 @@ TEST(SceneBatches, take_few_bytes_a_contact) {
   EXPECT_EQ(results[1], 93U);
 }
 
-/// A size of bodies, and how far from the origin they are.
+/// Size of the bodies and their offset from the origin.
 struct Place {
   double size;
   double offset;
 };
 
-/// Balls and rods about as large as their distances, some of them exactly touching.
+/// Returns spheres and capsules about as large as their distances, some of them touching exactly.
 [[nodiscard]] std::vector<BodyDefinition> bodies_at(const Place& place, ShapePool& pool,
                                                     Random& random) {
   std::array<ShapeId, 3> shapes;
@@ -263,7 +264,7 @@ struct Place {
   return bodies;
 }
 
-TEST(SceneBalls, leave_out_no_pair_that_is_a_contact) {
+TEST(SceneBoundingBalls, bounding_balls_reject_no_contact) {
   Random random(91);
   for (const Place& place : {Place{1.0, 0.0}, Place{1.0, 1e9}, Place{1e-3, 1e3}, Place{1e-18, 0.0},
                              Place{1e-25, 0.0}, Place{1e15, -1e17}}) {

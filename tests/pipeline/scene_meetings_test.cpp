@@ -1,4 +1,5 @@
-// Pairs that a scene is told not to report, and positions without orientations.
+// Filters of pairs in scenes (ignored pairs, predicate, layers), and moves by positions without
+// orientations.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -12,7 +13,7 @@
 namespace winnow::test {
 namespace {
 
-/// Four balls in a row, each of which touches the next.
+/// Four balls in a row. Each touches the next.
 struct Row {
   Row() {
     ShapeId ball;
@@ -36,7 +37,7 @@ struct Row {
 
 using Pairs = std::set<Names>;
 
-TEST(SceneMeetings, bodies_that_ignore_each_other_end_their_contact_until_they_do_not) {
+TEST(SceneFilters, ignored_pair_ends_until_it_is_restored) {
   Row row;
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
   ASSERT_EQ(row.scene.set_ignored(row.keys[2], row.keys[1]), Status::ok);
@@ -50,7 +51,7 @@ TEST(SceneMeetings, bodies_that_ignore_each_other_end_their_contact_until_they_d
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
 }
 
-TEST(SceneMeetings, what_was_said_of_a_body_goes_with_it) {
+TEST(SceneFilters, removed_body_loses_its_ignored_pairs) {
   Row row;
   ASSERT_EQ(row.scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
   BodyDefinition body;
@@ -64,27 +65,27 @@ TEST(SceneMeetings, what_was_said_of_a_body_goes_with_it) {
   EXPECT_EQ(row.scene.set_ignored(fresh, fresh), Status::invalid_argument);
 }
 
-/// Bodies that are told in any order, once or twice, whom they ignore, beside a plain set.
-struct Strangers {
+/// Changes ignored pairs in random order and keeps the expected set.
+struct RandomIgnores {
   static constexpr std::size_t kBodies = 25;
 
-  Strangers() {
+  RandomIgnores() {
     EXPECT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
     for (Key& key : keys) key = scene.add({.shape = ball});
   }
-  void tell(bool ignored) {
-    std::vector<KeyPair> told;
+  void set_random(bool ignored) {
+    std::vector<KeyPair> changed;
     for (std::size_t i = random.below(12); i > 0; --i) {
       const std::size_t a = random.below(kBodies);
       const std::size_t b = (a + 1 + random.below(kBodies - 1)) % kBodies;
-      told.push_back({keys[a], keys[b]});
+      changed.push_back({keys[a], keys[b]});
       if (ignored) {
         truth.insert(names(a, b));
       } else {
         truth.erase(names(a, b));
       }
     }
-    ASSERT_EQ(scene.set_ignored(told, ignored), Status::ok);
+    ASSERT_EQ(scene.set_ignored(changed, ignored), Status::ok);
   }
   void replace() {
     const std::size_t body = random.below(kBodies);
@@ -102,26 +103,26 @@ struct Strangers {
   Random random{3};
 };
 
-TEST(SceneMeetings, who_ignores_whom_is_known_in_whatever_order_it_was_told) {
-  Strangers strangers;
+TEST(SceneFilters, ignored_pairs_match_set_in_any_order) {
+  RandomIgnores ignores;
   for (std::size_t step = 0; step < scaled(200); ++step) {
-    strangers.tell(strangers.random.chance(0.7));
-    if (strangers.random.chance(0.2)) strangers.replace();
-    if (strangers.random.chance(0.02)) {
-      strangers.scene.clear();
-      for (Key& key : strangers.keys) key = strangers.scene.add({.shape = strangers.ball});
-      strangers.truth.clear();
+    ignores.set_random(ignores.random.chance(0.7));
+    if (ignores.random.chance(0.2)) ignores.replace();
+    if (ignores.random.chance(0.02)) {
+      ignores.scene.clear();
+      for (Key& key : ignores.keys) key = ignores.scene.add({.shape = ignores.ball});
+      ignores.truth.clear();
     }
-    for (std::size_t a = 0; a < Strangers::kBodies; ++a) {
-      for (std::size_t b = a + 1; b < Strangers::kBodies; ++b) {
-        EXPECT_EQ(strangers.scene.is_ignored(strangers.keys[b], strangers.keys[a]),
-                  strangers.truth.contains(names(a, b)));
+    for (std::size_t a = 0; a < RandomIgnores::kBodies; ++a) {
+      for (std::size_t b = a + 1; b < RandomIgnores::kBodies; ++b) {
+        EXPECT_EQ(ignores.scene.is_ignored(ignores.keys[b], ignores.keys[a]),
+                  ignores.truth.contains(names(a, b)));
       }
     }
   }
 }
 
-TEST(SceneMeetings, a_predicate_is_asked_by_the_bodies_own_ids) {
+TEST(SceneFilters, predicate_receives_body_ids) {
   Row row;
   ObjectId lone = row.keys[2].id;
   row.scene.set_predicate({[](void* context, ObjectId a, ObjectId b) {
@@ -141,27 +142,27 @@ TEST(SceneMeetings, a_predicate_is_asked_by_the_bodies_own_ids) {
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
 }
 
-/// Pairs are ignored and heeded at random while bodies move, sleep, come and go.
-TEST(SceneMeetings, the_pairs_shown_are_those_that_are_not_ignored) {
+/// Pairs are ignored and restored at random while bodies move.
+TEST(SceneFilters, contacts_leave_out_ignored_pairs) {
   SceneWorld world(scaled(300), 31);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   std::set<Names> ignored;
   for (int frame = 0; frame < 10; ++frame) {
-    std::vector<KeyPair> told;
+    std::vector<KeyPair> changed;
     const bool heed = frame % 3 == 2;
     const auto truth = world.touching();
     for (const auto& [pair, distance] : truth) {
       if (world.random.chance(0.7)) continue;
-      told.push_back({world.key(pair.first), world.key(pair.second)});
+      changed.push_back({world.key(pair.first), world.key(pair.second)});
       if (heed) {
         ignored.erase(pair);
       } else {
         ignored.insert(pair);
       }
     }
-    ASSERT_EQ(scene.set_ignored(told, !heed), Status::ok);
+    ASSERT_EQ(scene.set_ignored(changed, !heed), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
     std::set<Names> expected;
     for (const auto& [pair, distance] : truth) {
@@ -173,8 +174,8 @@ TEST(SceneMeetings, the_pairs_shown_are_those_that_are_not_ignored) {
   }
 }
 
-/// Some hundred layers, told at random which do not meet, while bodies change theirs.
-TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
+/// Hundreds of layers with random rules, while bodies change their layer.
+TEST(SceneFilters, contacts_leave_out_pairs_of_excluded_layers) {
   CountingMemory memory;
   SceneWorld world(scaled(300), 34);
   Scene scene(world.pool, {.memory = &memory});
@@ -183,7 +184,7 @@ TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
   std::set<std::pair<std::uint16_t, std::uint16_t>> apart;
   Contacts contacts;
   for (int frame = 0; frame < 8; ++frame) {
-    // Ever higher ones, so that the square grows.
+    // Use higher and higher layers, so that the table of rules grows.
     const std::uint32_t layers = frame < 2 ? 3U : 40U << frame;
     for (std::size_t i = 0; i < world.keys.size(); ++i) {
       world.bodies[i].layer = static_cast<std::uint16_t>(
@@ -196,11 +197,11 @@ TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
       const bool meet = world.random.chance(0.6);
       ASSERT_EQ(scene.set_layers_meet(b, a, meet), Status::ok);
       EXPECT_EQ(scene.layers_meet(a, b), meet);
-      for (const auto& told : {std::pair(a, b), std::pair(b, a)}) {
+      for (const auto& changed : {std::pair(a, b), std::pair(b, a)}) {
         if (meet) {
-          apart.erase(told);
+          apart.erase(changed);
         } else {
-          apart.insert(told);
+          apart.insert(changed);
         }
       }
     }
@@ -218,7 +219,7 @@ TEST(SceneMeetings, the_pairs_shown_are_those_whose_layers_meet) {
   EXPECT_EQ(body.layer, world.bodies[5].layer);
 }
 
-TEST(SceneMeetings, rays_are_asked_for_a_layer) {
+TEST(SceneFilters, ray_with_layer_filter_skips_layers) {
   Row row;
   ASSERT_EQ(row.scene.set_layer(row.keys[0], 300), Status::ok);
   ASSERT_EQ(row.scene.set_layer(row.keys[1], 4095), Status::ok);
@@ -239,7 +240,7 @@ TEST(SceneMeetings, rays_are_asked_for_a_layer) {
   EXPECT_EQ(hit.key, row.keys[2]);
 }
 
-TEST(SceneMeetings, layers_that_there_are_not_are_refused) {
+TEST(SceneFilters, layers_out_of_range_are_refused) {
   Row row;
   EXPECT_EQ(row.scene.set_layer(row.keys[0], 4096), Status::invalid_argument);
   EXPECT_EQ(row.scene.set_layers_meet(4096, 0), Status::invalid_argument);
@@ -251,7 +252,7 @@ TEST(SceneMeetings, layers_that_there_are_not_are_refused) {
   Key key;
   EXPECT_EQ(row.scene.add(body, key), Status::invalid_argument);
   EXPECT_EQ(row.scene.layer(row.keys[0]), 0);
-  // The same layer with itself.
+  // A layer can also exclude itself.
   ASSERT_EQ(row.scene.set_layers_meet(0, 0, false), Status::ok);
   EXPECT_TRUE(row.pairs().empty());
   row.scene.clear();
@@ -260,7 +261,7 @@ TEST(SceneMeetings, layers_that_there_are_not_are_refused) {
   EXPECT_EQ(row.scene.layer(key), 9);
 }
 
-TEST(SceneMeetings, memory_that_is_refused_changes_nothing_and_all_bytes_are_counted) {
+TEST(SceneFilters, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(40, 32);
@@ -277,7 +278,7 @@ TEST(SceneMeetings, memory_that_is_refused_changes_nothing_and_all_bytes_are_cou
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
 }
 
-TEST(SceneMeetings, positions_alone_move_bodies_and_do_not_turn_them) {
+TEST(SceneFilters, move_by_positions_keeps_orientations) {
   ShapePool pool;
   ShapeId box;
   ASSERT_EQ(pool.add(BoxShape{{1, 2, 3}}, box), Status::ok);

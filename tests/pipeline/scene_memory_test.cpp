@@ -1,5 +1,4 @@
-// What a scene keeps from frame to frame: contacts that are carried over, bytes, and what it was
-// before a call that it refused.
+// State of a scene between frames: carried contacts, memory, and the state after refused calls.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -17,28 +16,28 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The pair's contact against the truth of this frame: within its error bound.
+/// Checks each contact against the current truth, within its error bound.
 void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, double carry_over) {
   const auto near = world.touching(carry_over);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto truth = near.find(names(contacts.data_a()[i], contacts.data_b()[i]));
-    ASSERT_NE(truth, near.end()) << "shown although farther apart than the bound";
+    ASSERT_NE(truth, near.end()) << "reported although farther apart than the bound";
     const std::uint32_t m = contacts.manifold_first()[i];
     EXPECT_LE(std::abs(contacts.distance()[m] - truth->second), contacts.error_bound()[m] + 1e-9);
   }
   const auto pairs = shown(contacts);
   for (const auto& [pair, distance] : near) {
     if (distance > 0.0) continue;
-    EXPECT_EQ(pairs.count(pair), 1U) << "a pair that touches is not shown";
+    EXPECT_EQ(pairs.count(pair), 1U) << "missed a touching pair";
   }
 }
 
-/// Pairs of bodies that the scene's last `collide` had to know about.
-[[nodiscard]] std::uint64_t asked_about(const Scene& scene) {
+/// Returns the number of pairs in the last `collide` that bounding balls did not reject.
+[[nodiscard]] std::uint64_t unrejected_pairs(const Scene& scene) {
   return scene.statistics().body_pairs - scene.statistics().balls_apart;
 }
 
-TEST(CarryOver, every_pair_that_touches_is_shown_and_errors_stay_within_their_bound) {
+TEST(CarryOver, touching_pairs_are_reported_within_error_bounds) {
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
     SceneWorld world(scaled(300), 11);
     const double carry_over = 0.02;
@@ -57,7 +56,7 @@ TEST(CarryOver, every_pair_that_touches_is_shown_and_errors_stay_within_their_bo
   }
 }
 
-TEST(CarryOver, a_rigid_cluster_that_turns_keeps_its_contacts_and_they_turn_along) {
+TEST(CarryOver, turning_pair_carries_contact_that_turns_along) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
@@ -84,7 +83,7 @@ TEST(CarryOver, a_rigid_cluster_that_turns_keeps_its_contacts_and_they_turn_alon
   }
 }
 
-TEST(CarryOver, the_first_frame_after_a_teleport_is_exact) {
+TEST(CarryOver, first_frame_after_teleport_is_exact) {
   SceneWorld world(scaled(300), 13);
   Scene scene(world.pool, {.carry_over = 0.05});
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -102,7 +101,7 @@ TEST(CarryOver, the_first_frame_after_a_teleport_is_exact) {
   for (const auto& [pair, distance] : truth) EXPECT_EQ(shown(contacts).count(pair), 1U);
 }
 
-TEST(CarryOver, what_does_not_move_is_not_looked_at_again) {
+TEST(CarryOver, resting_pairs_are_not_computed_again) {
   SceneWorld world(scaled(300), 17);
   Scene scene(world.pool, {.carry_over = 0.001});
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -112,13 +111,13 @@ TEST(CarryOver, what_does_not_move_is_not_looked_at_again) {
   for (int frame = 0; frame < 3; ++frame) {
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(scene.statistics().convex.pairs, 0U);
-    EXPECT_EQ(contacts.carried(), asked_about(scene));
+    EXPECT_EQ(contacts.carried(), unrejected_pairs(scene));
     for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
   }
   EXPECT_EQ(digest(contacts).size(), first.size());
 }
 
-TEST(CarryOver, what_is_moved_to_where_it_stands_stays_as_it_was_to_the_bit) {
+TEST(CarryOver, move_to_same_pose_changes_no_bit) {
   SceneWorld world(scaled(300), 18);
   Scene scene(world.pool, {.carry_over = 0.01});
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -127,12 +126,12 @@ TEST(CarryOver, what_is_moved_to_where_it_stands_stays_as_it_was_to_the_bit) {
   const std::vector<double> bounds(contacts.error_bound().begin(), contacts.error_bound().end());
   ASSERT_EQ(move_all(scene, world), Status::ok);
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-  EXPECT_EQ(contacts.carried(), asked_about(scene));
+  EXPECT_EQ(contacts.carried(), unrejected_pairs(scene));
   ASSERT_EQ(contacts.manifolds(), bounds.size());
   for (std::size_t m = 0; m < bounds.size(); ++m) EXPECT_EQ(contacts.error_bound()[m], bounds[m]);
 }
 
-TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for_nothing) {
+TEST(SceneBytes, steady_frame_allocates_nothing_and_footprint_is_exact) {
   for (const double carry_over : {0.0, 0.01}) {
     CountingMemory memory;
     CountingMemory results;
@@ -141,7 +140,7 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
       Scene scene(world.pool, {.memory = &memory, .carry_over = carry_over});
       Contacts contacts(&results);
       ASSERT_EQ(add_all(scene, world), Status::ok);
-      // The same four frames again and again.
+      // Repeats the same four frames.
       std::vector<std::vector<BodyDefinition>> frames;
       for (int frame = 0; frame < 4; ++frame) {
         frames.push_back(world.bodies);
@@ -164,8 +163,8 @@ TEST(SceneBytes, the_footprint_is_what_was_asked_for_and_a_steady_frame_asks_for
   }
 }
 
-// Of the last frame only its pairs are read, unless contacts are carried over or warm started.
-TEST(SceneBytes, what_is_not_read_of_the_last_frame_is_not_held) {
+// Without carry-over and warm start only the pairs of the last frame are stored.
+TEST(SceneBytes, unused_data_of_last_frame_is_freed) {
   const auto remembered = [](const SceneOptions& options) {
     SceneWorld world(scaled(600), 19);
     Scene scene(world.pool, options);
@@ -184,8 +183,8 @@ TEST(SceneBytes, what_is_not_read_of_the_last_frame_is_not_held) {
   EXPECT_GT(remembered({.carry_over = 0.01}), 1.0);
 }
 
-// What is shown of a contact is 109 bytes at level distance and 113 at manifold.
-TEST(SceneBytes, a_contact_takes_little_more_than_what_is_shown_of_it) {
+// The results of a contact take 109 bytes at level distance and 113 at level manifold.
+TEST(SceneBytes, contact_takes_at_most_250_bytes) {
   constexpr std::size_t kBalls = 40000;
   constexpr double kSide = 22.0;
   ShapePool shapes;
@@ -212,7 +211,7 @@ TEST(SceneBytes, a_contact_takes_little_more_than_what_is_shown_of_it) {
   }
 }
 
-TEST(SceneBytes, twenty_bodies_take_a_kilobyte_each) {
+TEST(SceneBytes, small_scene_takes_a_kilobyte_per_body) {
   constexpr std::size_t kBodies = 20;
   CountingMemory memory;
   ShapePool shapes(&memory);
@@ -232,7 +231,7 @@ TEST(SceneBytes, twenty_bodies_take_a_kilobyte_each) {
   EXPECT_LE(memory.outstanding(), kBodies * 1024);
 }
 
-TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
+TEST(SceneBytes, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(60, 23);
@@ -259,7 +258,7 @@ TEST(SceneBytes, refused_memory_leaves_the_scene_as_it_was) {
   EXPECT_EQ(contacts.size(), world.touching().size());
 }
 
-/// A scene that lived through a refused call, and one in which the call was granted at once.
+/// Two equal scenes. The first one survives a refused call.
 struct Twins {
   CountingMemory memory;
   SceneWorld world{60, 23};
@@ -267,7 +266,7 @@ struct Twins {
   Scene scene{world.pool, {.memory = &memory, .execution = Execution::serial()}};
   Scene other{other_world.pool, {.execution = Execution::serial()}};
 
-  /// Refuses requests from the given one on, or that one alone; then asks again.
+  /// Refuses requests from the given one on, or only that one; then repeats the call.
   template <typename Call>
   bool was_refused(std::size_t granted, bool once, Call&& call) {
     if (once) {
@@ -293,7 +292,7 @@ struct Twins {
   }
 };
 
-TEST(SceneBytes, bodies_that_were_refused_get_the_ids_they_would_have_got) {
+TEST(SceneBytes, ids_after_refused_add_match_unrefused_scene) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const bool once : {false, true}) {
     std::size_t refused = 0;
@@ -310,7 +309,7 @@ TEST(SceneBytes, bodies_that_were_refused_get_the_ids_they_would_have_got) {
   }
 }
 
-TEST(SceneBytes, a_refused_change_of_sets_leaves_every_body_in_its_own) {
+TEST(SceneBytes, refused_set_motion_changes_no_body) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const Motion to : {Motion::fixed, Motion::dynamic, Motion::sleeping}) {
     std::size_t refused = 0;
@@ -336,7 +335,7 @@ TEST(SceneBytes, a_refused_change_of_sets_leaves_every_body_in_its_own) {
   }
 }
 
-TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
+TEST(SceneBytes, scene_constructed_without_memory_returns_out_of_memory) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(3, 23);
@@ -368,7 +367,7 @@ TEST(SceneBytes, a_scene_without_memory_for_itself_stays_empty_and_says_so) {
   EXPECT_EQ(queries.distance(key, key, distance), Status::out_of_memory);
 }
 
-TEST(SceneBytes, contacts_without_memory_for_themselves_stay_empty_and_say_so) {
+TEST(SceneBytes, contacts_constructed_without_memory_return_out_of_memory) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(20, 23);
@@ -386,7 +385,7 @@ TEST(SceneBytes, contacts_without_memory_for_themselves_stay_empty_and_say_so) {
   EXPECT_EQ(contacts.footprint().total().reserved, 0U);
 }
 
-TEST(SceneInput, what_is_refused_changes_nothing) {
+TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   SceneWorld world(40, 29);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -422,7 +421,7 @@ TEST(SceneInput, what_is_refused_changes_nothing) {
   EXPECT_EQ(unknown.add(world.bodies[0], key), Status::invalid_argument);
 }
 
-TEST(SceneInput, storms_of_changes_leave_every_partition_right) {
+TEST(SceneInput, random_changes_keep_pairs_right) {
   for (const std::string_view partition : {"LinearBvh", "FlatGrid", "SweepAndPrune"}) {
     SceneWorld world(scaled(250), 31);
     const StructureKind structure = structure_named(partition);

@@ -1,5 +1,5 @@
-// Questions to scenes of tiny and flat shapes in every floating-point mode of a host: nothing is
-// missed, and the answers are those of the default mode, bit by bit.
+// Queries of scenes of tiny and flat shapes in every floating-point mode of the caller: nothing is
+// missed, and the results equal the default mode bit by bit.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -19,7 +19,7 @@
 namespace winnow::test {
 namespace {
 
-/// The numbers of answers, bit by bit.
+/// The numbers of all results, bit by bit.
 class Bits {
  public:
   void add(double number) {
@@ -68,8 +68,7 @@ class Bits {
   std::size_t nan_ = 0;
 };
 
-/// Shapes of one size about the places of a lattice whose middle is 0, so that many have faces in
-/// the planes of the axes.
+/// Shapes of one size on a lattice around the origin, so that many faces lie in coordinate planes.
 class TinyWorld {
  public:
   TinyWorld(double size, float mesh_size, const Execution& execution)
@@ -98,7 +97,7 @@ class TinyWorld {
   [[nodiscard]] std::span<const Key> keys() const { return keys_; }
   [[nodiscard]] ShapeId box() const { return box_; }
   [[nodiscard]] double size() const { return size_; }
-  /// Where body i is, in the plane of an axis for many.
+  /// Returns the position of body i, in a coordinate plane for many bodies.
   void place(std::size_t i, double (&position)[3]) const {
     for (double& x : position) {
       x = 4.0 * size_ * (static_cast<double>(i % 3) - 1.0);
@@ -130,7 +129,7 @@ class TinyWorld {
   }
 
   double size_;
-  float mesh_size_;  // rounded by who makes the world, not in the mode of a host
+  float mesh_size_;  // rounded by the caller, before the floating-point mode is set
   ShapePool pool_;
   CompositePool composites_{pool_};
   std::unique_ptr<Scene> scene_;
@@ -138,7 +137,7 @@ class TinyWorld {
   ShapeId box_;
 };
 
-/// A ray that comes to a place along one axis.
+/// Returns a ray along one axis that reaches a place.
 ShapeRay ray_to(const double (&place)[3], int axis, double distance) {
   ShapeRay ray;
   for (int k = 0; k < 3; ++k) {
@@ -154,7 +153,7 @@ struct SceneTally {
   std::size_t missed = 0;
 };
 
-/// Every ray, cast and box goes to a body that it has to find.
+/// Aims rays, casts, overlaps and nearest queries at each body and counts misses.
 void ask(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   std::vector<ShapeRay> rays;
@@ -200,7 +199,7 @@ void ask(TinyWorld& world, Bits& bits, SceneTally& tally) {
   bits.add_all(lists.hits);
 }
 
-/// A box that starts beside each body and moves through it, and how far all are from the next.
+/// Moves a box through each body, and measures the distance of each body from the next.
 void ask_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
@@ -224,7 +223,7 @@ void ask_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
   }
 }
 
-/// The first body passes through the one beside it.
+/// Sweeps the first body through its neighbour.
 void sweep(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneSweep sweep(world.scene());
   double place[3];
@@ -240,7 +239,7 @@ void sweep(TinyWorld& world, Bits& bits, SceneTally& tally) {
   bits.add_all(sweep.impacts());
 }
 
-/// A dynamic body that is moved to where others are, one after the other.
+/// Moves a dynamic body onto other bodies, one after the other.
 void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
   Contacts contacts;
   const Key mover = world.keys()[1];
@@ -264,7 +263,7 @@ void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
 
 class SceneModes : public testing::TestWithParam<double> {};
 
-TEST_P(SceneModes, miss_nothing_and_answer_the_same) {
+TEST_P(SceneModes, float_modes_do_not_change_results) {
   const auto run = [](const FloatMode& mode, const Execution& execution, Bits& bits) {
     SceneTally tally;
     const auto mesh_size = static_cast<float>(GetParam());

@@ -1,4 +1,4 @@
-// A scene far from (0, 0, 0) finds what it finds near it, at the same cost.
+// A scene far from (0, 0, 0) finds the same pairs at the same cost as one near it.
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@
 namespace winnow::test {
 namespace {
 
-/// Steps of this size lose nothing at the places below.
+/// Multiples of this step are exact at the places below.
 constexpr double kPlaceStep = 0x1p-16;
 constexpr double kFarPlaces[][3] = {{1e8, 0, 0}, {-1e8, 1e8, 3e7}, {1e9, -2e9, 1e9}};
 
-/// Poses whose positions are multiples of kPlaceStep: moved far away they are the same to the bit.
+/// Rounds positions to multiples of kPlaceStep: they stay exact when they are moved far away.
 void make_exact(SceneWorld& world) {
   for (BodyDefinition& body : world.bodies) {
     for (double& p : body.pose.position) p = std::round(p / kPlaceStep) * kPlaceStep;
@@ -37,7 +37,7 @@ std::uint64_t body_pairs(Scene& scene) {
   return scene.statistics().body_pairs;
 }
 
-TEST(SceneOrigin, two_balls_at_one_hundred_million_have_boxes_as_tight_as_at_zero) {
+TEST(SceneOrigin, far_balls_have_tight_boxes) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
@@ -51,7 +51,7 @@ TEST(SceneOrigin, two_balls_at_one_hundred_million_have_boxes_as_tight_as_at_zer
   EXPECT_LT((scene.origin() - Vec3d(1e8, 0, 0)).norm(), 10.0);
 }
 
-TEST(SceneOrigin, a_scene_near_zero_is_measured_from_zero) {
+TEST(SceneOrigin, scene_near_zero_keeps_origin_zero) {
   SceneWorld world(scaled(400));
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -59,7 +59,7 @@ TEST(SceneOrigin, a_scene_near_zero_is_measured_from_zero) {
   EXPECT_EQ(scene.origin(), Vec3d{});
 }
 
-TEST(SceneOrigin, far_scenes_find_the_same_pairs_with_the_same_memory) {
+TEST(SceneOrigin, far_scene_matches_near_scene_and_its_memory) {
   for (const auto& place : kFarPlaces) {
     SceneWorld near(scaled(1000));
     make_exact(near);
@@ -84,7 +84,7 @@ TEST(SceneOrigin, far_scenes_find_the_same_pairs_with_the_same_memory) {
   }
 }
 
-TEST(SceneOrigin, follows_bodies_that_go_far_away_and_come_back) {
+TEST(SceneOrigin, origin_follows_bodies_far_away_and_back) {
   SceneWorld world(300);
   make_exact(world);
   const double step[3] = {1e7, -3e6, 0};
@@ -99,7 +99,8 @@ TEST(SceneOrigin, follows_bodies_that_go_far_away_and_come_back) {
     displace(world, frame < 4 ? step : back);
     ASSERT_EQ(move_all(scene, world), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
-    // Bodies are looked at after boxes were made: what has jumped is measured better a frame later.
+    // The scene chooses its origin after the boxes are made: after a jump the boxes are tight one
+    // frame later.
     ASSERT_EQ(move_all(scene, world), Status::ok);
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::distance, contacts), Status::ok);
@@ -108,7 +109,7 @@ TEST(SceneOrigin, follows_bodies_that_go_far_away_and_come_back) {
   }
 }
 
-TEST(SceneOrigin, bodies_on_two_sides_of_the_world_all_meet_their_neighbours) {
+TEST(SceneOrigin, two_distant_groups_find_all_pairs) {
   SceneWorld world(scaled(300));
   make_exact(world);
   for (std::size_t i = 0; i < world.bodies.size(); i += 3) {
@@ -124,7 +125,7 @@ TEST(SceneOrigin, bodies_on_two_sides_of_the_world_all_meet_their_neighbours) {
   EXPECT_EQ(shown(contacts), names_of_truth);
 }
 
-TEST(SceneOrigin, a_change_that_memory_is_refused_for_is_made_later) {
+TEST(SceneOrigin, refused_change_of_origin_is_made_later) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (std::size_t allowed = 0; allowed < 12; ++allowed) {
     CountingMemory memory;

@@ -1,4 +1,5 @@
-// Scenes with meshes, compounds and height fields, against every pair of parts asked one by one.
+// Scenes with meshes, compounds and height fields, compared with every pair of primitives tested
+// one by one.
 
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/solver/solver.h"
@@ -19,7 +20,7 @@
 namespace winnow::test {
 namespace {
 
-/// A part as the test knows it.
+/// A convex primitive of a composite shape.
 struct Piece {
   ShapeId shape;
   TriangleShape triangle;
@@ -35,7 +36,7 @@ using Parts = std::set<std::tuple<ClientData, ClientData, std::uint32_t, std::ui
   return q.normalized() * v;
 }
 
-/// Shapes of all composite kinds, and what they consist of.
+/// Shapes of all composite kinds and their primitives.
 class PartsWorld {
  public:
   PartsWorld() : pool_(convex_) {
@@ -68,7 +69,7 @@ class PartsWorld {
     return body;
   }
 
-  /// Every pair of parts of two bodies that share a point.
+  /// Finds every pair of primitives of two bodies that share a point.
   void touching(const BodyDefinition& a, const BodyDefinition& b, Parts& found) const {
     for (const Piece& one : pieces_[kind_of(a.shape)]) {
       for (const Piece& other : pieces_[kind_of(b.shape)]) {
@@ -164,7 +165,7 @@ class PartsWorld {
     pieces_.push_back(std::move(pieces));
   }
 
-  /// Everything but the compound before it.
+  /// Adds a compound of all shapes except the compound before it.
   void add_compound_of_all() {
     std::vector<CompoundChild> children;
     std::vector<Piece> pieces;
@@ -225,13 +226,13 @@ class PartsWorld {
       const std::uint32_t other = contacts.part_b()[m];
       const bool is_new =
           a < b ? parts.insert({a, b, one, other}).second : parts.insert({b, a, other, one}).second;
-      EXPECT_TRUE(is_new) << "a pair of parts is doubled";
+      EXPECT_TRUE(is_new) << "duplicate pair of parts";
     }
   }
   return parts;
 }
 
-/// A floor of triangles at z = 0, over [-10, 10] x [-10, 10].
+/// Adds a floor of triangles at z = 0 over [-10, 10] x [-10, 10].
 [[nodiscard]] ShapeId flat_floor(CompositePool& pool) {
   std::vector<Eigen::Vector3f> points;
   std::vector<std::uint32_t> corners;
@@ -255,7 +256,7 @@ class PartsWorld {
   return id;
 }
 
-TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floors_normal_alone) {
+TEST(SceneParts, ball_on_flat_mesh_gets_only_floor_normals) {
   ShapePool convex;
   CompositePool pool(convex);
   ShapeId ball;
@@ -282,7 +283,7 @@ TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floo
   }
 }
 
-/// Of a body from a triangle of a mesh that stands at the origin.
+/// Returns the distance of a body from a triangle of a mesh at the origin.
 [[nodiscard]] double distance_to(const ShapePool& pool, const BodyDefinition& body,
                                  const MeshData& data, std::uint32_t number) {
   TriangleShape triangle;
@@ -300,7 +301,7 @@ TEST(SceneParts, a_ball_that_rolls_over_a_flat_floor_of_triangles_feels_the_floo
       .distance;
 }
 
-TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
+TEST(SceneParts, refitted_mesh_collides_at_new_position) {
   ShapePool convex;
   CompositePool pool(convex);
   ShapeId ball;
@@ -323,7 +324,7 @@ TEST(SceneParts, a_mesh_that_is_refitted_is_seen_at_its_new_place) {
   EXPECT_EQ(contacts.size(), 1U);
 }
 
-/// Notes when it is asked for any work.
+/// Counts all calls, and supports no shape.
 class IdleMidPhase final : public MidPhase {
  public:
   [[nodiscard]] bool contains(ShapeId) const noexcept override { return worked(false); }
@@ -373,8 +374,7 @@ class IdleMidPhase final : public MidPhase {
   }
 };
 
-/// A pool that counts how often it is asked for boxes of whole shapes, which takes a compound a
-/// look at all of its children.
+/// Counts calls of `bounds`, which visits all children of a compound.
 class CountingMidPhase final : public MidPhase {
  public:
   explicit CountingMidPhase(const CompositePool& pool) : pool_(pool) {}
@@ -428,7 +428,7 @@ class CountingMidPhase final : public MidPhase {
   const CompositePool& pool_;
 };
 
-TEST(SceneParts, questions_about_a_compound_look_at_the_children_that_are_near_alone) {
+TEST(SceneParts, queries_of_compound_test_only_near_children) {
   ShapePool convex;
   CompositePool pool(convex);
   const ShapeId ball = convex.add(SphereShape{0.5});
@@ -466,7 +466,7 @@ TEST(SceneParts, questions_about_a_compound_look_at_the_children_that_are_near_a
   EXPECT_EQ(counting.boxes, 0);
 }
 
-TEST(SceneParts, a_scene_of_balls_asks_the_mid_phase_for_nothing) {
+TEST(SceneParts, scene_of_balls_never_calls_mid_phase) {
   SceneWorld world(200, 59);
   for (BodyDefinition& body : world.bodies) body.shape = world.shapes[0];
   const IdleMidPhase idle;
@@ -484,7 +484,7 @@ TEST(SceneParts, a_scene_of_balls_asks_the_mid_phase_for_nothing) {
   EXPECT_EQ(idle.calls, 0);
 }
 
-TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_could_be_meshes) {
+TEST(SceneParts, unused_composite_pool_costs_no_bytes) {
   SceneFootprint bytes[2];
   for (const bool with_pool : {false, true}) {
     SceneWorld world(200, 59);
@@ -504,7 +504,7 @@ TEST(SceneParts, a_scene_of_balls_takes_the_same_bytes_whether_or_not_there_coul
   EXPECT_EQ(bytes[0].total().reserved, bytes[1].total().reserved);
 }
 
-TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
+TEST(SceneParts, touching_parts_match_brute_force) {
   PartsWorld world;
   Random random(47);
   for (int round = 0; round < 3; ++round) {
@@ -536,7 +536,7 @@ TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
           ASSERT_EQ(scene.collide(level, contacts), Status::ok);
           const Parts found = parts_of(contacts);
           for (const auto& pair : truth) EXPECT_EQ(found.count(pair), 1U) << "missed";
-          // Inner edges may be given the depth of the face, which is the greater one.
+          // Contacts at internal edges may get the greater depth of the face.
           EXPECT_TRUE(level != ContactLevel::boolean || found.size() == truth.size());
         }
       });
@@ -544,7 +544,7 @@ TEST(SceneParts, every_pair_of_parts_that_touches_is_reported_and_no_other) {
   }
 }
 
-TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound) {
+TEST(SceneParts, carried_mesh_contacts_miss_nothing_beyond_bound) {
   ShapePool convex;
   CompositePool pool(convex);
   ShapeId box;
@@ -586,7 +586,7 @@ TEST(SceneParts, carried_contacts_with_a_mesh_miss_nothing_deeper_than_the_bound
         if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
         EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);
       }
-      EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "a pair is missed";
+      EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "missed a pair";
     }
     for (std::size_t i = 1; i < bodies.size(); ++i) {
       for (double& p : bodies[i].pose.position) p += random.uniform(-0.001, 0.001);

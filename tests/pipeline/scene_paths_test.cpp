@@ -1,5 +1,5 @@
-// Rays and moving shapes in a scene: how little they ask, how far they reach, and what they may not
-// slip through.
+// Rays and casts in scenes: the number of tested bodies, ranges from tiny to infinite, and no leaks
+// between triangles.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -10,7 +10,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(ScenePaths, the_closest_hit_is_found_without_asking_all_bodies_on_the_way) {
+TEST(ScenePaths, closest_hit_tests_few_bodies) {
   QueryWorld world;
   ShapeId ball;
   ASSERT_EQ(world.shapes.pool.add(SphereShape{0.4}, ball), Status::ok);
@@ -43,7 +43,7 @@ TEST(ScenePaths, the_closest_hit_is_found_without_asking_all_bodies_on_the_way) 
   EXPECT_LT(asked, 12 * rays);
 }
 
-TEST(ScenePaths, a_long_way_ends_at_a_body_smaller_than_the_rounding_of_its_direction) {
+TEST(ScenePaths, long_ray_hits_tiny_body) {
   Random random(15);
   QueryWorld world;
   ShapeId grain;
@@ -73,7 +73,7 @@ TEST(ScenePaths, a_long_way_ends_at_a_body_smaller_than_the_rounding_of_its_dire
   }
 }
 
-TEST(ScenePaths, ways_without_end_reach_what_lies_at_the_end_of_the_world) {
+TEST(ScenePaths, unbounded_rays_reach_distant_bodies) {
   for (const double far : {1e3, 1e9, 1e20, 1e30, 1e36, 1e200}) {
     QueryWorld world;
     ShapeId ball;
@@ -101,7 +101,7 @@ TEST(ScenePaths, ways_without_end_reach_what_lies_at_the_end_of_the_world) {
   }
 }
 
-TEST(ScenePaths, a_bullet_never_tunnels_a_sheet_of_triangles) {
+TEST(ScenePaths, bullet_never_tunnels_through_sheet) {
   Random random(8);
   for (const double center : kCenters) {
     QueryWorld world;
@@ -130,7 +130,7 @@ TEST(ScenePaths, a_bullet_never_tunnels_a_sheet_of_triangles) {
   }
 }
 
-TEST(ScenePaths, a_turned_mesh_lets_no_ray_through_its_edges_and_corners) {
+TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
   Random random(14);
   QueryWorld world;
   constexpr std::uint32_t kCells = 40;
@@ -145,7 +145,7 @@ TEST(ScenePaths, a_turned_mesh_lets_no_ray_through_its_edges_and_corners) {
   const std::vector<FlatPart> parts = world.parts(0);
   const double* const base = world.bodies[0].pose.position;
   for (std::size_t n = scaled(2000); n-- != 0;) {
-    // Not those at the border.
+    // Leave out the triangles at the border.
     const std::size_t i = 1 + random.below(kCells - 2);
     const std::size_t cell = i * kCells + 1 + random.below(kCells - 2);
     const auto inner = std::find_if(parts.begin(), parts.end(),

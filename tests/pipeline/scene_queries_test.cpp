@@ -1,4 +1,4 @@
-// Questions to the exact shapes of a scene, against every part of every body one by one.
+// Queries of the exact shapes of a scene, compared with tests of every primitive of every body.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -10,7 +10,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(SceneQueries, of_what_reaches_to_infinity_go_on_beyond_the_range_of_float) {
+TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   Random random(23);
   QueryWorld world;
   ShapeId ground;
@@ -34,7 +34,7 @@ TEST(SceneQueries, of_what_reaches_to_infinity_go_on_beyond_the_range_of_float) 
   }
 }
 
-/// Zero, one, or a number of any size up to `most`.
+/// Returns zero, plus or minus one, or a number of any magnitude up to `most`.
 double any_number(double most, Random& random) {
   const double sign = random.chance(0.5) ? 1.0 : -1.0;
   const std::size_t which = random.below(8);
@@ -42,7 +42,7 @@ double any_number(double most, Random& random) {
   return sign * random.log_uniform(1.0 / most, most);
 }
 
-/// A few bodies of one shape of each kind whose numbers are of any size.
+/// Adds a few bodies with random shapes and numbers of any magnitude.
 void add_any_bodies(QueryWorld& world, double most, Random& random) {
   const auto size = [&] { return std::abs(any_number(most, random)); };
   std::vector<ShapeId> ids(7);
@@ -74,7 +74,7 @@ void add_any_bodies(QueryWorld& world, double most, Random& random) {
   }
 }
 
-TEST(SceneQueries, closest_hit_is_the_first_of_all_whatever_the_sizes) {
+TEST(SceneQueries, closest_hit_of_any_sizes_matches_first) {
   Random random(19);
   for (const double most : {1e3, 1e6, 1e9}) {
     std::size_t hit_something = 0;
@@ -105,7 +105,7 @@ TEST(SceneQueries, closest_hit_is_the_first_of_all_whatever_the_sizes) {
   }
 }
 
-TEST(SceneQueries, of_two_balls_in_a_row_are_answered_by_both_or_the_nearer) {
+TEST(SceneQueries, two_balls_in_a_row_give_expected_results) {
   Random random(17);
   QueryWorld world;
   ShapeId ball;
@@ -156,7 +156,7 @@ void between(const double to[3], const double from[3], double result[3]) {
   for (int i = 0; i < 3; ++i) result[i] = to[i] - from[i];
 }
 
-/// When the ray meets each body.
+/// Returns the time of the ray's hit for each body.
 std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
   std::vector<BodyTime> times(world.bodies.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -172,7 +172,8 @@ std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
   return times;
 }
 
-/// When a part that moves meets one that stands, as seen from `from`.
+/// Returns the time of impact of a moving and a standing primitive. `from` is the position of the
+/// cast relative to the standing body.
 double part_time(const ShapePool& pool, const ShapeCast& cast, const double from[3],
                  const FlatPart& moving, const FlatPart& standing) {
   CastPair pair{moving.shape, moving.pose, {}, cast.max_t, standing.shape, standing.pose};
@@ -192,7 +193,7 @@ double part_time(const ShapePool& pool, const ShapeCast& cast, const double from
   return cast_shape(tables, pair, 1e-7, touch) ? touch.t : kInfinity;
 }
 
-/// When the moving shape meets each body.
+/// Returns the time of impact of the cast for each body.
 std::vector<BodyTime> cast_times(const QueryWorld& world, const ShapeCast& cast) {
   std::vector<BodyTime> times(world.bodies.size());
   const std::vector<FlatPart> own = world.parts(cast.shape, cast.pose);
@@ -210,7 +211,7 @@ std::vector<BodyTime> cast_times(const QueryWorld& world, const ShapeCast& cast)
   return times;
 }
 
-/// Times agree to `slack`; what is met within `slack` of not being met at all may go either way.
+/// Checks that times agree to `slack`. Hits within `slack` of max_t may be found or missed.
 void expect_hits(const QueryWorld& world, const std::vector<BodyTime>& truth,
                  std::span<const SceneHit> hits, const SceneHit& closest, double max_t,
                  double slack) {
@@ -245,7 +246,7 @@ void expect_hits(const QueryWorld& world, const std::vector<BodyTime>& truth,
   EXPECT_NEAR(closest.t, first, slack);
 }
 
-TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
+TEST(SceneQueries, rays_match_brute_force) {
   for (const double center : kCenters) {
     Random random(1);
     QueryWorld world;
@@ -271,7 +272,7 @@ TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
       ASSERT_EQ(queries.closest(ray, closest), Status::ok);
       ASSERT_EQ(queries.any(ray, any), Status::ok);
       ASSERT_EQ(queries.all(ray, hits), Status::ok);
-      // Positions are known to a rounding of their difference.
+      // Positions are exact up to the rounding of their difference.
       const double slack =
           (1e-9 + 1e-15 * std::abs(center) + 1e-14 * way) / length_of(ray.direction);
       expect_hits(world, truth, hits, closest, ray.max_t, slack);
@@ -283,7 +284,7 @@ TEST(SceneQueries, rays_meet_what_bodies_asked_one_by_one_say) {
   }
 }
 
-TEST(SceneQueries, a_batch_answers_each_ray_as_if_it_were_alone) {
+TEST(SceneQueries, ray_batch_matches_single_rays) {
   Random random(7);
   QueryWorld world;
   fill(world, 100, 0.0, random);
@@ -339,7 +340,7 @@ TEST(SceneQueries, a_batch_answers_each_ray_as_if_it_were_alone) {
   EXPECT_EQ(keys[0], Key{}) << "a refused batch writes nothing";
 }
 
-/// The signed distance of two bodies: of all pairs of their parts the least.
+/// Returns the signed distance of two bodies: the least over all pairs of their primitives.
 PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a, std::size_t b) {
   double offset[3];
   between(world.bodies[b].pose.position, pose_a.position, offset);
@@ -356,7 +357,7 @@ PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a
   return best;
 }
 
-/// Casts of convex shapes, or of composite ones.
+/// Checks casts of convex or of composite shapes.
 void expect_casts_meet(bool composite, std::size_t casts) {
   for (const double center : kCenters) {
     Random random(2);
@@ -387,8 +388,8 @@ void expect_casts_meet(bool composite, std::size_t casts) {
       if (!closest) continue;
       EXPECT_NEAR(closest.t, hits[0].t, 1e-7 / length_of(cast.direction));
       if (closest.t == 0.0) continue;
-      // Normal and point are those of the body where it is met. On curved shapes that all but touch
-      // the solver finds points to about 1e-8.
+      // Normal and point belong to the body that was hit. On curved shapes that nearly touch, the
+      // solver finds points to about 1e-8.
       double along = 0.0;
       for (int i = 0; i < 3; ++i) along += closest.normal[i] * cast.direction[i];
       EXPECT_LT(along, 1e-9 * length_of(cast.direction));
@@ -400,15 +401,15 @@ void expect_casts_meet(bool composite, std::size_t casts) {
   }
 }
 
-TEST(SceneQueries, moving_shapes_meet_what_bodies_asked_one_by_one_say) {
+TEST(SceneQueries, convex_casts_match_brute_force) {
   expect_casts_meet(false, 24);
 }
 
-TEST(SceneQueries, moving_composite_shapes_meet_what_their_parts_asked_one_by_one_meet) {
+TEST(SceneQueries, composite_casts_match_brute_force) {
   expect_casts_meet(true, 6);
 }
 
-TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
+TEST(SceneQueries, overlaps_match_brute_force) {
   for (const double center : kCenters) {
     Random random(3);
     QueryWorld world;
@@ -416,7 +417,7 @@ TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
     world.add_to_scene();
     SceneQueries queries(*world.scene);
     for (std::size_t n = 0; n < scaled(16); ++n) {
-      // Composite ones, too.
+      // Every fourth shape is composite.
       const ShapeId shape =
           world.bodies[n % 4 == 0 ? 60 + random.below(12) : random.below(60)].shape;
       Pose pose = random_pose(world.size, random);
@@ -440,7 +441,7 @@ TEST(SceneQueries, a_shape_overlaps_what_bodies_asked_one_by_one_say) {
   }
 }
 
-TEST(SceneQueries, what_touches_or_grazes_to_the_bit_is_met) {
+TEST(SceneQueries, exact_touches_are_found) {
   Random random(16);
   QueryWorld world;
   const std::vector<ShapeKind> kinds = all_kinds();
@@ -498,7 +499,7 @@ TEST(SceneQueries, what_touches_or_grazes_to_the_bit_is_met) {
   }
 }
 
-TEST(SceneQueries, two_bodies_are_as_far_apart_as_their_closest_parts) {
+TEST(SceneQueries, distance_matches_closest_parts) {
   for (const double center : {0.0, 1e6}) {
     Random random(4);
     QueryWorld world;
@@ -523,7 +524,7 @@ TEST(SceneQueries, two_bodies_are_as_far_apart_as_their_closest_parts) {
   }
 }
 
-TEST(SceneQueries, two_bodies_farther_apart_than_a_limit_have_no_distance) {
+TEST(SceneQueries, distance_beyond_limit_is_empty) {
   Random random(6);
   QueryWorld world;
   fill(world, 40, 0.0, random);
@@ -552,7 +553,7 @@ TEST(SceneQueries, two_bodies_farther_apart_than_a_limit_have_no_distance) {
             Status::invalid_argument);
 }
 
-TEST(SceneQueries, two_sets_are_as_far_apart_as_their_closest_bodies) {
+TEST(SceneQueries, set_queries_match_pairs_of_bodies) {
   for (const double center : {0.0, 1e6}) {
     Random random(7);
     QueryWorld world;
@@ -603,7 +604,7 @@ TEST(SceneQueries, two_sets_are_as_far_apart_as_their_closest_bodies) {
   }
 }
 
-TEST(SceneQueries, the_bodies_nearest_to_a_point_are_those_of_all_bodies) {
+TEST(SceneQueries, nearest_bodies_match_brute_force) {
   for (const double center : kCenters) {
     Random random(5);
     QueryWorld world;

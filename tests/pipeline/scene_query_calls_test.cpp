@@ -1,5 +1,4 @@
-// What all questions to a scene have in common: filters, refusals, the same answers everywhere,
-// memory.
+// Common behaviour of all scene queries: filters, refused input, determinism, memory.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -19,7 +18,7 @@
 namespace winnow::test {
 namespace {
 
-TEST(SceneQueryCalls, filters_and_predicates_choose_among_bodies) {
+TEST(SceneQueryCalls, filters_and_predicates_select_bodies) {
   Random random(9);
   QueryWorld world;
   fill(world, 120, 0.0, random);
@@ -78,7 +77,7 @@ TEST(SceneQueryCalls, filters_and_predicates_choose_among_bodies) {
   EXPECT_TRUE(context.right);
 }
 
-TEST(SceneQueryCalls, bad_questions_get_a_status_and_change_nothing) {
+TEST(SceneQueryCalls, bad_queries_are_refused_and_change_nothing) {
   Random random(10);
   QueryWorld world;
   fill(world, 30, 0.0, random);
@@ -138,14 +137,14 @@ TEST(SceneQueryCalls, bad_questions_get_a_status_and_change_nothing) {
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
   ASSERT_EQ(world.scene->refresh(), Status::ok);
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
-  // As after a change of poses, so after one of composite shapes.
+  // After a change of poses or of composite shapes, queries need a refresh.
   ASSERT_EQ(world.composites.remove(add_sheet(world.composites, 2)), Status::ok);
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);
   ASSERT_EQ(world.scene->refresh(), Status::ok);
   EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::ok);
 }
 
-/// A number for all answers to many questions.
+/// Returns a hash of the results of many queries.
 std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
   Random random(11);
   std::uint64_t sum = 0;
@@ -189,7 +188,7 @@ std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
   return sum;
 }
 
-TEST(SceneQueryCalls, rays_meet_a_mesh_where_and_as_it_is_now) {
+TEST(SceneQueryCalls, rays_hit_mesh_in_its_current_state) {
   ShapePool shapes;
   CompositePool composites(shapes);
   const std::vector<Eigen::Vector3d> square = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -246,7 +245,7 @@ TEST(SceneQueryCalls, rays_meet_a_mesh_where_and_as_it_is_now) {
   expect_at(kInfinity);
 }
 
-TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_threads) {
+TEST(SceneQueryCalls, results_match_on_every_isa_and_thread) {
   Random random(12);
   QueryWorld world;
   fill(world, 100, 0.0, random);
@@ -272,7 +271,7 @@ TEST(SceneQueryCalls, answer_the_same_on_every_instruction_set_and_from_many_thr
 #endif
 }
 
-TEST(SceneQueryCalls, know_their_memory_to_the_byte_and_ask_for_none_twice) {
+TEST(SceneQueryCalls, footprint_is_exact_and_repeated_queries_allocate_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   Random random(13);
   QueryWorld world;

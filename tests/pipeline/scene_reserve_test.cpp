@@ -1,4 +1,4 @@
-// What a scene and its contacts have made room for is asked for no more.
+// A scene and contacts that reserved memory allocate nothing more within the reserved sizes.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -19,14 +19,14 @@ constexpr ContactLevel kLevels[] = {ContactLevel::pairs, ContactLevel::boolean,
   return parallel ? Execution::parallel() : Execution::serial();
 }
 
-/// Bodies without filters, which are not reserved for.
+/// Bodies without filters, for which `reserve` provides no memory.
 [[nodiscard]] SceneWorld plain_world(std::size_t count, std::uint64_t seed) {
   SceneWorld world(count, seed);
   for (BodyDefinition& body : world.bodies) body.filter = {};
   return world;
 }
 
-/// Takes note of the most that frames had of everything.
+/// Raises each size to the size in this frame.
 void widen(SceneRoom& room, const Scene& scene, const Contacts& contacts) {
   for (std::size_t i = 0; i < kMotions; ++i) {
     room.bodies[i] = std::max(room.bodies[i], scene.size(static_cast<Motion>(i)));
@@ -47,7 +47,7 @@ void widen(SceneRoom& room, const Scene& scene, const Contacts& contacts) {
   return room;
 }
 
-TEST(SceneReserve, a_first_frame_asks_for_nothing) {
+TEST(SceneReserve, first_frame_allocates_nothing) {
   for (const ContactLevel level : kLevels) {
     for (const bool parallel : {false, true}) {
       for (const double carry_over : {0.0, 0.01}) {
@@ -60,7 +60,7 @@ TEST(SceneReserve, a_first_frame_asks_for_nothing) {
                                  .carry_over = carry_over,
                                  .warm_start = true});
         SceneRoom wide = room;
-        // Boxes are larger by the carry-over.
+        // The carry-over enlarges boxes and thus the number of pairs.
         wide.pairs += room.pairs / 2;
         Contacts contacts(&results);
         ASSERT_EQ(scene.reserve(wide), Status::ok);
@@ -70,7 +70,7 @@ TEST(SceneReserve, a_first_frame_asks_for_nothing) {
         const std::size_t asked = memory.requests();
         const std::size_t results_asked = results.requests();
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        EXPECT_EQ(memory.requests(), asked) << "to add bodies";
+        EXPECT_EQ(memory.requests(), asked) << "while adding bodies";
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
         EXPECT_EQ(memory.requests(), asked) << static_cast<int>(level) << parallel << carry_over;
         EXPECT_EQ(results.requests(), results_asked) << static_cast<int>(level) << carry_over;
@@ -82,7 +82,7 @@ TEST(SceneReserve, a_first_frame_asks_for_nothing) {
   }
 }
 
-/// Frames in which every body moves, some go and as many come, and some change their set.
+/// Each frame moves all bodies, removes and adds some, and changes the motion of some.
 class Churn {
  public:
   Churn(Scene& scene, SceneWorld& world, std::uint64_t seed)
@@ -112,7 +112,7 @@ class Churn {
   Random random_;
 };
 
-TEST(SceneReserve, contacts_that_were_reserved_for_ask_for_nothing_though_bodies_come_and_go) {
+TEST(SceneReserve, reserved_contacts_never_allocate_while_bodies_change) {
   const std::size_t frames = scaled(300);
   for (const ContactLevel level : kLevels) {
     for (const bool parallel : {false, true}) {
@@ -125,7 +125,7 @@ TEST(SceneReserve, contacts_that_were_reserved_for_ask_for_nothing_though_bodies
         CountingMemory results;
         Contacts contacts(&results);
         if (!measuring) {
-          // What sleeps is not seen: count it as if it were shown as well.
+          // The measured sizes leave out sleeping pairs. Reserve twice as much.
           room.touching *= 2;
           room.manifolds *= 2;
           room.points *= 2;
@@ -151,7 +151,7 @@ TEST(SceneReserve, contacts_that_were_reserved_for_ask_for_nothing_though_bodies
   }
 }
 
-TEST(SceneReserve, a_refusal_changes_nothing) {
+TEST(SceneReserve, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   SceneWorld world = plain_world(80, 53);
   SceneWorld twin_world = plain_world(80, 53);
@@ -201,7 +201,7 @@ TEST(SceneReserve, a_refusal_changes_nothing) {
   EXPECT_GT(refused, 50U);
 }
 
-TEST(SceneReserve, of_more_than_there_can_be_is_refused) {
+TEST(SceneReserve, impossible_sizes_are_refused) {
   SceneWorld world(1, 59);
   CountingMemory memory;
   Scene scene(world.pool, {.memory = &memory});

@@ -189,7 +189,7 @@ void expect_whole_scene(RuledWorld& world, SceneQueries& queries, double margin,
   EXPECT_EQ(ids_of(pair), least);
 }
 
-TEST(SceneRules, pairs_of_questions_are_those_of_collide) {
+TEST(SceneRules, distance_considers_pairs_of_collide) {
   Random random(61);
   for (std::size_t round = 0; round < scaled(6); ++round) {
     RuledWorld world(random);
@@ -214,7 +214,7 @@ TEST(SceneRules, pairs_of_questions_are_those_of_collide) {
   }
 }
 
-TEST(SceneRules, questions_about_sets_agree_with_brute_force) {
+TEST(SceneRules, set_queries_match_brute_force) {
   Random random(62);
   for (std::size_t round = 0; round < scaled(6); ++round) {
     RuledWorld world(random);
@@ -225,7 +225,7 @@ TEST(SceneRules, questions_about_sets_agree_with_brute_force) {
   }
 }
 
-TEST(SceneRules, any_contact_of_scene_agrees_with_brute_force) {
+TEST(SceneRules, any_contact_of_scene_matches_brute_force) {
   Random random(63);
   for (std::size_t round = 0; round < scaled(8); ++round) {
     RuledWorld world(random);
@@ -317,7 +317,7 @@ TEST(SceneRules, two_fixed_bodies_are_no_pair) {
   EXPECT_NEAR(apart.distance, 0.1, 1e-12);
 }
 
-TEST(SceneRules, any_contact_is_the_same_for_every_structure) {
+TEST(SceneRules, any_contact_matches_for_every_structure) {
   Random random(64);
   ShapePool shapes;
   const ShapeId ball = shapes.add(SphereShape{0.5});

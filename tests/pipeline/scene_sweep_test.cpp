@@ -1,4 +1,4 @@
-// Scenes that move between two frames: against every pair of bodies asked by itself.
+// SceneSweep and motion casts, compared with single-pair times of impact.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -21,9 +21,9 @@
 namespace winnow::test {
 namespace {
 
-/// A scene of which some bodies move, and what every pair says by itself.
+/// A scene with some moving bodies, and the expected impact of each pair.
 struct SweptWorld {
-  /// Farther apart by the factor `spread` than the bodies of a SceneWorld are.
+  /// `spread` multiplies the distances between the bodies of a SceneWorld.
   explicit SweptWorld(std::size_t count, const Execution& execution = Execution::serial(),
                       double spread = 1.0)
       : world(count, 91), composites(world.pool) {
@@ -65,7 +65,7 @@ struct SweptWorld {
            (of_a.motion == Motion::dynamic || of_b.motion == Motion::dynamic) &&
            winnow::may_meet(of_a.filter, of_b.filter);
   }
-  /// By pair, when they meet, each asked by itself.
+  /// Returns for each pair its time of impact, computed separately.
   [[nodiscard]] std::map<Names, double> truth(SweepPairs which) const {
     std::vector<ShapeId> shapes;
     std::vector<RigidMotion> all;
@@ -100,7 +100,7 @@ struct SweptWorld {
   std::vector<std::uint8_t> bullets;
 };
 
-TEST(SceneSweeps, find_what_every_pair_says_by_itself) {
+TEST(SceneSweeps, impacts_match_single_pairs) {
   SweptWorld swept(scaled(160));
   SceneSweep sweep(*swept.scene);
   for (const SweepPairs which :
@@ -145,7 +145,7 @@ void expect_same(const SceneImpact& a, const SceneImpact& b) {
   EXPECT_TRUE(std::ranges::equal(a.normal, b.normal));
 }
 
-TEST(SceneSweeps, find_the_first_impacts_alone_where_no_others_are_wanted) {
+TEST(SceneSweeps, first_only_matches_first_of_all) {
   SweptWorld swept(400, Execution::serial(), 2.5);
   SceneSweep all(*swept.scene);
   SceneSweep firsts(*swept.scene);
@@ -163,7 +163,7 @@ TEST(SceneSweeps, find_the_first_impacts_alone_where_no_others_are_wanted) {
   }
 }
 
-/// Boxes in a cube that all go far the same way, but for a little.
+/// Boxes in a cube that all move by nearly the same long vector.
 struct Convoy {
   Convoy(std::size_t count, double way) {
     EXPECT_EQ(pool.add(BoxShape{{0.5, 0.5, 0.5}}, box), Status::ok);
@@ -185,7 +185,7 @@ struct Convoy {
   std::vector<RigidMotion> motions;
 };
 
-TEST(SceneSweeps, look_at_no_more_where_all_go_the_same_way) {
+TEST(SceneSweeps, common_motion_adds_no_candidate_pairs) {
   Convoy still(scaled(400), 0.0);
   Convoy fast(scaled(400), 1000.0);
   ShapeId wall;
@@ -198,11 +198,11 @@ TEST(SceneSweeps, look_at_no_more_where_all_go_the_same_way) {
   ASSERT_EQ(of_fast.sweep(fast.keys, fast.motions), Status::ok);
   const std::size_t count = fast.keys.size();
   EXPECT_LE(of_fast.statistics().body_pairs, 2 * of_still.statistics().body_pairs + count);
-  // All meet the wall, and each other as they do without it.
+  // All boxes hit the wall. Impacts with each other do not change.
   EXPECT_EQ(of_fast.impacts().size(), of_still.impacts().size() + count);
 }
 
-TEST(SceneSweeps, are_the_same_on_any_number_of_threads) {
+TEST(SceneSweeps, impacts_match_on_any_thread_count) {
   SweptWorld one(scaled(160));
   SweptWorld many(scaled(160), Execution::parallel());
   for (const bool first_only : {false, true}) {
@@ -218,7 +218,7 @@ TEST(SceneSweeps, are_the_same_on_any_number_of_threads) {
   }
 }
 
-/// A ball that flies through a thin wall at x = 0 and rests on a floor.
+/// A ball that rests on a floor and flies through a thin wall at x = 0.
 struct Gallery {
   Gallery() {
     EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
@@ -236,7 +236,7 @@ struct Gallery {
   Key keys[3];
 };
 
-TEST(SceneSweeps, leave_out_what_touches_at_the_start_where_asked) {
+TEST(SceneSweeps, initial_touches_can_be_ignored) {
   Gallery gallery;
   SceneSweep sweep(gallery.scene);
   const Pose end[1] = {Pose::at(50, 0, 0.5)};
@@ -259,7 +259,7 @@ TEST(SceneSweeps, leave_out_what_touches_at_the_start_where_asked) {
   }
 }
 
-TEST(SceneSweeps, refuse_bad_input_and_keep_their_answers) {
+TEST(SceneSweeps, bad_input_is_refused_and_keeps_impacts) {
   Gallery gallery;
   SceneSweep sweep(gallery.scene);
   const Key ball = gallery.keys[2];
@@ -293,13 +293,13 @@ TEST(SceneSweeps, refuse_bad_input_and_keep_their_answers) {
   EXPECT_EQ(sweep.impacts().size(), 2U);
   EXPECT_EQ(asked({}, {}), Status::ok);
   EXPECT_EQ(sweep.impacts().size(), 0U);
-  // As far as doubles go, and through the wall on the way.
+  // A motion near the end of the range of double that passes through the wall.
   const Pose far[1] = {Pose::at(1e300, 0, 0.5)};
   EXPECT_EQ(asked(moving, far, {.touching = false}), Status::ok);
   EXPECT_EQ(sweep.impacts().size(), 1U);
 }
 
-TEST(MotionCasts, meet_what_every_body_says_by_itself) {
+TEST(MotionCasts, hits_match_single_pairs) {
   SweptWorld swept(scaled(160));
   SceneQueries queries(*swept.scene);
   const SceneWorld& world = swept.world;
@@ -337,7 +337,7 @@ TEST(MotionCasts, meet_what_every_body_says_by_itself) {
   }
 }
 
-TEST(MotionCasts, that_want_the_closest_hit_get_the_first_of_all) {
+TEST(MotionCasts, closest_hit_matches_first_of_all) {
   SweptWorld swept(400, Execution::serial(), 2.5);
   SceneQueries queries(*swept.scene);
   ASSERT_EQ(swept.scene->refresh(), Status::ok);
@@ -356,13 +356,13 @@ TEST(MotionCasts, that_want_the_closest_hit_get_the_first_of_all) {
   }
 }
 
-TEST(MotionCasts, turn_on_their_way_and_refuse_what_is_no_motion) {
+TEST(MotionCasts, rotation_hits_and_bad_motion_is_refused) {
   Gallery gallery;
   SceneQueries queries(gallery.scene);
   ASSERT_EQ(gallery.scene.refresh(), Status::ok);
   ShapeId rod;
   ASSERT_EQ(gallery.pool.add(CapsuleShape{0.1, 3.9}, rod), Status::ok);
-  // It stands upright beside the wall and falls over onto it by a quarter turn about y.
+  // The rod stands upright beside the wall. A quarter turn about y drops it onto the wall.
   MotionCast cast{rod, {Pose::at(2, 0, 5), {0, 0, 0}, {0, -std::acos(0.0), 0}}};
   SceneHit hit;
   ASSERT_EQ(queries.closest(cast, hit), Status::ok);
@@ -382,7 +382,7 @@ TEST(MotionCasts, turn_on_their_way_and_refuse_what_is_no_motion) {
   EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
 }
 
-TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_same) {
+TEST(SceneSweeps, repeated_sweep_allocates_nothing_and_refusals_recover) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   SweptWorld swept(60);
   CountingMemory memory;
@@ -397,7 +397,7 @@ TEST(SceneSweeps, take_their_memory_from_the_resource_and_no_more_of_it_for_the_
     EXPECT_EQ(memory.requests(), before);
   }
   EXPECT_EQ(memory.outstanding(), 0U);
-  // Each request refused in turn leaves no impacts, and nothing that shows later.
+  // A sweep whose memory request is refused has no impacts, and the next sweep is complete.
   SceneSweep whole(*swept.scene);
   ASSERT_EQ(whole.sweep(swept.keys, swept.motions), Status::ok);
   for (std::size_t granted = 1;; ++granted) {

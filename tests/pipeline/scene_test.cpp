@@ -1,4 +1,4 @@
-// What a scene reports, against every pair asked one by one; events, sets, filters, and order.
+// Contacts of a scene, compared with tests of all pairs; events, motions, filters, and order.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -22,7 +22,7 @@ constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distanc
   return names;
 }
 
-TEST(Scene, the_five_bodies_of_the_drawing_make_three_pairs) {
+TEST(Scene, five_bodies_make_three_pairs) {
   ShapePool pool;
   ShapeId box;
   ASSERT_EQ(pool.add(BoxShape{{1, 1, 1}}, box), Status::ok);
@@ -40,7 +40,7 @@ TEST(Scene, the_five_bodies_of_the_drawing_make_three_pairs) {
   EXPECT_EQ(shown(contacts), (std::set<Names>{{'A', 'D'}, {'B', 'D'}, {'C', 'E'}}));
 }
 
-TEST(Scene, pairs_of_bodies_that_are_not_dynamic_are_never_reported) {
+TEST(Scene, pairs_without_dynamic_body_are_not_reported) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
@@ -61,8 +61,8 @@ TEST(Scene, pairs_of_bodies_that_are_not_dynamic_are_never_reported) {
   }
 }
 
-/// Events of a world that moves, in which bodies come, go, sleep and wake, against sets of pairs.
-TEST(Scene, events_tell_what_began_what_persists_and_what_ended) {
+/// Compares events with sets of pairs while bodies move and leave.
+TEST(Scene, events_match_sets_of_pairs) {
   for (const double carry_over : {0.0, 1e-9}) {
     SceneWorld world(scaled(300), 3);
     for (BodyDefinition& body : world.bodies) body.motion = Motion::dynamic;
@@ -97,7 +97,7 @@ TEST(Scene, events_tell_what_began_what_persists_and_what_ended) {
   }
 }
 
-TEST(Scene, contacts_of_bodies_that_fell_asleep_are_neither_shown_nor_ended_and_persist_on_waking) {
+TEST(Scene, sleeping_contacts_are_hidden_and_persist_on_waking) {
   for (const double carry_over : {0.0, 0.01}) {
     ShapePool pool;
     ShapeId ball;
@@ -130,7 +130,7 @@ TEST(Scene, contacts_of_bodies_that_fell_asleep_are_neither_shown_nor_ended_and_
   }
 }
 
-TEST(Scene, contacts_persist_on_waking_after_other_levels_were_asked_for) {
+TEST(Scene, contacts_persist_on_waking_after_other_levels) {
   for (const double carry_over : {0.0, 0.01}) {
     ShapePool pool;
     const ShapeId ball = pool.add(SphereShape{1});
@@ -161,7 +161,7 @@ TEST(Scene, contacts_persist_on_waking_after_other_levels_were_asked_for) {
   }
 }
 
-TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_set) {
+TEST(Scene, contacts_match_on_any_threads_and_isa) {
   std::vector<std::uint64_t> first;
   const Isa isas[] = {available_isas().front(), available_isas().back()};
   for (const double carry_over : {0.0, 0.02}) {
@@ -192,7 +192,7 @@ TEST(Scene, answers_and_their_order_are_the_same_on_any_threads_and_instruction_
   }
 }
 
-TEST(Scene, without_carry_over_every_frame_is_that_of_a_fresh_scene) {
+TEST(Scene, frames_without_carry_over_match_fresh_scene) {
   SceneWorld world(scaled(800), 7);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -219,7 +219,7 @@ TEST(Scene, without_carry_over_every_frame_is_that_of_a_fresh_scene) {
   }
 }
 
-TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
+TEST(Scene, touching_pairs_match_brute_force) {
   for (const double margin : {0.0, 0.15}) {
     SceneWorld world(scaled(400));
     Scene scene(world.pool, {.margin = margin});
@@ -230,7 +230,7 @@ TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
         const double reach = level == ContactLevel::boolean ? 0.0 : margin;
         EXPECT_EQ(shown(contacts), keys_of(world.touching(reach)));
-        EXPECT_EQ(shown(contacts).size(), contacts.size()) << "a pair is doubled";
+        EXPECT_EQ(shown(contacts).size(), contacts.size()) << "duplicate pair";
       }
       world.stir(0.2);
       ASSERT_EQ(move_all(scene, world), Status::ok);
@@ -238,7 +238,7 @@ TEST(Scene, every_pair_that_touches_is_reported_and_no_other) {
   }
 }
 
-TEST(Scene, distances_are_those_of_the_pairs_and_points_lie_between_the_bodies) {
+TEST(Scene, distances_and_depths_match_brute_force) {
   SceneWorld world(scaled(400));
   Scene scene(world.pool, {.margin = 0.1});
   ASSERT_EQ(add_all(scene, world), Status::ok);

@@ -65,7 +65,7 @@ std::map<Names, double> SceneWorld::touching(double margin) const {
         const double d = a.pose.position[k] - b.pose.position[k];
         square += d * d;
       }
-      // No shape reaches farther than 0.8 from its origin.
+      // No shape extends farther than 0.8 from its origin.
       if (square > (1.6 + margin) * (1.6 + margin)) continue;
       const PairAnswer answer = solve_pair(pool.tables(), a.shape, a.pose, b.shape, b.pose,
                                            ContactLevel::distance, margin, counts);

@@ -13,19 +13,19 @@
 
 namespace winnow::test {
 
-/// Two bodies by their client data, the smaller first.
+/// The client data of two bodies, the smaller first.
 using Names = std::pair<ClientData, ClientData>;
 
 [[nodiscard]] inline Names names(ClientData a, ClientData b) {
   return {a < b ? a : b, a < b ? b : a};
 }
 
-/// Bodies of all convex kinds in a cube, about six near each, and what a scene is told of them.
-/// Client data are places in `bodies`.
+/// Bodies of all convex kinds in a cube, each with about six neighbours, and their definitions.
+/// Client data are indices of `bodies`.
 struct SceneWorld {
   explicit SceneWorld(std::size_t count, std::uint64_t seed = 1);
 
-  /// Gives every body a new place no farther than `step` and another turn.
+  /// Moves every body by up to `step` and gives it a new orientation.
   void stir(double step);
   [[nodiscard]] Pose random_pose();
   [[nodiscard]] const BodyDefinition& body(ClientData name) const {
@@ -33,8 +33,8 @@ struct SceneWorld {
   }
   [[nodiscard]] Key key(ClientData name) const { return keys[static_cast<std::size_t>(name)]; }
 
-  /// Pairs that may touch by their sets and filters, judged one by one by the solver. Names and
-  /// distances of those no farther apart than `margin`.
+  /// Returns the pairs that motions and filters admit and that are no farther apart than `margin`,
+  /// with their distances, by calling the solver for each pair.
   [[nodiscard]] std::map<Names, double> touching(double margin = 0.0) const;
 
   ShapePool pool;
@@ -49,10 +49,10 @@ struct SceneWorld {
 [[nodiscard]] Status add_all(Scene& scene, SceneWorld& world);
 [[nodiscard]] Status move_all(Scene& scene, const SceneWorld& world);
 
-/// Every pair that contacts show.
+/// Returns all pairs in the contacts.
 [[nodiscard]] std::set<Names> shown(const Contacts& contacts);
 
-/// Everything that contacts show, as numbers to be compared bit by bit.
+/// Returns all results in the contacts as numbers that can be compared bit by bit.
 [[nodiscard]] std::vector<std::uint64_t> digest(const Contacts& contacts);
 
 }  // namespace winnow::test

@@ -1,4 +1,5 @@
-// Floors of several fixed bodies against one large floor: what slides over a seam is held alike.
+// Ghost contacts (SceneOptions::seamless_floors): floors of several fixed bodies must hold sliding
+// bodies like one large floor.
 
 #include "tests/pipeline/composite_world.h"
 
@@ -21,13 +22,13 @@ namespace {
 constexpr double kSlidingMargin = 0.03;
 constexpr double kAboutUp = 0.99619;
 
-/// Shapes that slide, each with how high it stands on a plane.
+/// A sliding shape and the height of its centre above a plane.
 struct Slider {
   ShapeId shape;
   double height;
 };
 
-/// What floors are made of; each tile is 4 x 4 with its top, or its surface, at z = 0.
+/// The kinds of floor tiles. Each tile is 4 x 4 with its top or surface at z = 0.
 enum class Tiles { boxes, meshes, fields, compounds };
 
 struct SeamWorld {
@@ -43,7 +44,7 @@ struct SeamWorld {
     EXPECT_EQ(composites.add_compound(child, compound), Status::ok);
   }
 
-  /// The tile whose middle is at (x, y), with its top at z.
+  /// Returns the tile with its centre at (x, y) and its top at z.
   [[nodiscard]] BodyDefinition tile(Tiles kind, double x, double y, double z = 0.0) const {
     const ShapeId ids[] = {block, mesh, field, compound};
     BodyDefinition body{
@@ -70,7 +71,8 @@ struct SeamWorld {
   return pose;
 }
 
-/// Of all manifolds: the deepest, and how many normals are not about up.
+/// Summary of all manifolds: the least distance, and the number of normals that are not nearly
+/// vertical.
 struct Held {
   double distance = std::numeric_limits<double>::infinity();
   std::size_t aslant = 0;
@@ -89,8 +91,8 @@ struct Held {
   return held;
 }
 
-/// Sinks or hovers by a little over the place where four tiles meet.
-TEST(Seams, what_slides_over_flush_tiles_is_held_as_by_one_floor) {
+/// Slightly above or below the point where four tiles meet.
+TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
   SeamWorld world;
   Random random(81);
   for (const Tiles kind : {Tiles::boxes, Tiles::meshes, Tiles::fields, Tiles::compounds}) {
@@ -132,7 +134,7 @@ TEST(Seams, what_slides_over_flush_tiles_is_held_as_by_one_floor) {
   }
 }
 
-/// Two tiles with the seam at x = 0, and a slider.
+/// Two tiles with a seam at x = 0, and a slider.
 struct TwoTiles {
   TwoTiles(const SeamWorld& world, double second_x, double second_z, ShapeId slider)
       : scene(
@@ -155,7 +157,7 @@ struct TwoTiles {
   Contacts contacts;
 };
 
-TEST(Seams, steps_walls_ditches_and_valleys_stay) {
+TEST(GhostContacts, steps_walls_and_ditches_keep_contacts) {
   SeamWorld world;
   const ShapeId box = world.sliders[1].shape;
   const ShapeId ball = world.sliders[0].shape;
@@ -164,14 +166,14 @@ TEST(Seams, steps_walls_ditches_and_valleys_stay) {
   EXPECT_TRUE(step.touches_second(Pose::at(-0.51, 0.1, 0.305)));
   TwoTiles wall(world, 2.0, 1.5, ball);
   EXPECT_TRUE(wall.touches_second(Pose::at(-0.49, 0.1, 0.495)));
-  // A ball sinks into a ditch of width 0.6, and touches both of its edges.
+  // A ball sinks into a ditch of width 0.6 and touches both edges.
   TwoTiles ditch(world, 2.6, 0.0, ball);
   EXPECT_TRUE(ditch.touches_second(Pose::at(0.3, 0.0, 0.399)));
   EXPECT_EQ(ditch.contacts.size(), 2U);
   EXPECT_FALSE(ditch.touches_second(Pose::at(-0.49, 0.0, 0.49)));
 }
 
-/// Shapes that stand in corners: of most only the bottom edge comes near a wall.
+/// Shapes that stand in corners. Most of them come near a wall only with their bottom edge.
 std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
   std::vector<Eigen::Vector3d> corners;
   for (int i = 0; i < 8; ++i) {
@@ -194,13 +196,13 @@ std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
           leaning(add(shapes, CapsuleShape{0.1, 0.6}), -0.2)};
 }
 
-/// Fixed bodies, none of which are flush, and of which one has its upper side in z = 0 and one
-/// reaches up to x = 1 from the right, or rises from there.
+/// Fixed bodies of which no two are flush: a floor with its top at z = 0, and a wall with its left
+/// side at x = 1 or a slope that rises from there.
 struct FloorCorner {
   std::vector<BodyDefinition> bodies;
 };
 
-/// A box whose least corner is where it says, turned about y there.
+/// Returns a box with its least corner at `least`, turned about y around that corner.
 BodyDefinition box_from(ShapePool& shapes, const Eigen::Vector3d& least,
                         const Eigen::Vector3d& half, double angle = 0.0) {
   BodyDefinition body{.shape = add(shapes, BoxShape{{half.x(), half.y(), half.z()}, 0.0}),
@@ -240,10 +242,10 @@ std::vector<FloorCorner> corners_of(SeamWorld& world) {
       {.shape = bricks, .pose = Pose::at(3, 0, 0), .motion = Motion::fixed}};
   for (const BodyDefinition& floor : floors) {
     for (const BodyDefinition& wall : walls) {
-      // And one across to it, in its corner.
+      // Add a second wall at right angles, which makes a corner.
       corners.push_back({{floor, wall, box(-5, 0.5, -1, 6.5, 1, 3)}});
     }
-    // Kerbs, and the feet of slopes.
+    // Kerbs, which barely rise above the floor.
     for (const double height : {0.004, 0.05}) {
       corners.push_back({{floor, box(1, -5, -1, 1, 5, 0.5 * (1 + height))}});
     }
@@ -257,7 +259,7 @@ std::vector<FloorCorner> corners_of(SeamWorld& world) {
   return corners;
 }
 
-/// Everything turned and put elsewhere.
+/// A rigid motion of the whole scene.
 struct Placement {
   Eigen::Quaterniond turn;
   Eigen::Vector3d at;
@@ -272,7 +274,7 @@ struct Placement {
   }
 };
 
-/// A body that stands in a corner, so deep in the floor and in the wall to its right.
+/// Returns a body in a corner, at the given depths in the floor and in the wall to its right.
 BodyDefinition in_corner(const ShapePool& shapes, BodyDefinition body, double in_floor,
                          double in_wall) {
   const Aabb box = shapes.bounds(body.shape, body.pose);
@@ -281,7 +283,7 @@ BodyDefinition in_corner(const ShapePool& shapes, BodyDefinition body, double in
   return body;
 }
 
-/// What a scene of these bodies shows.
+/// Returns the contacts of a scene of these bodies.
 std::vector<double> shown_contacts(const SeamWorld& world,
                                    const std::vector<BodyDefinition>& bodies, ContactLevel level,
                                    SceneOptions options) {
@@ -303,8 +305,8 @@ std::vector<double> shown_contacts(const SeamWorld& world,
   return shown;
 }
 
-/// Bottom edges of bodies that stand on a floor touch a wall in the floor's plane.
-TEST(Seams, are_none_where_nothing_is_flush) {
+/// The bottom edges of standing bodies touch a wall in the plane of the floor.
+TEST(GhostContacts, floors_that_are_not_flush_keep_contacts) {
   SeamWorld world;
   Random random(83);
   const std::vector<BodyDefinition> standing = standing_bodies(world.shapes);
@@ -341,17 +343,17 @@ TEST(Seams, are_none_where_nothing_is_flush) {
   EXPECT_GT(walls, 100U);
 }
 
-/// A manifold as the rule of SceneOptions::seamless_floors sees it.
+/// A manifold, with the data that the rule of SceneOptions::seamless_floors uses.
 struct FloorManifold {
   Key floor;
-  /// Of the floor, a tile.
+  /// Pose of the floor, which is a tile.
   Pose pose;
   Eigen::Vector3d up;
   double distance;
   std::vector<Eigen::Vector3d> points;
   bool is_dropped = false;
 
-  /// Of pair i, which has one, with floors as a.
+  /// The single manifold of pair i, whose body a is the floor.
   FloorManifold(const Contacts& contacts, std::size_t i, const Pose& at_pose)
       : floor(contacts.a()[i]),
         pose(at_pose),
@@ -365,7 +367,7 @@ struct FloorManifold {
     }
   }
 
-  /// The most of the tile's corners along a direction.
+  /// Returns the largest projection of the tile's corners on a direction.
   [[nodiscard]] double highest(const Eigen::Vector3d& along) const {
     const double(&q)[4] = pose.orientation;
     const Eigen::Quaterniond turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
@@ -378,8 +380,8 @@ struct FloorManifold {
   }
 };
 
-/// Whether the tile rises by more than 5 degrees, away from the body, above the line in which the
-/// manifold's tangent plane cuts the other plane.
+/// Returns whether the tile rises by more than 5 degrees, away from the body, above the line where
+/// the manifold's tangent plane intersects the other plane.
 bool rises(const FloorManifold& one, const Eigen::Vector3d& up, double plane, double slack) {
   const double angle = std::acos(up.dot(one.up));
   const Eigen::Vector3d side = (one.up - up * std::cos(angle)) / std::sin(angle);
@@ -391,7 +393,7 @@ bool rises(const FloorManifold& one, const Eigen::Vector3d& up, double plane, do
   return one.highest(steepest) - steepest.dot(on_line) > slack;
 }
 
-/// Points come deepest first.
+/// Relies on the deepest point being the first one.
 bool is_seam_of(const FloorManifold& one, const FloorManifold& other, double radius) {
   const double cosine = one.up.dot(other.up);
   if (other.is_dropped || other.distance > one.distance + 1e-6 * radius ||
@@ -405,8 +407,8 @@ bool is_seam_of(const FloorManifold& one, const FloorManifold& other, double rad
   return is_below && !rises(one, other.up, plane, slack);
 }
 
-/// 8 x 8 tiles and a plate on all of them. Those that are not flush are tilted and a little higher
-/// or lower.
+/// Returns 8 x 8 tiles and a plate on top of them. Tiles that are not flush are tilted and slightly
+/// higher or lower.
 std::vector<BodyDefinition> plate_on_tiles(const SeamWorld& world, ShapeId plate, double flush,
                                            Random& random) {
   std::vector<BodyDefinition> bodies;
@@ -422,7 +424,8 @@ std::vector<BodyDefinition> plate_on_tiles(const SeamWorld& world, ShapeId plate
   return bodies;
 }
 
-/// Ids of the floors whose manifolds stay, by the rule, each held against each.
+/// Returns the ids of floors whose manifolds are kept by the rule, testing each manifold with each
+/// other one.
 std::vector<ObjectId> kept_floors(const Scene& scene, const Contacts& contacts, double radius) {
   std::vector<FloorManifold> raw;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -440,7 +443,7 @@ std::vector<ObjectId> kept_floors(const Scene& scene, const Contacts& contacts, 
   return kept;
 }
 
-TEST(Seams, of_a_plate_on_many_tiles_are_those_that_all_against_all_find) {
+TEST(GhostContacts, plate_on_many_tiles_matches_brute_force) {
   SeamWorld world;
   Random random(82);
   const double half = 15.0;
@@ -448,7 +451,7 @@ TEST(Seams, of_a_plate_on_many_tiles_are_those_that_all_against_all_find) {
   const double radius = std::sqrt(2.0 * half * half + 0.09);
   std::size_t dropped = 0;
   for (std::size_t round = 0; round < scaled(20); ++round) {
-    // In every second round hardly any two normals are alike.
+    // In every second round hardly any two normals are equal.
     const auto bodies = plate_on_tiles(world, plate, round % 2 == 0 ? 0.8 : 0.2, random);
     std::vector<Key> keys(bodies.size());
     Scene raw(world.shapes, {.margin = 0.05});
@@ -467,8 +470,8 @@ TEST(Seams, of_a_plate_on_many_tiles_are_those_that_all_against_all_find) {
   EXPECT_GT(dropped, scaled(20));
 }
 
-/// Bodies that are not fixed are no floor, and what is told of bytes holds.
-TEST(Seams, floors_are_fixed_and_their_bytes_are_counted) {
+/// Bodies that are not fixed are not floors. The footprint matches the allocated memory.
+TEST(GhostContacts, only_fixed_bodies_are_floors) {
   SeamWorld world;
   CountingMemory memory;
   Scene scene(world.shapes, {.memory = &memory,

@@ -1,5 +1,5 @@
-// Sensors: what is sensed is what every pair of a sensor and a body says alone, and who came and
-// who left is the difference of two such sets.
+// Sensors: overlaps, arrivals and departures compared with tests of every pair of a sensor and a
+// body.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -25,7 +25,7 @@ Stamped stamped(Key key) {
   return {key.id, key.stamp};
 }
 
-/// Balls in a cube, sensed by balls.
+/// Balls in a cube, and ball-shaped sensors.
 class BallRoom {
  public:
   explicit BallRoom(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
@@ -76,7 +76,7 @@ class BallRoom {
         ASSERT_EQ(sensors.move(key, somewhere()), Status::ok);
       }
     }
-    // Ids go to others at once.
+    // New bodies and sensors reuse the ids at once.
     ASSERT_EQ(scene.remove(bodies.back()), Status::ok);
     bodies.pop_back();
     add_body();
@@ -124,7 +124,7 @@ class BallRoom {
   std::vector<ShapeId> balls_;
 };
 
-TEST(Sensors, tell_who_is_in_them_who_came_and_who_left) {
+TEST(Sensors, overlaps_arrivals_and_departures_match_brute_force) {
   BallRoom room;
   for (int i = 0; i < 60; ++i) room.add_body();
   for (int i = 0; i < 15; ++i) room.add_sensor();
@@ -163,7 +163,7 @@ TEST(Sensors, tell_who_is_in_them_who_came_and_who_left) {
   }
 }
 
-TEST(Sensors, sense_the_same_on_any_number_of_threads) {
+TEST(Sensors, results_match_on_any_thread_count) {
   ShapePool shapes;
   ShapeId ball;
   ASSERT_EQ(shapes.add(SphereShape{0.7}, ball), Status::ok);
@@ -197,7 +197,7 @@ TEST(Sensors, sense_the_same_on_any_number_of_threads) {
   }
 }
 
-TEST(Sensors, make_no_contacts) {
+TEST(Sensors, sensors_add_no_contacts) {
   BallRoom room;
   for (int i = 0; i < 20; ++i) room.add_body();
   Contacts contacts;
@@ -209,7 +209,7 @@ TEST(Sensors, make_no_contacts) {
   EXPECT_EQ(contacts.size(), pairs);
 }
 
-TEST(Sensors, of_composite_shapes_sense_with_every_part) {
+TEST(Sensors, composite_sensor_uses_every_part) {
   ShapePool shapes;
   CompositePool composites(shapes);
   Scene scene(shapes, {.composites = &composites});
@@ -232,14 +232,14 @@ TEST(Sensors, of_composite_shapes_sense_with_every_part) {
   ASSERT_EQ(sensors.sense(), Status::ok);
   EXPECT_EQ(sensors.sensed()[0].event, ContactEvent::persisted);
 
-  // A shape that is gone refuses the question, and all stays as it was.
+  // After its shape is removed, a sensor makes `sense` fail, and the earlier results stay.
   ASSERT_EQ(composites.remove(gate), Status::ok);
   EXPECT_EQ(sensors.sense(), Status::invalid_key);
   ASSERT_EQ(sensors.sensed().size(), 1U);
   EXPECT_EQ(sensors.sensed()[0].body, body);
 }
 
-TEST(Sensors, bad_input_gets_a_status_and_changes_nothing) {
+TEST(Sensors, bad_input_is_refused_and_changes_nothing) {
   BallRoom room;
   room.add_body();
   room.add_sensor();
@@ -268,7 +268,7 @@ TEST(Sensors, bad_input_gets_a_status_and_changes_nothing) {
   EXPECT_EQ(room.sensors.sensor(goal, now), Status::invalid_key);
 }
 
-TEST(Sensors, know_their_memory_to_the_byte_and_bear_its_refusal) {
+TEST(Sensors, footprint_is_exact_and_refused_memory_is_reported) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
@@ -302,8 +302,8 @@ TEST(Sensors, know_their_memory_to_the_byte_and_bear_its_refusal) {
   }
 }
 
-// No call but the one whose request was refused is refused, whatever the sensors had to sense then.
-TEST(Sensors, sense_again_after_any_refused_request) {
+// A refused request fails only its own call, whatever there is to sense at that moment.
+TEST(Sensors, sense_recovers_after_refused_memory) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const bool with_body : {false, true}) {
     for (const bool with_sensor : {false, true}) {

@@ -1,5 +1,5 @@
-// A convex shape that moves against one that stands: the time of impact against closed forms, and
-// against the solver just before and just after it.
+// Shape casts against a standing shape: times of impact compared with closed forms, and with
+// distances of the solver just before and after the impact.
 
 #include "pipeline/scene/queries/shape_cast.h"
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ Direction unit(Random& random) {
   }
 }
 
-/// Points the way of `pair` through where it starts now, from `distance` before, at `speed`.
+/// Moves the start back by `distance` so that the cast passes through the old start at `speed`.
 void back_off(CastPair& pair, const Direction& way, double distance, double speed) {
   for (int i = 0; i < 3; ++i) {
     pair.from.position[i] -= way.v[i] * distance;
@@ -53,7 +53,7 @@ double distance_at(const ShapePool& pool, const CastPair& pair, double t) {
       .distance;
 }
 
-TEST(ShapeCast, of_balls_meets_the_closed_form_at_any_speed_and_size) {
+TEST(ShapeCast, balls_match_closed_form) {
   Random random(1);
   for (std::size_t n = scaled(20000); n-- != 0;) {
     ShapePool pool;
@@ -66,7 +66,7 @@ TEST(ShapeCast, of_balls_meets_the_closed_form_at_any_speed_and_size) {
     back_off(pair, unit(random), size * random.log_uniform(1.0, 1e4),
              random.log_uniform(1e-9, 1e9));
     pair.max_t = kInfinity;
-    // |c - t d| = r, in long double.
+    // Solve |c - t d| = r in long double.
     long double cc = 0.0L;
     long double cd = 0.0L;
     long double dd = 0.0L;
@@ -91,9 +91,9 @@ TEST(ShapeCast, of_balls_meets_the_closed_form_at_any_speed_and_size) {
                     : (cc - r * r) / (cd + std::sqrt(std::max(0.0L, cd * cd - dd * (cc - r * r))));
     const auto length = static_cast<double>(std::sqrt(dd));
     const auto late = static_cast<double>((static_cast<long double>(touch.t) - truth)) * length;
-    // Where they graze, the time of impact is no better known than the root of the rounding.
+    // If the balls graze, the error of the time of impact is the square root of the rounding.
     const double sine = static_cast<double>(std::sqrt(std::max(1e-30L, 1.0L - nearest / (r * r))));
-    // Long double, too, loses digits to a long way.
+    // Long double also loses digits over long distances.
     const auto noise = static_cast<double>(scale * (1e-15L + 1e-18L * scale / r)) / sine;
     EXPECT_LE(late, noise) << n;
     EXPECT_LE(-late, tolerance + 20.0 * noise) << n;
@@ -101,7 +101,7 @@ TEST(ShapeCast, of_balls_meets_the_closed_form_at_any_speed_and_size) {
   }
 }
 
-TEST(ShapeCast, a_bullet_never_tunnels_a_triangle_without_thickness) {
+TEST(ShapeCast, bullet_never_tunnels_through_triangle) {
   Random random(2);
   for (std::size_t n = scaled(20000); n-- != 0;) {
     ShapePool pool;
@@ -113,7 +113,7 @@ TEST(ShapeCast, a_bullet_never_tunnels_a_triangle_without_thickness) {
       for (double& x : corner) x = random.uniform(-1, 1);
     }
     ASSERT_EQ(pool.add(triangle, pair.standing), Status::ok);
-    // Aimed at a point inside of it.
+    // Aimed at a point inside the triangle.
     double weight[3] = {random.unit() + 0.01, random.unit() + 0.01, random.unit() + 0.01};
     const double sum = weight[0] + weight[1] + weight[2];
     const double offset = random.chance(0.5) ? 0.0 : random.log_uniform(1.0, 1e8);
@@ -124,7 +124,7 @@ TEST(ShapeCast, a_bullet_never_tunnels_a_triangle_without_thickness) {
     const double way = random.log_uniform(0.3, 1e5);
     back_off(pair, unit(random), way, random.log_uniform(1e-6, 1e12));
     pair.max_t = random.chance(0.5) ? kInfinity : 1e13 * way;
-    // The same by a ray against the triangle with the bullet's radius.
+    // Reference: a ray against the triangle with the bullet's radius as rounding.
     triangle.rounding = radius;
     ShapeId grown;
     ASSERT_EQ(pool.add(triangle, grown), Status::ok);
@@ -150,7 +150,7 @@ TEST(ShapeCast, a_bullet_never_tunnels_a_triangle_without_thickness) {
   }
 }
 
-TEST(ShapeCast, of_every_kind_is_apart_before_and_touches_after_its_answer) {
+TEST(ShapeCast, shapes_are_apart_before_and_touching_after_impact) {
   Random random(3);
   for (const PairStyle style : {PairStyle::ordinary, PairStyle::unequal, PairStyle::nearly_parallel,
                                 PairStyle::extreme_sizes}) {
@@ -173,7 +173,8 @@ TEST(ShapeCast, of_every_kind_is_apart_before_and_touches_after_its_answer) {
           CastTouch touch;
           const bool hit = cast_shape(scene.pool.tables(), pair, tolerance, touch);
           EXPECT_LT(touch.steps, 120U);
-          // It aims at where it had come from: they pass no farther from each other than there.
+          // The cast passes through the original pose, so that a miss implies that the shapes are
+          // apart there.
           for (int k = 0; !hit && k <= 40; ++k) {
             ASSERT_GT(distance_at(scene.pool, pair, way * k / 20.0), -noise);
           }
@@ -199,7 +200,7 @@ TEST(ShapeCast, of_every_kind_is_apart_before_and_touches_after_its_answer) {
   }
 }
 
-TEST(ShapeCast, that_leaves_slides_or_starts_in_touch_ends_at_once) {
+TEST(ShapeCast, separating_sliding_or_touching_cast_ends_early) {
   ShapePool pool;
   ShapeId ball;
   ShapeId floor;

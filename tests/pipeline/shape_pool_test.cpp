@@ -1,3 +1,6 @@
+// ShapePool: construction of convex hulls, refused shapes, memory, bounds, and the presence of
+// narrow-phase kernels.
+
 #include <gtest/gtest.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -63,7 +66,8 @@ class Hulls : public testing::Test {
     return pool_.tables().hulls[id.index()];
   }
 
-  // Every vertex is under every face, loops and edges agree, neighbours are what edges say.
+  // Checks that every vertex is below every face, that loops and edges agree, and that vertices
+  // have as many neighbours as edges.
   static void expect_consistent(const HullShape& hull) {
     for (std::uint32_t f = 0; f < hull.face_count; ++f) {
       const HullFace& face = hull.faces[f];
@@ -88,7 +92,7 @@ class Hulls : public testing::Test {
   ShapePool pool_;
 };
 
-TEST_F(Hulls, of_points_in_general_position_have_triangles_for_faces) {
+TEST_F(Hulls, points_in_general_position_give_triangle_faces) {
   for (const int count : {4, 5, 16, 64, 1000}) {
     const HullShape& hull = hull_of(on_a_ball(count, 1));
     const auto n = static_cast<std::uint32_t>(count);
@@ -98,7 +102,7 @@ TEST_F(Hulls, of_points_in_general_position_have_triangles_for_faces) {
   }
 }
 
-TEST_F(Hulls, of_a_cube_with_points_on_its_faces_are_a_cube_at_any_size) {
+TEST_F(Hulls, points_on_cube_give_cube_at_any_size) {
   for (const double scale : {1.0, 1e-20, 1e-300, 1e100}) {
     const HullShape& hull = hull_of(on_a_cube(100, scale));
     EXPECT_COUNTS(hull, 8U, 6U, 12U);
@@ -108,7 +112,7 @@ TEST_F(Hulls, of_a_cube_with_points_on_its_faces_are_a_cube_at_any_size) {
   }
 }
 
-TEST_F(Hulls, of_a_turned_lattice_are_a_cube) {
+TEST_F(Hulls, turned_lattice_gives_cube) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond(0.3, 0.4, -0.2, 0.8).normalized();
   Points points;
   for (int i = 0; i < 1000; ++i)
@@ -118,7 +122,7 @@ TEST_F(Hulls, of_a_turned_lattice_are_a_cube) {
   expect_consistent(hull);
 }
 
-TEST_F(Hulls, of_flat_sets_are_polygons_segments_and_points) {
+TEST_F(Hulls, flat_sets_give_polygons_segments_and_points) {
   Points grid;
   for (int i = 0; i < 100; ++i) grid.emplace_back(i % 10, i / 10, 0.5 * (i % 10) + 0.25 * (i / 10));
   const HullShape& polygon = hull_of(grid);
@@ -139,8 +143,8 @@ TEST_F(Hulls, of_flat_sets_are_polygons_segments_and_points) {
   EXPECT_EQ(point.vertex[2][15], 3.0);
 }
 
-// Sets that are hard to tell from flatter ones: numbers of all sizes, plates and needles down to
-// what double holds, noise on lattices, moment curves.
+// Point sets that are almost degenerate: numbers of all magnitudes, plates and needles down to
+// double precision, noisy lattices, moment curves.
 Points hostile_points(int kind, Random& random) {
   using Vec = Eigen::Vector3d;
   const auto centred = [&] { return random.uniform(-0.5, 0.5); };
@@ -193,7 +197,7 @@ Points hostile_points(int kind, Random& random) {
 }
 constexpr int kHostileKinds = 10;
 
-TEST_F(Hulls, of_hostile_sets_lose_none_of_their_points) {
+TEST_F(Hulls, hostile_sets_lose_no_points) {
   Random random(41);
   for (std::size_t i = 0; i < scaled(4000) + kHostileKinds; ++i) {
     const Points points = hostile_points(static_cast<int>(i % kHostileKinds), random);
@@ -232,7 +236,7 @@ TEST_F(Hulls, of_hostile_sets_lose_none_of_their_points) {
   }
 }
 
-TEST_F(Hulls, keep_a_thickness_of_a_millionth) {
+TEST_F(Hulls, thickness_of_a_millionth_is_kept) {
   Points plate;
   for (int i = 0; i < 8; ++i) plate.emplace_back(i & 1, i >> 1 & 1, 1e-6 * (i >> 2));
   const HullShape& hull = hull_of(plate);
@@ -253,14 +257,14 @@ class Cube : public testing::Test {
   Status add() { return pool_.add_hull(corners_, HullFaces{triangles_, threes_}, 0.0, id_); }
 };
 
-TEST_F(Cube, of_twelve_triangles_has_six_faces) {
+TEST_F(Cube, twelve_triangles_merge_into_six_faces) {
   ASSERT_EQ(add(), Status::ok);
   const HullShape& hull = pool_.tables().hulls[id_.index()];
   EXPECT_COUNTS(hull, 8U, 6U, 12U);
   for (std::uint32_t f = 0; f < 6; ++f) EXPECT_EQ(hull.faces[f].offset, 1.0);
 }
 
-TEST_F(Cube, that_is_open_or_inside_out_or_badly_indexed_is_refused) {
+TEST_F(Cube, open_inverted_or_badly_indexed_cube_is_refused) {
   std::swap(triangles_[0], triangles_[1]);
   EXPECT_EQ(add(), Status::invalid_shape);
   std::swap(triangles_[0], triangles_[1]);
@@ -274,14 +278,14 @@ TEST_F(Cube, that_is_open_or_inside_out_or_badly_indexed_is_refused) {
   EXPECT_EQ(pool_.size(ShapeKind::hull), 0U);
 }
 
-TEST_F(Cube, with_a_dent_is_refused) {
+TEST_F(Cube, dented_cube_is_refused) {
   Points dented = corners_;
   dented[6] = {0.1, 0.1, 0.1};
   EXPECT_EQ(pool_.add_hull(dented, HullFaces{triangles_, threes_}, 0.0, id_),
             Status::invalid_shape);
 }
 
-TEST(ShapePools, refuse_bad_shapes_and_stay_as_they_are) {
+TEST(ShapePools, bad_shapes_are_refused_and_change_nothing) {
   ShapePool pool;
   ShapeId id;
   for (const double bad : {-1.0, kNan, kInf}) {
@@ -303,7 +307,7 @@ TEST(ShapePools, refuse_bad_shapes_and_stay_as_they_are) {
   EXPECT_EQ(pool.footprint().total().reserved, 0U);
 }
 
-TEST(ShapePools, give_a_removed_place_to_the_next_shape) {
+TEST(ShapePools, removed_slot_is_reused_by_next_shape) {
   ShapePool pool;
   ShapeId first;
   ShapeId second;
@@ -318,7 +322,7 @@ TEST(ShapePools, give_a_removed_place_to_the_next_shape) {
   EXPECT_EQ(pool.tables().hulls[second.index()].rounding, 0.5);
 }
 
-TEST(ShapePools, account_for_every_byte_and_survive_a_refusal) {
+TEST(ShapePools, footprint_is_exact_and_refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   {
@@ -337,7 +341,7 @@ TEST(ShapePools, account_for_every_byte_and_survive_a_refusal) {
   EXPECT_EQ(memory.outstanding(), 0U);
 }
 
-// Ways to a hull: each takes scratch of its own.
+// Ways to add a hull. Each of them allocates different scratch memory.
 using AddHull = Status (*)(ShapePool& pool, ShapeId& id);
 
 Status add_ball(ShapePool& pool, ShapeId& id) {
@@ -356,14 +360,15 @@ Status add_tetrahedron(ShapePool& pool, ShapeId& id) {
   return pool.add_hull(corners, HullFaces{indices, sizes}, 0.0, id);
 }
 
-TEST(ShapePools, that_are_refused_any_request_of_a_hull_are_unchanged) {
+TEST(ShapePools, refused_memory_of_hull_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   for (const AddHull add : {add_ball, add_polygon, add_segment, add_tetrahedron}) {
     CountingMemory memory;
     ShapePool pool(&memory);
     ShapeId first;
     ASSERT_EQ(pool.add_hull(Points{{1, 2, 3}}, 0.0, first), Status::ok);
-    ASSERT_EQ(pool.remove(first), Status::ok);  // the table has room: all requests are the hull's
+    ASSERT_EQ(pool.remove(first),
+              Status::ok);  // the table has a free slot: all requests belong to the hull
     const std::size_t before = memory.outstanding();
     std::size_t granted = 0;
     ShapeId id;
@@ -385,20 +390,20 @@ TEST(ShapePools, that_are_refused_any_request_of_a_hull_are_unchanged) {
   }
 }
 
-TEST(ShapePools, take_nothing_from_the_global_heap) {
+TEST(ShapePools, global_heap_is_not_used) {
   alignas(64) static std::byte room[1U << 20U];
   std::pmr::monotonic_buffer_resource memory(room, sizeof(room), std::pmr::null_memory_resource());
   ShapePool pool(&memory);
   ShapeId id;
   const Points ball = on_a_ball(64, 2);
-  ASSERT_EQ(add_tetrahedron(pool, id), Status::ok);  // its corners are made once
+  ASSERT_EQ(add_tetrahedron(pool, id), Status::ok);  // creates its static corners
   const std::size_t before = heap_requests();
   EXPECT_EQ(pool.add_hull(ball, 0.0, id), Status::ok);
   EXPECT_EQ(add_tetrahedron(pool, id), Status::ok);
   EXPECT_EQ(heap_requests(), before);
 }
 
-TEST(ShapeBounds, contain_the_shape_and_are_tight) {
+TEST(ShapeBounds, bounds_contain_shape_and_are_tight) {
   ShapePool pool;
   ShapeId box;
   ASSERT_EQ(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.5}, box), Status::ok);
@@ -411,8 +416,8 @@ TEST(ShapeBounds, contain_the_shape_and_are_tight) {
   EXPECT_GE(static_cast<double>(bounds.max.z()), 1e9 + 3.5);
 }
 
-// Kernels come with what makes a shape of their kinds.
-TEST(NarrowKernels, are_there_for_every_pair_of_kinds_of_shapes_that_were_made) {
+// Adding a shape of a kind registers the kernels of its pairs.
+TEST(NarrowKernels, added_shape_kinds_register_kernels) {
   ShapePool pool;
   ShapeId id;
   ASSERT_EQ(pool.add(SphereShape{1.0}, id), Status::ok);
@@ -436,7 +441,7 @@ TEST(NarrowKernels, are_there_for_every_pair_of_kinds_of_shapes_that_were_made) 
   }
 }
 
-TEST(ShapeBounds, of_half_spaces_end_only_at_their_plane) {
+TEST(ShapeBounds, half_space_bounds_end_only_at_plane) {
   ShapePool pool;
   ShapeId floor;
   ASSERT_EQ(pool.add(HalfSpaceShape{{0.0, 0.0, 2.0}, 1.0}, floor), Status::ok);

@@ -1,3 +1,6 @@
+// cast_ray on single shapes: exact hits on faces, edges and corners, degenerate shapes, and hits
+// compared with distance functions (ray_probes.h).
+
 #include <gtest/gtest.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
@@ -36,7 +39,8 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
   return pose;
 }
 
-/// Least distance between a ray and a convex shape, and where: the distance is convex along it.
+/// Finds the least distance between a ray and a convex shape, and its parameter. The distance is
+/// convex along the ray.
 [[nodiscard]] double least(const std::function<double(double)>& distance, double low, double high,
                            double& at) {
   for (int i = 0; i < 200; ++i) {
@@ -68,7 +72,7 @@ struct Cast {
   return Vector3d::Map(c.hit.normal);
 }
 
-TEST(ShapeRays, without_max_t_have_no_end) {
+TEST(ShapeRays, ray_without_max_t_is_unbounded) {
   ShapePool pool;
   const ShapeId ball = pool.add(SphereShape{1.0});
   const ShapeRay ray{.origin = {-1e6, 0.0, 0.0}, .direction = {1.0, 0.0, 0.0}};
@@ -77,7 +81,7 @@ TEST(ShapeRays, without_max_t_have_no_end) {
   EXPECT_DOUBLE_EQ(hit.t, 1e6 - 1.0);
 }
 
-TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
+TEST(ShapeRays, ray_in_face_edge_or_corner_hits) {
   ShapePool pool;
   ShapeId box;
   ShapeId rounded;
@@ -89,17 +93,18 @@ TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
   };
   EXPECT_EQ(t(box, {-4.0, 2.0, 0.0}, {1.0, 0.0, 0.0}), 3.0);   // in a face
   EXPECT_EQ(t(box, {-4.0, 2.0, 3.0}, {1.0, 0.0, 0.0}), 3.0);   // along an edge
-  EXPECT_EQ(t(box, {0.0, 3.0, 0.0}, {1.0, -1.0, 0.0}), 1.0);   // across an edge, outside else
+  EXPECT_EQ(t(box, {0.0, 3.0, 0.0}, {1.0, -1.0, 0.0}), 1.0);   // touches the box only at an edge
   EXPECT_EQ(t(box, {-3.0, -4.0, 1.0}, {1.0, 1.0, 1.0}), 2.0);  // through a corner
   EXPECT_EQ(t(box, {-4.0, 2.0 + 1e-12, 0.0}, {1.0, 0.0, 0.0}), -1.0);
   EXPECT_EQ(t(box, {-4.0, std::nextafter(2.0, 3.0), 0.0}, {1.0, 0.0, 0.0}), -1.0);
-  EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 0.0);  // begins on it
+  EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 0.0);  // starts on the surface
   EXPECT_EQ(t(box, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}), 0.0);
-  EXPECT_EQ(t(rounded, {-4.0, 2.5, 0.0}, {1.0, 0.0, 0.0}), 3.0);  // grazes from the flat part on
+  EXPECT_EQ(t(rounded, {-4.0, 2.5, 0.0}, {1.0, 0.0, 0.0}),
+            3.0);  // grazes, starting at the flat part
   EXPECT_EQ(t(rounded, {-4.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), 2.5);
   EXPECT_EQ(t(rounded, {-4.0, 2.0, 3.0}, {1.0, 0.0, 0.0}), 2.5);
   EXPECT_NEAR(t(rounded, {-4.0, 2.3, 0.0}, {1.0, 0.0, 0.0}), 2.6, 1e-15);
-  // The same faces met at any turn: rays aimed at corners and middles of edges are not lost.
+  // With any orientation, rays aimed at corners and at the middle of edges hit.
   Random random(9);
   for (int i = 0; i < 500; ++i) {
     Pose pose = any_pose(random);
@@ -116,7 +121,7 @@ TEST(ShapeRays, in_a_face_along_an_edge_or_through_a_corner_hit) {
   }
 }
 
-TEST(ShapeRays, meet_flat_shapes_from_both_sides_and_in_their_plane) {
+TEST(ShapeRays, flat_shapes_are_hit_from_both_sides) {
   ShapePool pool;
   ShapeId triangle;
   ShapeId segment;
@@ -140,7 +145,7 @@ TEST(ShapeRays, meet_flat_shapes_from_both_sides_and_in_their_plane) {
   EXPECT_FALSE(cast(pool.tables(), point, {1, 1.0 + 1e-12, 3}, {0, 0, -1}).hit.hit);
 }
 
-TEST(ShapeRays, meet_a_sliver_within_its_edges) {
+TEST(ShapeRays, sliver_is_hit_only_within_its_edges) {
   ShapePool pool;
   ShapeId id;
   const double width = 1e-11;
@@ -151,9 +156,9 @@ TEST(ShapeRays, meet_a_sliver_within_its_edges) {
   EXPECT_FALSE(cast(pool.tables(), id, {0, -0.1 * width, 1.3}, {0, 0, -1}).hit.hit);
 }
 
-// Three points of the ray itself, apart from it by their rounding alone: no side ends such a
-// triangle along the ray, and where the ray meets its plane is anywhere.
-TEST(ShapeRays, along_slivers_meet_them_between_their_tips) {
+// The vertices are points of the ray, off only by rounding. No side bounds such a triangle along
+// the ray, and the intersection with its plane is arbitrary.
+TEST(ShapeRays, ray_along_sliver_hits_between_its_tips) {
   Random random(53);
   std::size_t met = 0;
   for (std::size_t i = 0; i < scaled(2000); ++i) {
@@ -179,30 +184,30 @@ TEST(ShapeRays, along_slivers_meet_them_between_their_tips) {
   EXPECT_GT(met, scaled(1000));
 }
 
-TEST(ShapeRays, meet_cones_along_their_lines) {
+TEST(ShapeRays, rays_along_cone_lines_hit_exactly) {
   ShapePool pool;
   ShapeId id;
   ASSERT_EQ(pool.add(ConeShape{1.0, 1.0, 0.0}, id), Status::ok);
-  EXPECT_EQ(cast(pool.tables(), id, {0, 0, 3}, {0, 0, -1}).hit.t, 2.0);  // by the apex
-  EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1}, {1, 0, 0}).hit.t, 1.0);  // grazing the apex
+  EXPECT_EQ(cast(pool.tables(), id, {0, 0, 3}, {0, 0, -1}).hit.t, 2.0);  // through the apex
+  EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1}, {1, 0, 0}).hit.t, 1.0);  // grazes the apex
   EXPECT_EQ(cast(pool.tables(), id, {0.5, 0, 3}, {0, 0, -1}).hit.t, 3.0);
   EXPECT_EQ(cast(pool.tables(), id, {0.5, 0, -3}, {0, 0, 1}).hit.t, 2.0);
   EXPECT_EQ(cast(pool.tables(), id, {-3, 0, 0}, {1, 0, 0}).hit.t, 2.5);
   EXPECT_FALSE(cast(pool.tables(), id, {-3, 0, 1.5}, {1, 0, 0}).hit.hit);  // the other nappe
-  // Down a line of the side: from (-1/2, 0, 2), by the apex.
+  // Along a line of the side, from (-1/2, 0, 2) through the apex.
   EXPECT_EQ(cast(pool.tables(), id, {-0.5, 0, 2}, {0.5, 0, -1}).hit.t, 1.0);
   // Parallel to a line of the side.
   EXPECT_EQ(cast(pool.tables(), id, {-2, 0, 0}, {0.5, 0, -1}).hit.hit, false);
   EXPECT_EQ(cast(pool.tables(), id, {-1, 0, 1.5}, {1, 0, -2}).hit.t, 0.625);
 }
 
-TEST(ShapeRays, meet_needles_and_plates_of_cones_where_they_are) {
+TEST(ShapeRays, needle_and_plate_cones_are_hit_correctly) {
   ShapePool pool;
   ShapeId needle;
   ShapeId plate;
   ASSERT_EQ(pool.add(ConeShape{1e-5, 1e5, 0.0}, needle), Status::ok);
   ASSERT_EQ(pool.add(ConeShape{1e5, 1e-5, 0.0}, plate), Status::ok);
-  // Half-way up the needle is half as thick, half-way out the plate half as high.
+  // Half-way up the needle has half its thickness, half-way out the plate half its height.
   EXPECT_NEAR(cast(pool.tables(), needle, {-1, 0, 0}, {1, 0, 0}).hit.t, 1.0 - 0.5e-5, 1e-9);
   EXPECT_FALSE(cast(pool.tables(), needle, {-1, 1e-3, 0}, {1, 0, 0}).hit.hit);
   EXPECT_FALSE(cast(pool.tables(), needle, {1e-3, 0, 3e5}, {0, 0, -1}).hit.hit);
@@ -246,7 +251,7 @@ TEST(ShapeRays, bad_rays_poses_and_ids_are_refused) {
             Status::invalid_key);
 }
 
-TEST(ShapeRays, meet_rounded_slivers_no_farther_than_they_reach) {
+TEST(ShapeRays, ray_beyond_rounded_sliver_misses) {
   Random random(13);
   for (int i = 0; i < 2000; ++i) {
     const Vector3d from = any_point(random, 1.0);
@@ -259,7 +264,7 @@ TEST(ShapeRays, meet_rounded_slivers_no_farther_than_they_reach) {
     ShapePool pool;
     ShapeId id;
     ASSERT_EQ(pool.add(sliver, id), Status::ok);
-    // Through the line that it lies on, beyond its ends.
+    // Aimed beyond the ends of the segment.
     const double beyond = random.uniform(2.0, 20.0) + 0.2 / along.norm();
     const Vector3d target = from + (random.chance(0.5) ? beyond : 1.0 - beyond) * along;
     const Vector3d direction = any_point(random, 1.0).cross(along);
@@ -268,7 +273,7 @@ TEST(ShapeRays, meet_rounded_slivers_no_farther_than_they_reach) {
   }
 }
 
-TEST(ShapeRays, any_numbers_give_an_answer) {
+TEST(ShapeRays, any_numbers_give_finite_results) {
   const RayProbes shapes;
   Random random(12);
   const double numbers[] = {0.0, 1.0, -1.0, 0.3, 1e-320, -1e-300, 1e308, -1e308, 1e20, -1e-20};
@@ -286,7 +291,7 @@ TEST(ShapeRays, any_numbers_give_an_answer) {
   }
 }
 
-TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
+TEST(ShapeRays, hit_is_first_zero_of_distance) {
   const RayProbes shapes;
   Random random(5);
   for (const RayProbe& probe : shapes.probes()) {
@@ -319,12 +324,12 @@ TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
       ASSERT_NEAR(distance(t), 0.0, 1e-13 * (1.0 + t * direction.norm())) << probe.name << i;
       ASSERT_NEAR(normal_of(c).norm(), 1.0, 1e-14);
       ASSERT_LE(normal_of(c).dot(direction), 1e-12) << probe.name << i;
-      // Nothing of it comes before: just outside of the entry the distance grows with the normal.
+      // The hit is the first contact: just before it the ray is outside the shape.
       if (nearest < -1e-3) {
         ASSERT_GT(distance(t - 1e-6 / direction.norm()), 0.0) << probe.name << i;
         ASSERT_LT(t, at);
       }
-      // Stopped before it, the ray misses; ended right there, it hits.
+      // With max_t just below t the ray misses, with max_t = t it hits.
       ASSERT_TRUE(cast(shapes.tables(), probe.id, origin, direction, t, pose).hit.hit);
       ASSERT_FALSE(
           cast(shapes.tables(), probe.id, origin, direction, std::nextafter(t, 0.0), pose).hit.hit);
@@ -333,7 +338,7 @@ TEST(ShapeRays, enter_every_shape_where_its_distance_first_is_zero) {
   }
 }
 
-TEST(ShapeRays, do_not_change_with_size) {
+TEST(ShapeRays, hits_scale_with_shapes) {
   const RayProbes shapes;
   Random random(6);
   ShapePool pool;
@@ -355,7 +360,7 @@ TEST(ShapeRays, do_not_change_with_size) {
   }
 }
 
-TEST(ShapeRays, from_far_away_hit_where_they_would_from_near) {
+TEST(ShapeRays, far_rays_match_near_rays) {
   ShapePool pool;
   ShapeId sphere;
   ShapeId box;
@@ -366,19 +371,19 @@ TEST(ShapeRays, from_far_away_hit_where_they_would_from_near) {
     ASSERT_TRUE(c.hit.hit);
     EXPECT_EQ(c.hit.t, far - 0.8);
     EXPECT_LT((normal_of(c) - Vector3d(0.8, 0.6, 0.0)).norm(), 1e-15);
-    // Grazing, and just past it.
+    // A grazing ray hits. A ray slightly farther out misses.
     EXPECT_TRUE(cast(pool.tables(), sphere, {far, 1.0, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
     EXPECT_FALSE(cast(pool.tables(), sphere, {far, 1.0 + 1e-14, 0.0}, {-1.0, 0.0, 0.0}).hit.hit);
     EXPECT_TRUE(cast(pool.tables(), box, {far, 1.0, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
     EXPECT_FALSE(cast(pool.tables(), box, {far, 1.0 + 1e-14, 0.5}, {-1.0, 0.0, 0.0}).hit.hit);
-    // Away from it.
+    // A ray that points away.
     EXPECT_FALSE(cast(pool.tables(), sphere, {far, 0.0, 0.0}, {1.0, 0.0, 0.0}).hit.hit);
-    // Everything far from the origin.
+    // Ray and shape far from the origin.
     const Pose pose = Pose::at(far, far, -far);
     c = cast(pool.tables(), sphere, {far + 3.0, far, -far}, {-2.0, 0.0, 0.0}, kInf, pose);
     EXPECT_EQ(c.hit.t, 1.0);
   }
-  // Along a diagonal, not a number of which is round.
+  // Along a diagonal without round numbers.
   const Vector3d direction = Vector3d(0.3, -0.7, 0.1).normalized();
   const Cast c = cast(pool.tables(), sphere, -1e9 * direction, direction);
   ASSERT_TRUE(c.hit.hit);

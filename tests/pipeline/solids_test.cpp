@@ -1,5 +1,5 @@
-// Closed meshes that are solids: what they hold, against winding numbers summed over all triangles,
-// and what questions make of it.
+// Closed meshes as solids (CompositePool::set_solid): inside tests compared with winding numbers,
+// and the effect on queries.
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
@@ -27,7 +27,7 @@ namespace {
 using Vec = Eigen::Vector3d;
 using LongVec = Eigen::Matrix<long double, 3, 1>;
 
-/// How often a mesh runs around a point of its own frame, by the solid angles of its triangles.
+/// Returns the winding number of a mesh around a point of its frame, as the sum of solid angles.
 long double winding(const MeshData& mesh, const Vec& point) {
   long double sum = 0.0L;
   for (std::size_t t = 0; t < mesh.triangles(); ++t) {
@@ -46,7 +46,7 @@ long double winding(const MeshData& mesh, const Vec& point) {
   return sum / (4.0L * std::numbers::pi_v<long double>);
 }
 
-/// True if not all points a little beside one are on the same side of the surface.
+/// Returns true if points next to it have different winding numbers.
 bool is_on_surface(const MeshData& mesh, const Vec& point) {
   long least = 1;
   long greatest = 0;
@@ -60,7 +60,7 @@ bool is_on_surface(const MeshData& mesh, const Vec& point) {
   return least != greatest;
 }
 
-/// A cube of edge 2 about the origin, twelve triangles wound outward.
+/// A cube with edges of length 2 around the origin: twelve triangles wound outward.
 MeshData cube() {
   MeshData mesh{"cube", {}, {}};
   for (int i = 0; i < 8; ++i) {
@@ -71,7 +71,7 @@ MeshData cube() {
   return mesh;
 }
 
-/// The same triangles, each with corners of its own.
+/// Returns the same triangles without shared vertices.
 MeshData split(const MeshData& mesh) {
   MeshData result{mesh.name, {}, {}};
   for (const std::uint32_t corner : mesh.corners) {
@@ -87,7 +87,7 @@ ShapeId add(CompositePool& pool, const MeshData& mesh) {
   return id;
 }
 
-TEST(Solids, are_closed_meshes_that_are_wound_outward) {
+TEST(Solids, only_closed_outward_meshes_can_be_solid) {
   ShapePool shapes;
   CompositePool pool(shapes);
   for (const MeshData& mesh : {cube(), torus(12, 7), gear(9)}) {
@@ -97,13 +97,13 @@ TEST(Solids, are_closed_meshes_that_are_wound_outward) {
     EXPECT_TRUE(pool.is_solid(id));
     ShapeId mirrored;
     ASSERT_EQ(pool.add_scaled(id, {1.0, -2.0, 3.0}, mirrored), Status::ok);
-    EXPECT_FALSE(pool.is_solid(mirrored)) << "told of its own";
+    EXPECT_FALSE(pool.is_solid(mirrored)) << "each id has its own flag";
     EXPECT_EQ(pool.set_solid(mirrored), Status::ok);
     EXPECT_EQ(pool.set_solid(id, false), Status::ok);
     EXPECT_FALSE(pool.is_solid(id));
     EXPECT_TRUE(pool.is_solid(mirrored));
     EXPECT_EQ(pool.set_solid(add(pool, split(mesh))), Status::ok)
-        << "vertices at one place are one";
+        << "coincident vertices count as one";
     MeshData inward = mesh;
     for (std::size_t t = 0; t < inward.triangles(); ++t) {
       std::swap(inward.corners[3 * t], inward.corners[3 * t + 1]);
@@ -117,14 +117,15 @@ TEST(Solids, are_closed_meshes_that_are_wound_outward) {
     EXPECT_EQ(pool.set_solid(add(pool, open)), Status::invalid_shape);
     MeshData with_segment = mesh;
     with_segment.corners.insert(with_segment.corners.end(), {0, 1, 1});
-    EXPECT_EQ(pool.set_solid(add(pool, with_segment)), Status::ok) << "segments do not count";
+    EXPECT_EQ(pool.set_solid(add(pool, with_segment)), Status::ok)
+        << "degenerate triangles are ignored";
   }
   for (const MeshData& mesh : {terrain(4), thin_sheets(3), degenerate_soup(60, 3)}) {
     EXPECT_EQ(pool.set_solid(add(pool, mesh)), Status::invalid_shape) << mesh.name;
   }
 }
 
-TEST(Solids, are_meshes_alone) {
+TEST(Solids, only_meshes_can_be_solid) {
   ShapePool shapes;
   CompositePool pool(shapes);
   ShapeId ball;
@@ -142,10 +143,11 @@ TEST(Solids, are_meshes_alone) {
     EXPECT_EQ(pool.set_solid(id), Status::invalid_key);
     EXPECT_FALSE(pool.is_solid(id));
   }
-  EXPECT_FALSE(pool.is_solid(add(pool, cube()))) << "what was said of the id before is forgotten";
+  EXPECT_FALSE(pool.is_solid(add(pool, cube()))) << "a reused id starts without the flag";
 }
 
-/// Points on a lattice whose planes go through vertices and edges, and anywhere.
+/// Returns random points, points on a lattice whose planes contain vertices and edges, and
+/// midpoints of vertices.
 std::vector<Vec> points_about(const MeshData& mesh, Random& random) {
   std::vector<Vec> points;
   Eigen::AlignedBox3d box;
@@ -169,7 +171,7 @@ std::vector<Vec> points_about(const MeshData& mesh, Random& random) {
   return points;
 }
 
-TEST(Solids, hold_the_points_that_their_surface_runs_around) {
+TEST(Solids, inside_test_matches_winding_number) {
   Random random(1);
   ShapePool shapes;
   CompositePool pool(shapes);
@@ -186,7 +188,7 @@ TEST(Solids, hold_the_points_that_their_surface_runs_around) {
       ShapeId compound;
       ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
       for (const Vec& own : points_about(mesh, random)) {
-        // On the surface, or so near to it that a pose may bring it across.
+        // Skip points so near the surface that the pose may move them across.
         if (is_on_surface(mesh, own)) continue;
         const bool is_inside = std::lround(winding(mesh, own)) != 0;
         const Pose pose = random_pose(random.chance(0.5) ? 10.0 : 1e5, random);
@@ -205,7 +207,7 @@ TEST(Solids, hold_the_points_that_their_surface_runs_around) {
   EXPECT_GT(outside, scaled(300));
 }
 
-/// A body of a mesh, once with an inside and once without.
+/// Two bodies with the same mesh: one is solid, the other one is not.
 struct SolidWorld {
   explicit SolidWorld(const MeshData& mesh) : composites(shapes) {
     const ShapeId surface = add(composites, mesh);
@@ -230,7 +232,7 @@ struct SolidWorld {
   Key solid_key;
 };
 
-TEST(Solids, are_nearer_than_nothing_to_what_they_hold) {
+TEST(Solids, distance_of_inner_points_is_negative) {
   Random random(2);
   const MeshData mesh = torus(16, 9);
   SolidWorld world(mesh);
@@ -254,13 +256,13 @@ TEST(Solids, are_nearer_than_nothing_to_what_they_hold) {
     ++inside;
     ASSERT_EQ(found[0].key, world.solid_key);
     ASSERT_EQ(ask.nearest(point.data(), 2, 0.5 * plain.distance, found), Status::ok);
-    ASSERT_EQ(found.size(), 1U) << "deeper than the radius, and still within";
+    ASSERT_EQ(found.size(), 1U) << "a point inside is within any radius";
     ASSERT_EQ(found[0].distance, solid.distance);
   }
   EXPECT_GT(inside, scaled(50));
 }
 
-TEST(Solids, of_cubes_are_as_deep_as_boxes) {
+TEST(Solids, solid_cube_matches_box) {
   Random random(3);
   SolidWorld world(cube());
   ShapeId box;
@@ -281,7 +283,7 @@ TEST(Solids, of_cubes_are_as_deep_as_boxes) {
   }
 }
 
-TEST(Solids, overlap_what_they_hold) {
+TEST(Solids, contained_shapes_overlap_solid) {
   SolidWorld world(cube());
   ShapeId shapes[3];
   ASSERT_EQ(world.shapes.add(SphereShape{0.25}, shapes[0]), Status::ok);
@@ -319,7 +321,7 @@ TEST(Solids, overlap_what_they_hold) {
     EXPECT_EQ(solid.distance, -plain.distance) << i;
     EXPECT_NEAR(back.distance, -plain.distance, 1e-12) << i;
     ASSERT_EQ(ask.distance(key, world.solid_key, solid, -10.0), Status::ok);
-    EXPECT_FALSE(solid) << "not as deep as that";
+    EXPECT_FALSE(solid) << "the limit is below the distance";
     const Key one[] = {key};
     const Key both[] = {world.plain_key, world.solid_key};
     std::span<const KeyPair> pairs;
@@ -332,7 +334,7 @@ TEST(Solids, overlap_what_they_hold) {
   }
 }
 
-TEST(Solids, do_not_overlap_what_passes_them_by) {
+TEST(Solids, shapes_outside_do_not_overlap_solid) {
   const MeshData mesh = torus(16, 9);
   SolidWorld world(mesh);
   ShapeId ball;
@@ -348,7 +350,7 @@ TEST(Solids, do_not_overlap_what_passes_them_by) {
   EXPECT_TRUE(met.empty()) << "above";
 }
 
-TEST(Solids, are_saved_and_loaded) {
+TEST(Solids, snapshot_keeps_solid_flag) {
   ShapePool shapes;
   CompositePool pool(shapes);
   const ShapeId mesh = add(pool, cube());
@@ -364,7 +366,7 @@ TEST(Solids, are_saved_and_loaded) {
   EXPECT_FALSE(other.is_solid(mesh));
 }
 
-TEST(Solids, that_are_told_so_are_a_change_that_scenes_see) {
+TEST(Solids, changed_solid_flag_requires_refresh) {
   SolidWorld world(cube());
   ASSERT_EQ(world.scene.refresh(), Status::ok);
   SceneQueries ask(world.scene);

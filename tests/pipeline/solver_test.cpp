@@ -1,4 +1,4 @@
-// What must hold for any pair, whatever its kinds. Values are checked against the oracle elsewhere.
+// Properties of the solver for pairs of all kinds. oracle_test.cpp checks the values.
 
 #include "pipeline/solver/solver.h"
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ namespace {
 
 using Vec = Eigen::Vector3d;
 
-/// A pair and how to ask about it.
-struct Asked {
+/// A pair, with calls of the solver.
+struct SolverPair {
   const PairScene& scene;
   BodyPair pair;
 
@@ -39,12 +39,12 @@ struct Asked {
   [[nodiscard]] bool has(ShapeKind kind) const {
     return scene.shapes[pair.a].kind() == kind || scene.shapes[pair.b].kind() == kind;
   }
-  /// What points and normals may be off by, relative to the size: those of curved surfaces are
-  /// where distances hardly change.
-  [[nodiscard]] double looseness() const {
+  /// Tolerance of points and normals relative to the size. On curved surfaces they are less
+  /// accurate, since the distance hardly changes along the surface.
+  [[nodiscard]] double relative_error() const {
     return has(ShapeKind::cylinder) || has(ShapeKind::cone) ? 1e-8 : 1e-13;
   }
-  /// Lengths of the pair, |c| included.
+  /// Returns the sum of the pair's lengths, including |c|.
   [[nodiscard]] double size() const {
     solver::Problem problem;
     solver::prepare(scene.pool.tables(), scene.shapes[pair.a], pose_a(), scene.shapes[pair.b],
@@ -53,7 +53,7 @@ struct Asked {
   }
 };
 
-/// Calls body(asked) for pairs of all kinds but half-spaces with each other.
+/// Calls body(solver_pair) for pairs of all kinds except two half-spaces.
 template <typename Body>
 void for_pairs(PairStyle style, Body&& body) {
   for (const ShapeKind a : all_kinds()) {
@@ -64,14 +64,14 @@ void for_pairs(PairStyle style, Body&& body) {
       add_pairs(scene, a, b, style, scaled(30), random);
       for (const BodyPair pair : scene.pairs) {
         SCOPED_TRACE(reproduction(scene, pair));
-        body(Asked{scene, pair});
+        body(SolverPair{scene, pair});
         if (testing::Test::HasFailure()) return;
       }
     }
   }
 }
 
-/// How far x is outside of the core's shape along its worst of some directions.
+/// Returns how far x is outside the core's shape along the worst of some directions.
 double outside(const solver::Core& core, const Vec& x, const Vec& along, Random& random) {
   if (core.kind == solver::CoreKind::half_space) {
     return core.normal.dot(x - core.center) - core.offset;
@@ -104,12 +104,12 @@ class SolverCases : public testing::Test {
   SolverCounts counts_;
 };
 
-TEST_F(SolverCases, coincident_centres_take_the_first_axis_of_a) {
+TEST_F(SolverCases, coincident_centres_use_first_axis_of_a) {
   const ShapeId sphere = add(SphereShape{1.0});
   const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
   const ShapeId rod = add(CapsuleShape{0.5, 2.0});
   const ShapeId drum = add(CylinderShape{1.0, 3.0, 0.0});
-  // Turned by 90 degrees about z: x of a is y of the world.
+  // Turned by 90 degrees about z: the x axis of a is the y axis of the world.
   const Pose turned{{0, 0, 0}, {1, 0, 0, 1}};
   for (const auto& [shape, depth] :
        {std::pair{sphere, 2.0}, {cube, 2.0}, {rod, 1.0}, {drum, 2.0}}) {
@@ -124,7 +124,7 @@ TEST_F(SolverCases, coincident_centres_take_the_first_axis_of_a) {
   EXPECT_EQ(other.normal[0], 1.0);
 }
 
-TEST_F(SolverCases, two_points_in_one_place_have_a_contact) {
+TEST_F(SolverCases, coincident_points_have_one_contact) {
   const ShapeId point = add(SphereShape{0.0});
   const PairAnswer answer = solve(point, Pose{}, point, Pose{});
   EXPECT_TRUE(answer.overlap);
@@ -132,7 +132,7 @@ TEST_F(SolverCases, two_points_in_one_place_have_a_contact) {
   EXPECT_EQ(answer.contact_count, 1U);
 }
 
-TEST_F(SolverCases, touching_is_overlap_with_distance_zero) {
+TEST_F(SolverCases, touching_shapes_overlap_at_distance_zero) {
   const ShapeId sphere = add(SphereShape{1.0});
   const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
   const ShapeId drum = add(CylinderShape{0.5, 0.25, 0.0});
@@ -147,7 +147,7 @@ TEST_F(SolverCases, touching_is_overlap_with_distance_zero) {
   EXPECT_EQ(solve(cube, Pose{}, cone, on_tip).distance, 0.0);
 }
 
-TEST_F(SolverCases, what_touches_along_a_normal_is_known_to_rounding) {
+TEST_F(SolverCases, touching_faces_have_tight_error_bounds) {
   const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
   const ShapeId drum = add(CylinderShape{0.5, 0.25, 0.0});
   const ShapeId cone = add(ConeShape{0.5, 0.25, 0.0});
@@ -162,14 +162,14 @@ TEST_F(SolverCases, what_touches_along_a_normal_is_known_to_rounding) {
   }
 }
 
-/// The core of a shape, placed and scaled.
+/// Returns the core of a shape, placed and scaled.
 solver::Core core_of(const ShapePool& pool, ShapeId id, const Pose& pose) {
   solver::Problem problem;
   solver::prepare(pool.tables(), id, pose, id, Pose{}, false, problem);
   return problem.a;
 }
 
-/// What a core says of its corners, edges and faces, each by the others.
+/// Checks the corners, edges and faces of a core against each other.
 void expect_features_agree(const solver::Core& core) {
   const std::uint32_t corners = vertex_count(core);
   for (std::uint32_t i = 0; i < edge_count(core); ++i) {
@@ -198,7 +198,7 @@ void expect_features_agree(const solver::Core& core) {
   }
 }
 
-/// That supports, ranges and heights are those of the corners.
+/// Checks that supports, projections and heights agree with the corners.
 void expect_corners_are_farthest(const solver::Core& core) {
   Random random(4);
   for (int i = 0; i < 100; ++i) {
@@ -216,7 +216,7 @@ void expect_corners_are_farthest(const solver::Core& core) {
   }
 }
 
-TEST_F(SolverCases, cores_say_the_same_of_corners_edges_and_faces) {
+TEST_F(SolverCases, core_features_are_consistent) {
   const Pose turned{{1, 2, 3}, {2, -1, 0.5, 1}};
   ShapeId hull;
   const std::vector<Vec3d> corners{{1, 0, 0},  {-1, 0, 0}, {0, 0.75, 0},
@@ -235,20 +235,20 @@ TEST_F(SolverCases, cores_say_the_same_of_corners_edges_and_faces) {
   expect_corners_are_farthest(core_of(pool_, add(CapsuleShape{0.5, 2.0}), turned));
 }
 
-TEST_F(SolverCases, round_shapes_on_one_axis_have_exact_depths) {
+TEST_F(SolverCases, coaxial_round_shapes_have_exact_depths) {
   const ShapeId drum = add(CylinderShape{2.0, 1.0, 0.0});
   const ShapeId cone = add(ConeShape{1.0, 1.0, 0.25});
   const ShapeId sphere = add(SphereShape{0.5});
   const PairAnswer drums = solve(drum, Pose{}, drum, Pose::at(0, 0, 0.5));
   EXPECT_EQ(drums.distance, -1.5);
   EXPECT_LE(drums.error_bound, 1e-13);
-  // In the cone's base: 0.75 from it, 1.25 / sqrt(5) from its side.
+  // Depth 0.75 below the cone's base plane, 1.25 / sqrt(5) from its side.
   const PairAnswer in_cone = solve(cone, Pose{}, sphere, Pose::at(0, 0, -0.25));
   EXPECT_NEAR(in_cone.distance, -1.25 / std::sqrt(5.0) - 0.75, 1e-14);
   EXPECT_LE(in_cone.error_bound, 1e-13);
 }
 
-TEST_F(SolverCases, a_box_on_the_ground_has_four_points_that_keep_their_features) {
+TEST_F(SolverCases, box_on_ground_keeps_four_features) {
   const ShapeId box = add(BoxShape{{1, 2, 0.5}, 0.0});
   const ShapeId drum = add(CylinderShape{1.0, 0.5, 0.0});
   const ShapeId ground = add(HalfSpaceShape{{0, 0, 1}, 0.0});
@@ -274,7 +274,7 @@ TEST_F(SolverCases, a_box_on_the_ground_has_four_points_that_keep_their_features
   }
 }
 
-TEST_F(SolverCases, half_spaces_are_apart_only_back_to_back) {
+TEST_F(SolverCases, half_spaces_are_apart_only_if_opposite) {
   const ShapeId up = add(HalfSpaceShape{{0, 0, 1}, 0.0});
   const ShapeId down = add(HalfSpaceShape{{0, 0, -1}, 0.0});
   EXPECT_EQ(solve(up, Pose{}, down, Pose::at(5, 0, 2)).distance, 2.0);
@@ -285,9 +285,9 @@ TEST_F(SolverCases, half_spaces_are_apart_only_back_to_back) {
   EXPECT_TRUE(std::isfinite(endless.distance));
 }
 
-// What double knows of the large hull is coarse beside the rod: a polytope between their points may
-// have the origin on its wrong side by more than rounding.
-TEST_F(SolverCases, a_rod_beside_a_hull_as_large_as_a_world_is_apart) {
+// Coordinates of the large hull are coarse relative to the rod. A polytope of their differences may
+// have the origin on the wrong side by more than rounding.
+TEST_F(SolverCases, rod_beside_huge_hull_is_apart) {
   const std::vector<Vec> rod_ends{{0.7578125, -0.25, -0.03125},
                                   {0.863372802734375, -0.125, 0.1630859375}};
   constexpr double kUnit = 0x1p33;
@@ -314,7 +314,7 @@ TEST_F(SolverCases, a_rod_beside_a_hull_as_large_as_a_world_is_apart) {
   EXPECT_FALSE(answer.overlap) << answer.distance << " +- " << answer.error_bound;
 }
 
-/// Any orientation.
+/// Returns a random orientation.
 Eigen::Quaterniond any_turn(Random& random) {
   return Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
                             random.uniform(-1, 1))
@@ -324,7 +324,7 @@ Pose pose_of(const Eigen::Quaterniond& turn, const Vec& at) {
   return {{at.x(), at.y(), at.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
 }
 
-TEST_F(SolverCases, rods_that_cross_nearly_in_line_touch) {
+TEST_F(SolverCases, nearly_parallel_crossing_rods_touch) {
   const std::vector<Vec> ends{{-1, 0, 0}, {1, 0, 0}};
   ShapeId hull;
   ASSERT_EQ(pool_.add_hull(ends, 0.0, hull), Status::ok);
@@ -337,7 +337,7 @@ TEST_F(SolverCases, rods_that_cross_nearly_in_line_touch) {
     const Eigen::Quaterniond off =
         random.chance(0.5) ? Eigen::Quaterniond(1, 0, tilt, 0) : Eigen::Quaterniond(tilt, 0, 0, 1);
     const Eigen::Quaterniond tilted = turn * off.normalized();
-    // A point of the second that is on the first, too.
+    // A point of the second rod that is on the first one, too.
     const double at = random.uniform(-0.9, 0.9);
     const double from = random.uniform(-0.9, 0.9);
     const Vec middle = turn * Vec(at, 0, 0) - tilted * Vec(from, 0, 0);
@@ -348,7 +348,7 @@ TEST_F(SolverCases, rods_that_cross_nearly_in_line_touch) {
   }
 }
 
-TEST_F(SolverCases, small_balls_around_rods_overlap_them) {
+TEST_F(SolverCases, small_balls_on_rods_overlap) {
   Random random(6);
   for (std::size_t i = 0; i < scaled(200); ++i) {
     const double radius = random.log_uniform(1e-7, 1e-2);
@@ -368,7 +368,7 @@ TEST_F(SolverCases, small_balls_around_rods_overlap_them) {
   }
 }
 
-TEST_F(SolverCases, curved_shapes_of_extreme_lengths_have_finite_answers) {
+TEST_F(SolverCases, extreme_curved_shapes_give_finite_results) {
   const ShapeId plate = add(CylinderShape{2.3e12, 3e-265, 0.0});
   const ShapeId dust = add(SphereShape{5.6e-305});
   const ShapeId disc = add(ConeShape{std::numeric_limits<double>::max(), 5e-324, 0.0});
@@ -382,7 +382,7 @@ TEST_F(SolverCases, curved_shapes_of_extreme_lengths_have_finite_answers) {
   }
 }
 
-TEST_F(SolverCases, positions_at_the_ends_of_doubles_are_answered) {
+TEST_F(SolverCases, extreme_positions_give_finite_results) {
   const ShapeId sphere = add(SphereShape{1.0});
   const ShapeId dust = add(SphereShape{5e-324});
   const double most = std::numeric_limits<double>::max();
@@ -399,35 +399,36 @@ INSTANTIATE_TEST_SUITE_P(Styles, Solver, testing::ValuesIn(kPairStyles),
                          [](const auto& style) { return to_string(style.param); });
 
 TEST_P(Solver, answers_are_finite_and_levels_agree) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
+  for_pairs(GetParam(), [](const SolverPair& solver_pair) {
+    const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     EXPECT_TRUE(std::isfinite(answer.distance));
     EXPECT_TRUE(std::isfinite(answer.error_bound));
     EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
     EXPECT_TRUE(Vec::Map(answer.point).allFinite());
     EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
-    EXPECT_EQ(asked.solve(ContactLevel::boolean).overlap, answer.overlap);
-    const PairAnswer manifold = asked.solve(ContactLevel::manifold);
+    EXPECT_EQ(solver_pair.solve(ContactLevel::boolean).overlap, answer.overlap);
+    const PairAnswer manifold = solver_pair.solve(ContactLevel::manifold);
     EXPECT_EQ(manifold.overlap, answer.overlap);
     EXPECT_EQ(manifold.contact_count > 0, answer.overlap);
   });
 }
 
-TEST_P(Solver, swapped_pairs_have_mirrored_answers) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
+TEST_P(Solver, swapped_pairs_give_mirrored_answers) {
+  for_pairs(GetParam(), [](const SolverPair& solver_pair) {
+    const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     const PairAnswer mirrored =
-        Asked{asked.scene, {asked.pair.b, asked.pair.a}}.solve(ContactLevel::distance);
+        SolverPair{solver_pair.scene, {solver_pair.pair.b, solver_pair.pair.a}}.solve(
+            ContactLevel::distance);
     EXPECT_EQ(answer.overlap, mirrored.overlap);
     EXPECT_NEAR(answer.distance, mirrored.distance,
                 std::max(answer.error_bound, mirrored.error_bound));
   });
 }
 
-TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    // A turn by a rational rotation, so that only rounding differs.
-    Pose moved[2] = {asked.pose_a(), asked.pose_b()};
+TEST_P(Solver, common_motion_keeps_distance_within_error_bounds) {
+  for_pairs(GetParam(), [](const SolverPair& solver_pair) {
+    // A rational rotation, so that results differ only by rounding.
+    Pose moved[2] = {solver_pair.pose_a(), solver_pair.pose_b()};
     const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
     for (Pose& pose : moved) {
       Vec::Map(pose.position) = turn * Vec::Map(pose.position);
@@ -436,53 +437,54 @@ TEST_P(Solver, a_common_motion_changes_answers_within_their_bounds) {
       pose.orientation[0] = turned.w();
       Vec::Map(pose.orientation + 1) = turned.vec();
     }
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
-    const PairAnswer other = asked.solve_at(moved[0], moved[1]);
-    // Positions are rounded where they stand, orientations too.
-    const double rounding = 1e-15 * (asked.size() + Vec::Map(moved[0].position).norm() +
+    const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
+    const PairAnswer other = solver_pair.solve_at(moved[0], moved[1]);
+    // Moving rounds positions and orientations.
+    const double rounding = 1e-15 * (solver_pair.size() + Vec::Map(moved[0].position).norm() +
                                      Vec::Map(moved[1].position).norm());
     EXPECT_NEAR(answer.distance, other.distance, answer.error_bound + other.error_bound + rounding);
   });
 }
 
-TEST_P(Solver, points_lie_on_both_shapes_and_differ_by_the_distance) {
+TEST_P(Solver, witness_points_lie_on_both_shapes) {
   Random random(7);
-  for_pairs(GetParam(), [&](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
+  for_pairs(GetParam(), [&](const SolverPair& solver_pair) {
+    const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     solver::Problem problem;
-    solver::prepare(asked.scene.pool.tables(), asked.scene.shapes[asked.pair.a], asked.pose_a(),
-                    asked.scene.shapes[asked.pair.b], asked.pose_b(), false, problem);
+    solver::prepare(solver_pair.scene.pool.tables(), solver_pair.scene.shapes[solver_pair.pair.a],
+                    solver_pair.pose_a(), solver_pair.scene.shapes[solver_pair.pair.b],
+                    solver_pair.pose_b(), false, problem);
     const double scale = std::ldexp(1.0, -problem.exponent);
     const Vec n = Vec::Map(answer.normal);
     const Vec on_a = Vec::Map(answer.point) * scale;
     const Vec on_b = on_a + n * (answer.distance * scale);
-    // What is not proved of a distance moves its points by more.
+    // An unproved part of the distance may move its points by its square root.
     const double gap = answer.error_bound * scale / problem.size;
     const double unproved = gap > 1e-13 ? 4.0 * std::sqrt(gap) : 0.0;
-    const double tolerance = problem.size * (asked.looseness() + unproved);
+    const double tolerance = problem.size * (solver_pair.relative_error() + unproved);
     EXPECT_LE(outside(problem.a, on_a, n, random), tolerance);
     EXPECT_LE(outside(problem.b, on_b, n, random), tolerance);
   });
 }
 
-TEST_P(Solver, moving_b_by_the_depth_separates) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const PairAnswer answer = asked.solve(ContactLevel::distance);
+TEST_P(Solver, moving_b_by_depth_separates) {
+  for_pairs(GetParam(), [](const SolverPair& solver_pair) {
+    const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     if (answer.distance > 0.0) return;
-    Pose moved = asked.pose_b();
+    Pose moved = solver_pair.pose_b();
     Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
-    const PairAnswer after = asked.solve_at(asked.pose_a(), moved);
-    const double rounding = asked.looseness() * asked.size() +
-                            1e-15 * Vec::Map(asked.pose_b().position).cwiseAbs().maxCoeff();
+    const PairAnswer after = solver_pair.solve_at(solver_pair.pose_a(), moved);
+    const double rounding = solver_pair.relative_error() * solver_pair.size() +
+                            1e-15 * Vec::Map(solver_pair.pose_b().position).cwiseAbs().maxCoeff();
     EXPECT_NEAR(after.distance, 0.0, answer.error_bound + after.error_bound + rounding);
   });
 }
 
-TEST_P(Solver, manifolds_begin_with_the_depth_and_stay_within_the_margin) {
-  for_pairs(GetParam(), [](const Asked& asked) {
-    const double size = asked.size();
+TEST_P(Solver, manifold_starts_deepest_and_respects_margin) {
+  for_pairs(GetParam(), [](const SolverPair& solver_pair) {
+    const double size = solver_pair.size();
     const double margin = 0.1 * size;
-    const PairAnswer answer = asked.solve(ContactLevel::manifold, margin);
+    const PairAnswer answer = solver_pair.solve(ContactLevel::manifold, margin);
     if (answer.distance > margin) return;
     ASSERT_GE(answer.contact_count, 1U);
     ASSERT_LE(answer.contact_count, kManifoldPoints);

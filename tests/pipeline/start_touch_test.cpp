@@ -1,4 +1,5 @@
-// What moves from a touch: over floors of many parts, from which walls of the same body rise.
+// Motions that start in touch, over floors of many primitives with walls that belong to the same
+// body.
 
 #include "tests/pipeline/composite_world.h"
 
@@ -17,7 +18,7 @@
 namespace winnow::test {
 namespace {
 
-/// Floors are in z = 0 from x = -10 to 3, where walls rise by 4.
+/// Floors are at z = 0 from x = -10 to 3. The walls there are 4 high.
 constexpr double kWall = 3.0;
 constexpr double kStart = -3.0;
 constexpr double kWay = 9.0;
@@ -30,18 +31,18 @@ struct SlideLevel {
   double lean = 0.0;
 };
 
-/// A shape with its lowest point at its middle's height less `height`.
+/// A moving shape whose lowest point is `height` below its centre.
 struct SlideMover {
   ShapeId shape;
   double height;
   double reach;
-  /// Turning it about the vertical changes nothing.
+  /// It is symmetric about the vertical.
   bool is_round = false;
-  /// Its lowest points reach as far as any of it.
+  /// Its lowest points extend as far as any of its points.
   bool stands_wide = true;
 };
 
-/// All of it `scale` times as large.
+/// All lengths are multiplied by `scale`.
 class TouchWorld {
  public:
   explicit TouchWorld(double scale) : scale_(scale) {
@@ -82,7 +83,7 @@ class TouchWorld {
   double scale_;
 };
 
-/// A floor of squares, and a wall.
+/// Returns a floor of squares with a wall.
 ShapeId TouchWorld::floor_and_wall(int pieces) {
   std::vector<Eigen::Vector3d> corners;
   std::vector<std::uint32_t> triangles;
@@ -159,14 +160,14 @@ void TouchWorld::add_movers() {
             {compound({{block, at(-1, 0, 0)}, {ball, at(0.2, 0, 0)}}), 0.5, 0.7, false, false}};
 }
 
-/// A way from above a level's floor, in the level's axes and units.
+/// A motion that starts above a level's floor, in the axes and units of the level.
 struct SlideWay {
   double gap;
   Eigen::Vector3d travel;
   double turn = 0.0;
 };
 
-/// A level with a mover that is no body yet, all turned and put elsewhere.
+/// A rigidly moved level with a moving shape that is not yet a body.
 class LevelRun {
  public:
   LevelRun(const TouchWorld& world, const SlideLevel& level, const SlideMover& mover, double scale,
@@ -211,7 +212,8 @@ class LevelRun {
     EXPECT_EQ(all.empty() ? Key{} : all[0].key, hit.key);
     return hit;
   }
-  /// When a sweep that leaves out touches says that it meets something first; 2 if nothing.
+  /// Returns the time of the first impact of a sweep that ignores initial touches, or 2 if it has
+  /// none.
   [[nodiscard]] double sweep() {
     Key key;
     EXPECT_EQ(scene_.add({.shape = shape_, .pose = motion_.start}, key), Status::ok);
@@ -241,7 +243,7 @@ class LevelRun {
   RigidMotion motion_;
 };
 
-/// Calls test(name, level, mover, run_of(way)) for all levels and movers, in several sizes.
+/// Calls test(name, level, mover, run_of(way)) for all levels and movers in several sizes.
 template <typename Test>
 void for_all(std::uint64_t stream, bool may_turn, Test&& test) {
   Random random(stream);
@@ -271,8 +273,9 @@ void for_all(std::uint64_t stream, bool may_turn, Test&& test) {
   }
 }
 
-/// True if that is when a mover comes to a level's wall, or when as much of it does as is above or
-/// below the floor by `gap`, of walls that lean or that have no foot in the floor.
+/// Checks that the time is when the mover reaches the wall. The time may be later by `gap`, since a
+/// part of the mover above or below the floor reaches walls that lean or have no foot in the floor
+/// later.
 [[nodiscard]] testing::AssertionResult is_at_wall(double time, const SlideLevel& level,
                                                   const SlideMover& mover, double gap) {
   const double first = (kWall - kStart - mover.reach) / kWay;
@@ -285,7 +288,7 @@ void for_all(std::uint64_t stream, bool may_turn, Test&& test) {
   return {kWay, random.uniform(-3.0, 3.0), 0.0};
 }
 
-TEST(StartTouches, that_are_left_out_hide_no_wall) {
+TEST(StartTouches, ignored_initial_touch_hides_no_wall) {
   for_all(91, true,
           [](Random& random, const SlideLevel& level, const SlideMover& mover, const auto& run_of) {
             for (const double gap : {-1e-2, -1e-5, 0.0, 1e-8, 1e-3}) {
@@ -304,7 +307,7 @@ TEST(StartTouches, that_are_left_out_hide_no_wall) {
           });
 }
 
-TEST(StartTouches, that_are_entered_count) {
+TEST(StartTouches, motion_into_initial_touch_hits_at_zero) {
   for_all(92, true, [](Random& random, const SlideLevel&, const SlideMover&, const auto& run_of) {
     for (const double gap : {-1e-2, -1e-5}) {
       Eigen::Vector3d travel = along_floor(random);
@@ -319,7 +322,7 @@ TEST(StartTouches, that_are_entered_count) {
   });
 }
 
-TEST(StartTouches, that_are_left_hide_no_wall) {
+TEST(StartTouches, separating_initial_touch_hides_no_wall) {
   for_all(93, true,
           [](Random& random, const SlideLevel& level, const SlideMover& mover, const auto& run_of) {
             if (level.lean != 0.0) return;
@@ -334,8 +337,8 @@ TEST(StartTouches, that_are_left_hide_no_wall) {
           });
 }
 
-/// Nearer than the tolerance, but apart, where touches count as well.
-TEST(StartTouches, motions_slide_over_seams_of_one_body) {
+/// Gaps below the tolerance, with touches enabled.
+TEST(StartTouches, near_motion_slides_over_seams_to_wall) {
   for_all(94, false,
           [](Random& random, const SlideLevel& level, const SlideMover& mover, const auto& run_of) {
             for (const double gap : {1e-11, 1e-10, 1e-9, 1e-8, 1e-7}) {

@@ -1,5 +1,5 @@
-// Shapes that are known by their farthest points: ellipsoids, tapered capsules and convex sets of a
-// program's own, against the same shapes given otherwise and against long double.
+// Shapes given by support functions: ellipsoids, tapered capsules and user shapes, compared with
+// equal shapes of other kinds and with closed forms in long double.
 
 #include <gtest/gtest.h>
 #include <winnow/winnow.h>
@@ -26,7 +26,7 @@ using Real = long double;
 using RealVec = Eigen::Matrix<Real, 3, 1>;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-// --- functions of a program's own ---------------------------------------------------------------
+// --- support functions of user shapes -----------------------------------------------------------
 
 void farthest_of_block(const void* context, const double direction[3], double point[3]) {
   const auto& box = *static_cast<const BoxShape*>(context);
@@ -42,39 +42,39 @@ void farthest_of_drum(const void* context, const double direction[3], double poi
   point[2] = direction[2] < 0.0 ? -drum.half_length : drum.half_length;
 }
 
-/// Shapes whose functions can be made bad after they were taken.
-struct Moody {
-  enum Mood { good, not_a_number, endless, zero, far_away, contradictory };
-  Mood mood = good;
+/// A shape whose support function can be made invalid after it was added.
+struct FaultyShape {
+  enum Fault { good, not_a_number, endless, zero, far_away, contradictory };
+  Fault fault = good;
 };
 
-void farthest_of_moody(const void* context, const double direction[3], double point[3]) {
+void farthest_of_faulty(const void* context, const double direction[3], double point[3]) {
   const BoxShape cube{{1.0, 1.0, 1.0}};
   farthest_of_block(&cube, direction, point);
-  switch (static_cast<const Moody*>(context)->mood) {
-    case Moody::good:
+  switch (static_cast<const FaultyShape*>(context)->fault) {
+    case FaultyShape::good:
       return;
-    case Moody::not_a_number:
+    case FaultyShape::not_a_number:
       point[1] = std::numeric_limits<double>::quiet_NaN();
       return;
-    case Moody::endless:
+    case FaultyShape::endless:
       point[2] = -kEndless;
       return;
-    case Moody::zero:
+    case FaultyShape::zero:
       std::fill_n(point, 3, 0.0);
       return;
-    case Moody::far_away:
+    case FaultyShape::far_away:
       for (int i = 0; i < 3; ++i) point[i] *= 1e300;
       return;
-    case Moody::contradictory:
-      // What is nearest one way, and something else the other.
+    case FaultyShape::contradictory:
+      // Neither the farthest point nor continuous.
       for (int i = 0; i < 3; ++i) point[i] = std::sin(1e4 * direction[i] + i) - point[i] * 0.5;
   }
 }
 
-// --- the same shape in two ways -----------------------------------------------------------------
+// --- equal shapes of two kinds ------------------------------------------------------------------
 
-/// Adds a shape of a new kind, and the same as one of an old kind.
+/// Adds a shape of a new kind and an equal shape of an old kind.
 struct Same {
   const char* name;
   std::function<void(Random&, ShapePool&, ShapeId&, ShapeId&)> add;
@@ -118,8 +118,7 @@ std::vector<Same> same_shapes() {
            }}};
 }
 
-/// Pairs with a shape of some kind, the others given as a shape of a new kind, and as one of an
-/// old.
+/// Pairs in which one shape is given both as a new and as an old kind.
 struct SamePairs {
   SamePairs(const Same& same, ShapeKind kind, std::size_t count, Random& random) {
     add_pairs(scene, kind, kind, PairStyle::ordinary, count, random);
@@ -163,7 +162,7 @@ void expect_deepest_point(const PairAnswers& answer) {
   EXPECT_NEAR(deepest, -answer.distance, 1e-5);
 }
 
-TEST(SupportShapes, say_what_the_same_shapes_say_that_are_given_otherwise) {
+TEST(SupportShapes, support_shapes_match_equal_shapes) {
   constexpr double kMargin = 0.1;
   Random random(1);
   for (const Same& same : same_shapes()) {
@@ -191,8 +190,9 @@ TEST(SupportShapes, say_what_the_same_shapes_say_that_are_given_otherwise) {
 
 // --- closed forms in long double ----------------------------------------------------------------
 
-/// Of a point from the surface of an ellipsoid, negative inside (Eberly, "Distance from a point to
-/// an ellipse, an ellipsoid, or a hyperellipsoid", 2013, by bisection); no coordinate is 0.
+/// Returns the distance of a point from the surface of an ellipsoid, negative inside, by bisection
+/// (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013). No
+/// coordinate may be 0.
 Real from_ellipsoid(const EllipsoidShape& shape, const RealVec& point) {
   const RealVec r = Eigen::Vector3d::Map(shape.radius).cast<Real>();
   const Real least = r.minCoeff();
@@ -216,7 +216,7 @@ Real from_ellipsoid(const EllipsoidShape& shape, const RealVec& point) {
   return level(0.0L) > 0.0L ? distance : -distance;
 }
 
-/// The least of a convex function on [0, 1].
+/// Returns the minimum of a convex function on [0, 1].
 Real least_of(const std::function<Real(Real)>& f) {
   Real low = 0.0L;
   Real high = 1.0L;
@@ -228,7 +228,7 @@ Real least_of(const std::function<Real(Real)>& f) {
   return f(0.5L * (low + high));
 }
 
-/// Centre and radius of the balls that a tapered capsule is swept by, at the share t.
+/// Centre and radius of the ball at parameter t of a tapered capsule.
 RealVec centre_at(const TaperedCapsuleShape& taper, Real t) {
   return {0.0L, 0.0L, (2.0L * t - 1.0L) * taper.half_length};
 }
@@ -241,7 +241,7 @@ Eigen::Matrix<Real, 3, 3> turn_of(const Pose& pose) {
   return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
-/// A point of b's frame in that of a.
+/// Maps a point of b's frame to a's frame.
 RealVec seen_from(const Pose& a, const Pose& b, const RealVec& point) {
   const RealVec at =
       Eigen::Vector3d::Map(b.position).cast<Real>() - Eigen::Vector3d::Map(a.position).cast<Real>();
@@ -255,7 +255,7 @@ Pose random_pose(Random& random, double reach) {
   return pose;
 }
 
-/// A length between thin and ordinary.
+/// Returns a thin or an ordinary length.
 double length(Random& random) {
   return random.chance(0.2) ? random.log_uniform(1e-3, 1.0) : random.uniform(0.2, 1.5);
 }
@@ -278,7 +278,7 @@ void expect_truth(const PairAnswers& answer, Real truth) {
   EXPECT_EQ(answer.overlap, truth <= 0.0L);
 }
 
-TEST(Ellipsoids, are_as_far_from_points_capsules_and_planes_as_long_double_says) {
+TEST(Ellipsoids, ellipsoid_distances_match_closed_forms) {
   Random random(2);
   for (std::size_t n = scaled(200); n-- != 0;) {
     SCOPED_TRACE(n);
@@ -292,7 +292,7 @@ TEST(Ellipsoids, are_as_far_from_points_capsules_and_planes_as_long_double_says)
     const auto gap = [&](Real t) {
       return from_ellipsoid(shape, seen_from(at, other, centre_at(taper, t))) - radius_at(taper, t);
     };
-    // The distance of a capsule's middle line, as long as that is outside.
+    // Distance along the capsule's axis. Valid only while the axis is outside the ellipsoid.
     const Real apart = least_of(gap);
     if (apart > 0.0L) expect_truth(answer_to(taper, other, shape, at), apart);
     const HalfSpaceShape plane{{0.0, 0.0, 1.0}, 0.5};
@@ -303,11 +303,12 @@ TEST(Ellipsoids, are_as_far_from_points_capsules_and_planes_as_long_double_says)
   }
 }
 
-TEST(Ellipsoids, that_overlap_by_little_have_depths_as_good_as_distances) {
+TEST(Ellipsoids, shallow_ellipsoid_depths_are_accurate) {
   Random random(12);
   for (std::size_t n = scaled(200); n-- != 0;) {
     SCOPED_TRACE(n);
-    // Alike and turned alike: the difference is an ellipsoid of twice the radii.
+    // Two equal ellipsoids in the same orientation: their Minkowski difference is an ellipsoid with
+    // twice the radii.
     EllipsoidShape shape;
     for (double& r : shape.radius) r = random.uniform(0.6, 1.0);
     EllipsoidShape difference = shape;
@@ -325,7 +326,7 @@ TEST(Ellipsoids, that_overlap_by_little_have_depths_as_good_as_distances) {
   }
 }
 
-TEST(TaperedCapsules, are_as_far_from_points_as_long_double_says) {
+TEST(TaperedCapsules, tapered_capsule_distances_match_closed_form) {
   Random random(3);
   for (std::size_t n = scaled(200); n-- != 0;) {
     SCOPED_TRACE(n);
@@ -340,7 +341,7 @@ TEST(TaperedCapsules, are_as_far_from_points_as_long_double_says) {
   }
 }
 
-TEST(SupportShapes, that_share_their_centres_have_depths_within_their_bounds) {
+TEST(SupportShapes, coincident_centres_stay_within_error_bounds) {
   Random random(4);
   for (std::size_t n = scaled(60); n-- != 0;) {
     SCOPED_TRACE(n);
@@ -358,7 +359,7 @@ TEST(SupportShapes, that_share_their_centres_have_depths_within_their_bounds) {
   }
 }
 
-TEST(Ellipsoids, whose_radii_vanish_beside_others_have_finite_answers) {
+TEST(Ellipsoids, vanishing_radii_give_finite_results) {
   Random random(10);
   for (std::size_t n = scaled(300); n-- != 0;) {
     const double size = random.chance(0.5) ? 1e150 : 1e-150;
@@ -374,39 +375,40 @@ TEST(Ellipsoids, whose_radii_vanish_beside_others_have_finite_answers) {
 
 // --- bounds, rays, manifolds --------------------------------------------------------------------
 
-/// The drum, and how often it was asked.
-struct AskedDrum {
+/// A drum that counts calls of its support function.
+struct CountingDrum {
   CylinderShape drum;
-  std::size_t asked = 0;
+  std::size_t calls = 0;
 };
 
-void farthest_of_asked_drum(const void* context, const double direction[3], double point[3]) {
-  auto& drum = *static_cast<AskedDrum*>(const_cast<void*>(context));
-  ++drum.asked;
+void farthest_of_counting_drum(const void* context, const double direction[3], double point[3]) {
+  auto& drum = *static_cast<CountingDrum*>(const_cast<void*>(context));
+  ++drum.calls;
   farthest_of_drum(&drum.drum, direction, point);
 }
 
-TEST(SupportShapes, whose_roundings_surely_overlap_are_asked_no_more_for_a_verdict) {
-  AskedDrum drum{{0.5, 1.0}};
+TEST(SupportShapes, overlapping_roundings_need_few_support_calls) {
+  CountingDrum drum{{0.5, 1.0}};
   PairScene scene;
   scene.shapes.resize(2);
-  ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_asked_drum, &drum, 2.0, 1.0}, scene.shapes[0]),
-            Status::ok);
+  ASSERT_EQ(
+      scene.pool.add(SupportShape{farthest_of_counting_drum, &drum, 2.0, 1.0}, scene.shapes[0]),
+      Status::ok);
   ASSERT_EQ(scene.pool.add(CapsuleShape{1.0, 1.0}, scene.shapes[1]), Status::ok);
   scene.poses = {Pose{}, Pose::at(1.2, 0.4, 0.3)};
   scene.poses[1].orientation[1] = 0.4;
   scene.pairs = {{0, 1}};
-  const auto asked_at = [&](ContactLevel level) {
-    const std::size_t before = drum.asked;
+  const auto calls_at = [&](ContactLevel level) {
+    const std::size_t before = drum.calls;
     EXPECT_TRUE(ask(scene, {.level = level})[0].overlap);
-    return drum.asked - before;
+    return drum.calls - before;
   };
-  const std::size_t for_verdict = asked_at(ContactLevel::boolean);
+  const std::size_t for_verdict = calls_at(ContactLevel::boolean);
   EXPECT_LE(for_verdict, 3U);
-  EXPECT_GT(asked_at(ContactLevel::distance), 2 * for_verdict);
+  EXPECT_GT(calls_at(ContactLevel::distance), 2 * for_verdict);
 }
 
-TEST(SupportShapes, have_tight_bounds) {
+TEST(SupportShapes, bounds_contain_shapes_and_are_tight) {
   Random random(5);
   for (std::size_t n = scaled(200); n-- != 0;) {
     ShapePool pool;
@@ -435,7 +437,7 @@ TEST(SupportShapes, have_tight_bounds) {
   }
 }
 
-/// The same ray at two shapes of a pool.
+/// Checks that a ray hits two shapes of a pool alike.
 void expect_same_hit(const ShapePool& pool, ShapeId one, ShapeId other, const Pose& pose,
                      const ShapeRay& ray, double doubt) {
   ShapeHit hit;
@@ -446,11 +448,11 @@ void expect_same_hit(const ShapePool& pool, ShapeId one, ShapeId other, const Po
   if (!hit.hit) return;
   EXPECT_NEAR(hit.t, known.t, doubt);
   const double along = Eigen::Vector3d::Map(hit.normal).dot(Eigen::Vector3d::Map(known.normal));
-  // At an edge either face's will do.
+  // At an edge either face normal is valid.
   EXPECT_GT(along, known.t == 0.0 ? 0.999 : -1e-6);
 }
 
-TEST(SupportShapes, are_met_by_rays_where_their_surfaces_are) {
+TEST(SupportShapes, rays_hit_at_the_surface) {
   Random random(6);
   for (std::size_t n = scaled(1000); n-- != 0;) {
     SCOPED_TRACE(n);
@@ -505,7 +507,7 @@ Pose tilted(double height, double tilt) {
   return pose;
 }
 
-TEST(SupportShapes, rest_on_as_many_points_as_they_have_corners_there) {
+TEST(SupportShapes, resting_shapes_have_expected_contact_counts) {
   constexpr double kMargin = 0.02;
   ShapePool pool;
   const BoxShape box{{0.5, 0.4, 0.3}};
@@ -519,13 +521,13 @@ TEST(SupportShapes, rest_on_as_many_points_as_they_have_corners_there) {
     EXPECT_EQ(contacts_on_floor(pool, block, tilted(0.3, tilt), kMargin).size(), 4U) << tilt;
     EXPECT_EQ(contacts_on_floor(pool, ball, tilted(0.3, tilt), kMargin).size(), 1U) << tilt;
   }
-  // On its side, which slopes by asin(0.05).
+  // Lying on its side, which slopes by asin(0.05).
   const double slope = std::asin(0.05);
   const Pose lying = tilted(0.25, 0.5 * 3.14159265358979 + slope);
   EXPECT_EQ(contacts_on_floor(pool, taper, lying, kMargin).size(), 2U);
 }
 
-TEST(SupportShapes, that_are_round_rest_on_the_point_below) {
+TEST(SupportShapes, ellipsoid_rests_on_point_below) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 0.8, 0.3}}, ball), Status::ok);
@@ -534,23 +536,24 @@ TEST(SupportShapes, that_are_round_rest_on_the_point_below) {
   for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(points[0].position[axis], 0.0F, 1e-6F);
 }
 
-// --- what is wrong ------------------------------------------------------------------------------
+// --- invalid shapes -----------------------------------------------------------------------------
 
-TEST(SupportShapes, are_refused_where_their_functions_are_no_convex_sets) {
+TEST(SupportShapes, invalid_support_functions_are_refused) {
   ShapePool pool;
   ShapeId id;
-  Moody moody;
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id), Status::ok);
+  FaultyShape faulty;
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id), Status::ok);
   EXPECT_EQ(pool.add(SupportShape{nullptr, nullptr, 2.0, 0.0}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, -2.0, 0.0}, id),
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, -2.0, 0.0}, id),
             Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, kEndless}, id),
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, kEndless}, id),
             Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 1.0, 0.0}, id), Status::invalid_shape);
-  for (const auto mood :
-       {Moody::not_a_number, Moody::endless, Moody::far_away, Moody::contradictory}) {
-    moody.mood = mood;
-    EXPECT_EQ(pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id),
+  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 1.0, 0.0}, id),
+            Status::invalid_shape);
+  for (const auto fault : {FaultyShape::not_a_number, FaultyShape::endless, FaultyShape::far_away,
+                           FaultyShape::contradictory}) {
+    faulty.fault = fault;
+    EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id),
               Status::invalid_shape);
   }
   EXPECT_EQ(pool.size(ShapeKind::support), 1U);
@@ -560,19 +563,19 @@ TEST(SupportShapes, are_refused_where_their_functions_are_no_convex_sets) {
   EXPECT_EQ(pool.add(TaperedCapsuleShape{{1.0, 0.5}, std::nan("")}, id), Status::invalid_shape);
 }
 
-TEST(SupportShapes, that_turn_bad_get_finite_answers) {
+TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
   Random random(8);
-  Moody moody;
+  FaultyShape faulty;
   for (const ShapeKind kind : all_kinds()) {
     PairScene scene;
     add_pairs(scene, kind, kind, PairStyle::ordinary, scaled(40), random);
-    moody.mood = Moody::good;
+    faulty.fault = FaultyShape::good;
     ShapeId id;
-    ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.1}, id), Status::ok);
+    ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.1}, id), Status::ok);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) scene.shapes[2 * i] = id;
-    for (const auto mood : {Moody::not_a_number, Moody::endless, Moody::zero, Moody::far_away,
-                            Moody::contradictory}) {
-      moody.mood = mood;
+    for (const auto fault : {FaultyShape::not_a_number, FaultyShape::endless, FaultyShape::zero,
+                             FaultyShape::far_away, FaultyShape::contradictory}) {
+      faulty.fault = fault;
       for (const ContactLevel level :
            {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
         for (const PairAnswers& answer : ask(scene, {.level = level, .margin = 0.1})) {
@@ -603,7 +606,7 @@ TEST(SupportShapes, that_turn_bad_get_finite_answers) {
 
 // --- motions and scenes -------------------------------------------------------------------------
 
-TEST(SupportShapes, meet_when_the_same_shapes_meet_that_are_given_otherwise) {
+TEST(SupportShapes, times_of_impact_match_equal_shapes) {
   Random random(9);
   for (const Same& same : same_shapes()) {
     for (const ShapeKind kind : all_kinds()) {
@@ -632,7 +635,7 @@ TEST(SupportShapes, meet_when_the_same_shapes_meet_that_are_given_otherwise) {
   }
 }
 
-/// A floor of a mesh, a height field or a compound.
+/// Adds a floor that is a mesh, a height field or a compound.
 ShapeId add_floor(CompositePool& pool, ShapePool& shapes, int which) {
   ShapeId id;
   if (which == 0) {
@@ -651,11 +654,11 @@ ShapeId add_floor(CompositePool& pool, ShapePool& shapes, int which) {
   return id;
 }
 
-/// By the bodies on a floor whose data is 0.
+/// Returns the least distance of each body from the floor, whose data is 0.
 std::map<ClientData, double> depths_of(const Contacts& contacts) {
   std::map<ClientData, double> least;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    // The order of two bodies is that of the kinds of their shapes.
+    // The kinds of the two shapes decide which body is a.
     if (contacts.data_a()[i] != 0 && contacts.data_b()[i] != 0) continue;
     const ClientData body = contacts.data_a()[i] + contacts.data_b()[i];
     for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
@@ -666,7 +669,7 @@ std::map<ClientData, double> depths_of(const Contacts& contacts) {
   return least;
 }
 
-TEST(SupportShapes, lie_on_meshes_fields_and_compounds_as_the_same_shapes_do) {
+TEST(SupportShapes, contacts_with_composites_match_equal_shapes) {
   for (int which = 0; which < 3; ++which) {
     ShapePool shapes;
     CompositePool composites(shapes);
@@ -702,7 +705,7 @@ TEST(SupportShapes, lie_on_meshes_fields_and_compounds_as_the_same_shapes_do) {
   }
 }
 
-TEST(SupportShapes, of_functions_end_a_recording) {
+TEST(SupportShapes, user_shape_ends_recording) {
   std::vector<std::byte> bytes;
   const RecordingSink sink{[](void* context, std::span<const std::byte> more) {
                              auto& all = *static_cast<std::vector<std::byte>*>(context);
@@ -712,9 +715,9 @@ TEST(SupportShapes, of_functions_end_a_recording) {
                            &bytes};
   Recorder recorder(sink);
   ShapePool shapes;
-  Moody moody;
+  FaultyShape faulty;
   ShapeId id;
-  ASSERT_EQ(shapes.add(SupportShape{farthest_of_moody, &moody, 2.0, 0.0}, id), Status::ok);
+  ASSERT_EQ(shapes.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id), Status::ok);
   RecordedScene scene(recorder, shapes);
   Key key;
   EXPECT_EQ(scene.add({.shape = id}, key), Status::ok);

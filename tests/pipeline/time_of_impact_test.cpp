@@ -1,5 +1,5 @@
-// When moving shapes meet: against closed forms, and against a proof by distances alone that they
-// are apart at every earlier time.
+// Times of impact of moving shapes, compared with closed forms, and with a proof by distances that
+// the shapes are apart at every earlier time (motion_twin.h).
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/time_of_impact.h>
@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// One pair at a time.
+/// The result for a single pair.
 struct Meeting {
   Status status = Status::ok;
   bool hit = false;
@@ -62,7 +62,7 @@ RigidMotion moving(const Pose& start, Vec3d travel, Vec3d turn = {}) {
   return {start, {travel.x(), travel.y(), travel.z()}, {turn.x(), turn.y(), turn.z()}};
 }
 
-TEST(TimeOfImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
+TEST(TimeOfImpact, impact_is_never_late_and_within_tolerance) {
   const std::vector<ShapeKind> kinds = moving_kinds();
   Random random(71);
   std::size_t unproved = 0;
@@ -90,7 +90,7 @@ TEST(TimeOfImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
     const DistanceAt at = distance_at(scene.pool, pair, found.time);
     const double resolution = resolution_of(scene.pool, pair);
     EXPECT_LE(std::abs(at.distance - found.gap), at.error + found.error + resolution);
-    // What the solver cannot tell apart of such shapes, nobody can look for.
+    // Skip the gap if the solver's own error exceeds it.
     const double wanted = tolerance * size_of(scene.pool, pair);
     if (doubt_of(scene.pool, pair) > wanted) continue;
     EXPECT_LE(at.distance - at.error, wanted + resolution);
@@ -98,7 +98,7 @@ TEST(TimeOfImpact, is_never_late_and_leaves_a_gap_within_the_tolerance) {
   EXPECT_LE(unproved, count / 50);
 }
 
-TEST(TimeOfImpact, of_balls_is_the_closed_form) {
+TEST(TimeOfImpact, balls_match_closed_form) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{0.5});
   const MovingShapes pair{{ball, ball},
@@ -113,13 +113,14 @@ TEST(TimeOfImpact, of_balls_is_the_closed_form) {
   EXPECT_NEAR(found.point[0], 0.4, 1e-5);
 }
 
-// A thin rod of length 2 about its middle, and a ball that its tip first meets after so many turns.
-TEST(TimeOfImpact, of_a_tip_after_twenty_turns) {
+// A thin rod of length 2 turns about its centre. A ball comes within reach of its tip after nearly
+// twenty turns.
+TEST(TimeOfImpact, rod_tip_hits_after_twenty_turns) {
   ShapePool pool;
   const ShapeId rod = added(pool, BoxShape{{1.0, 1e-4, 1e-4}});
   const ShapeId ball = added(pool, SphereShape{0.1});
   const double turns = 20.0;
-  // The ball comes down and is within reach for the last bit.
+  // The ball comes down and is within reach only at the very end.
   const MovingShapes pair{{rod, ball},
                           {moving(Pose::at(0, 0, 0), {}, {0, 0, 2 * kPi * turns}),
                            moving(Pose::at(1.05, 0, 3), {0, 0, -3})}};
@@ -130,11 +131,11 @@ TEST(TimeOfImpact, of_a_tip_after_twenty_turns) {
   EXPECT_LE(distance_at(pool, pair, found.time).distance, 1e-7);
 }
 
-TEST(TimeOfImpact, of_shapes_that_touch_at_the_start_is_none) {
+TEST(TimeOfImpact, initial_touch_hits_at_time_zero) {
   ShapePool pool;
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
   const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
-  // Exactly touching, and parting at once.
+  // Exactly touching, and separating at once.
   const Meeting touching =
       meeting_of(pool, {{box, box}, {stands, moving(Pose::at(2, 0, 0), {1, 0, 0})}});
   EXPECT_TRUE(touching.hit);
@@ -148,7 +149,7 @@ TEST(TimeOfImpact, of_shapes_that_touch_at_the_start_is_none) {
   EXPECT_NEAR(deep.normal[0], 1.0, 1e-12);
 }
 
-TEST(TimeOfImpact, of_shapes_that_slide_or_part_within_the_tolerance_is_not_there) {
+TEST(TimeOfImpact, sliding_or_separating_within_tolerance_misses) {
   ShapePool pool;
   const ShapeId floor = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
@@ -159,14 +160,14 @@ TEST(TimeOfImpact, of_shapes_that_slide_or_part_within_the_tolerance_is_not_ther
   EXPECT_FALSE(meeting_of(pool, {{floor, box}, {stands, moving(near, {5, 2, 1})}}).hit);
   EXPECT_FALSE(meeting_of(pool, {{box, floor}, {moving(near, {}, {0, 0, 30}), stands}}).hit);
   EXPECT_TRUE(meeting_of(pool, {{floor, box}, {stands, moving(near, {5, 2, -1e-3})}}).hit);
-  // It rolls along y about its own axis.
+  // The wheel rolls along y about its own axis.
   Pose rolling = near;
   rolling.orientation[0] = rolling.orientation[2] = std::sqrt(0.5);
   EXPECT_FALSE(
       meeting_of(pool, {{floor, wheel}, {stands, moving(rolling, {0, 50, 0}, {-50, 0, 0})}}).hit);
 }
 
-TEST(TimeOfImpact, of_a_grazing_pass_is_that_of_the_tolerance) {
+TEST(TimeOfImpact, grazing_pass_hits_only_within_tolerance) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
   const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
@@ -184,7 +185,7 @@ TEST(TimeOfImpact, of_a_grazing_pass_is_that_of_the_tolerance) {
   }
 }
 
-TEST(TimeOfImpact, is_the_same_far_from_the_origin_and_for_either_order) {
+TEST(TimeOfImpact, far_or_swapped_pairs_give_equal_times) {
   ShapePool pool;
   const ShapeId box = added(pool, BoxShape{{1, 0.5, 0.25}});
   const ShapeId cone = added(pool, ConeShape{1, 1});
@@ -213,11 +214,11 @@ TEST(TimeOfImpact, is_the_same_far_from_the_origin_and_for_either_order) {
   }
 }
 
-TEST(TimeOfImpact, of_half_spaces_that_turn) {
+TEST(TimeOfImpact, turning_half_spaces_match_closed_form) {
   ShapePool pool;
   const ShapeId plane = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
   const ShapeId ball = added(pool, SphereShape{0.5});
-  // The plane turns about the x axis until it meets the ball at y = 10.
+  // The plane turns about the x axis until it touches the ball at y = 10.
   const MovingShapes pair{
       {plane, ball},
       {moving(Pose::at(0, 0, 0), {}, {kPi / 2, 0, 0}), RigidMotion::standing(Pose::at(0, 10, 1))}};
@@ -226,7 +227,7 @@ TEST(TimeOfImpact, of_half_spaces_that_turn) {
   const double angle = std::atan2(1, 10) - std::asin(0.5 / std::hypot(1, 10));
   EXPECT_NEAR(found.time, angle / (kPi / 2), 1e-6);
   EXPECT_LE(found.time, angle / (kPi / 2));
-  // Two that face each other, closing.
+  // Two half-spaces that face and approach each other.
   Pose above = Pose::at(0, 0, 2);
   above.orientation[0] = 0.0;
   above.orientation[1] = 1.0;
@@ -241,7 +242,7 @@ TEST(TimeOfImpact, of_half_spaces_that_turn) {
   EXPECT_EQ(turning.time, 0.0);
 }
 
-TEST(TimeOfImpact, refuses_what_is_no_motion) {
+TEST(TimeOfImpact, invalid_motions_are_refused) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
@@ -272,7 +273,7 @@ TEST(TimeOfImpact, refuses_what_is_no_motion) {
     EXPECT_EQ(status_with(RigidMotion::between(Pose::at(0, 0, 0), unturned)), Status::invalid_pose);
     EXPECT_EQ(status_with(RigidMotion::between(Pose::at(-1e308, 0, 0), Pose::at(1e308, 0, 0))),
               Status::invalid_pose);
-    // Beside each other all the way, to where no number is.
+    // Side by side all the way, until positions overflow.
     const RigidMotion away = moving(Pose::at(1e308, 0, 0), {1e308, 0, 0});
     EXPECT_EQ(status_of(away, away), Status::invalid_pose);
   }
@@ -295,7 +296,7 @@ TEST(TimeOfImpact, refuses_what_is_no_motion) {
   EXPECT_EQ(result.size(), 0U);
 }
 
-TEST(TimeOfImpact, bears_refused_memory) {
+TEST(TimeOfImpact, refused_memory_is_reported) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
@@ -308,7 +309,7 @@ TEST(TimeOfImpact, bears_refused_memory) {
   EXPECT_EQ(without_memory.size(), 0U);
 }
 
-TEST(TimeOfImpact, is_the_same_on_any_number_of_threads) {
+TEST(TimeOfImpact, impacts_match_on_any_thread_count) {
   Random random(73);
   PairScene scene;
   for (const ShapeKind kind : moving_kinds()) {
@@ -333,7 +334,7 @@ TEST(TimeOfImpact, is_the_same_on_any_number_of_threads) {
   EXPECT_GT(std::ranges::count(serial.hit(), std::uint8_t{1}), 100);
 }
 
-TEST(RigidMotions, go_from_one_pose_to_another_by_the_shorter_way) {
+TEST(RigidMotions, motion_between_poses_takes_shorter_turn) {
   Random random(72);
   for (std::size_t n = scaled(5000); n-- != 0;) {
     Pose pose[2];
@@ -341,7 +342,7 @@ TEST(RigidMotions, go_from_one_pose_to_another_by_the_shorter_way) {
       for (double& x : p.position) x = random.uniform(-10, 10);
       for (double& q : p.orientation) q = random.uniform(-1, 1);
     }
-    // By little, and by almost half a turn, too.
+    // Includes tiny turns and turns by almost half a turn.
     if (random.chance(0.3)) std::copy_n(pose[0].orientation, 4, pose[1].orientation);
     if (random.chance(0.5)) pose[1].orientation[1] += random.log_uniform(1e-18, 1.0);
     const RigidMotion motion = RigidMotion::between(pose[0], pose[1]);
@@ -364,7 +365,7 @@ TEST(RigidMotions, go_from_one_pose_to_another_by_the_shorter_way) {
   }
 }
 
-TEST(RigidMotions, turn_as_far_as_their_velocity_says) {
+TEST(RigidMotions, motion_by_velocities_turns_by_full_angle) {
   const RigidMotion motion =
       RigidMotion::by_velocities(Pose::at(1, 2, 3), {1, 0, 0}, {0, 0, 2 * kPi}, 100.25);
   const Pose end = motion.at(1.0);

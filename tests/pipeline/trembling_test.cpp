@@ -1,5 +1,5 @@
-// A body at rest trembles by the last bits of its solver. Its contact points have to keep their
-// features from frame to frame, although many points of a round or regular face are as good.
+// A resting body trembles by the last bits of its solver. Its contact points must keep their
+// features from frame to frame, although many points of a round or regular face are equally good.
 
 #include "tests/pipeline/composite_world.h"
 #include "tests/pipeline/own_sets.h"
@@ -25,19 +25,19 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// A shape as it stands or lies on the plane z = 0.
+/// A shape and its pose on the plane z = 0.
 struct Standing {
   std::string name;
   ShapeId shape;
   Quaterniond turn = Quaterniond::Identity();
   double height = 0.0;
   bool has_parts = false;
-  /// Share of points without predecessors on a ground of parts, whose edges cross sides of capsules
-  /// and cut round surfaces into contacts of their own.
+  /// Allowed share of points without predecessor on a ground of several primitives: edges of the
+  /// ground cross the sides of capsules and split contacts of round surfaces.
   double lost_on_parts = 0.01;
 };
 
-/// Shapes of a radius of 1 that stand, and what they stand on, whose top is the plane z = 0.
+/// Standing shapes of radius 1, and grounds whose top is the plane z = 0.
 class Stage {
  public:
   Stage() : composites(pool) {
@@ -131,7 +131,7 @@ class Stage {
     stands("wider cylinder", made(CylinderShape{2.0, 0.5}), 0.5);
     stands("own block", own(OwnSet::block, 2.0, 2.0, 0.5), 0.5);
     stands("own drum", own(OwnSet::drum, 1.2, 1.2, 0.5), 0.5);
-    // No shape stands with an edge of its own on one of these.
+    // Offsets keep the edges of meshes and tiles away from the edges of standing shapes.
     Surface surface = grid(12, 0.65F, Cut::same, [](float, float) { return 0.0F; });
     for (Point& vertex : surface.vertices) vertex += Point(0.07F, 0.11F, 0.0F);
     ShapeId mesh;
@@ -164,7 +164,7 @@ Pose standing_pose(const Quaterniond& turn, const Vector3d& place) {
 struct Kept {
   std::size_t points = 0;
   std::size_t lost = 0;
-  /// From a predecessor, as a share of the body's radius.
+  /// The largest distance of a point from its predecessor.
   double jump = 0.0;
 
   void operator+=(const Kept& other) {

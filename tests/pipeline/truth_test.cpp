@@ -1,4 +1,4 @@
-// The oracle itself, against answers that are known.
+// The oracle compared with known values.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class Truths : public testing::Test {
   ShapePool pool_;
 };
 
-TEST_F(Truths, of_spheres) {
+TEST_F(Truths, spheres_have_known_distances) {
   const ShapeId one = add(SphereShape{1.0});
   const oracle::Truth apart = solve(one, Pose::at(1e9, 0, 0), one, Pose::at(1e9 + 3, 4, 0));
   EXPECT_EQ(apart.distance, 3.0L);
@@ -45,7 +45,7 @@ TEST_F(Truths, of_spheres) {
   EXPECT_FALSE(same.normal_unique);
 }
 
-TEST_F(Truths, of_boxes) {
+TEST_F(Truths, boxes_have_known_distances) {
   const ShapeId box = add(BoxShape{{1, 2, 3}, 0.0});
   const oracle::Truth deep = solve(box, Pose{}, box, Pose::at(1.5, 0.25, 0));
   EXPECT_EQ(deep.distance, -0.5L);
@@ -53,11 +53,11 @@ TEST_F(Truths, of_boxes) {
   EXPECT_TRUE(deep.normal_unique);
   EXPECT_EQ(solve(box, Pose{}, box, Pose::at(0, 4, 6)).distance, 0.0L);
   EXPECT_EQ(solve(box, Pose{}, box, Pose::at(5, 8, 0)).distance, 5.0L);
-  // Turned by 45 degrees about x: an edge comes down on the face.
+  // Turned by 45 degrees about x: an edge touches the face.
   const oracle::Truth edge =
       solve(box, Pose{}, box, {{0, 5.5, 0}, {1, std::tan(std::numbers::pi / 8), 0, 0}});
   EXPECT_NEAR(static_cast<double>(edge.distance), 3.5 - 2.5 * std::sqrt(2.0), 1e-15);
-  // Crossing edges: the product of the edges is the best axis.
+  // Crossing edges: their cross product is the best axis.
   const double r = std::sqrt(0.5);
   const ShapeId rod = add(BoxShape{{r, r, 10}, 0.0});
   const Pose along_z{{0, 0, 0},
@@ -73,7 +73,7 @@ TEST_F(Truths, of_boxes) {
   EXPECT_NEAR(crossing.normal[0], 1.0, 1e-14);
 }
 
-TEST_F(Truths, of_flat_shapes) {
+TEST_F(Truths, flat_shapes_have_known_distances) {
   const ShapeId flat = add(TriangleShape{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, 0.0});
   const ShapeId upright = add(TriangleShape{{{0.5, 0.5, -0.25}, {0.5, 0.5, 3}, {4, 4, 3}}, 0.0});
   const oracle::Truth pierced = solve(flat, Pose{}, upright, Pose{});
@@ -89,7 +89,7 @@ TEST_F(Truths, of_flat_shapes) {
   EXPECT_EQ(solve(tube, Pose{}, tube, Pose::at(0, 0, 1)).distance, -1.0L);
 }
 
-TEST_F(Truths, over_half_spaces) {
+TEST_F(Truths, half_spaces_have_known_distances) {
   const ShapeId ground = add(HalfSpaceShape{{0, 0, 2}, 2.0});
   const ShapeId box = add(BoxShape{{1, 1, 1}, 0.5});
   const oracle::Truth truth = solve(box, Pose::at(7, 8, 2), ground, Pose{});
@@ -100,8 +100,8 @@ TEST_F(Truths, over_half_spaces) {
   EXPECT_EQ(solve(ground, Pose{}, cone, {{0, 0, 6}, {0, 1, 0, 0}}).distance, 1.0L);
 }
 
-/// No direction may separate more than the distance; the normal separates by it.
-TEST_F(Truths, is_the_widest_gap_of_all_directions) {
+/// No direction separates by more than the distance; the normal separates by it.
+TEST_F(Truths, distance_is_widest_gap_of_all_directions) {
   Random random(71);
   for (const ShapeKind a : polytope_kinds()) {
     for (const ShapeKind b : polytope_kinds()) {
@@ -116,7 +116,7 @@ TEST_F(Truths, is_the_widest_gap_of_all_directions) {
                           scene.shapes[pair.a], scene.poses[pair.a]);
         ASSERT_TRUE(truth.known);
         EXPECT_NEAR(static_cast<double>(truth.distance), static_cast<double>(back.distance), 1e-17);
-        // Along its own normal, b moved to the distance 0 touches or all but touches.
+        // Moving b along the normal to distance 0 makes the shapes touch, up to rounding.
         Pose moved = scene.poses[pair.b];
         for (int i = 0; i < 3; ++i) {
           moved.position[i] -= static_cast<double>(truth.distance) * truth.normal[i];
@@ -124,7 +124,7 @@ TEST_F(Truths, is_the_widest_gap_of_all_directions) {
         const auto after = oracle::solve(scene.pool.tables(), scene.shapes[pair.a],
                                          scene.poses[pair.a], scene.shapes[pair.b], moved);
         EXPECT_NEAR(static_cast<double>(after.distance), 0.0, 1e-14);
-        // No shorter way leads out.
+        // No shorter motion separates the shapes.
         for (int i = 0; i < 10 && truth.overlap; ++i) {
           double n[3];
           double square = 0.0;

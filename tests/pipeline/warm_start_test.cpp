@@ -1,5 +1,5 @@
-// Where contacts were in the last frame, against a twin that keeps that frame whole and looks for
-// each point in all of it.
+// Indices of pairs and points in the last frame, compared with a reference implementation that
+// stores the whole frame and searches all of it (history_twin.h).
 
 #include "tests/pipeline/composite_world.h"
 #include "tests/pipeline/history_twin.h"
@@ -15,8 +15,8 @@
 namespace winnow::test {
 namespace {
 
-/// Equal bodies of several kinds on a terrain of triangles, which shuffle about, come, go, sleep
-/// and wake. All have the radius kRadius.
+/// Bodies of several kinds on a terrain of triangles that move, come, go, sleep and wake. All have
+/// the radius kRadius.
 class Shuffle {
  public:
   static constexpr double kRadius = 0.75;
@@ -50,7 +50,7 @@ class Shuffle {
     EXPECT_EQ(scene.add(bodies_, keys_), Status::ok);
   }
 
-  /// One frame's changes. Few bodies rest, so that contacts may be carried over.
+  /// Changes one frame. About 30% of the bodies rest, so that their contacts may be carried over.
   void stir(Scene& scene, int frame) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (random_.chance(0.3)) continue;
@@ -95,8 +95,8 @@ class Shuffle {
   std::vector<Key> keys_;
 };
 
-/// Two balls that part and meet again.
-TEST(WarmStart, a_contact_knows_its_place_while_it_lasts) {
+/// Two balls separate and touch again.
+TEST(WarmStart, previous_indices_last_as_long_as_contact) {
   ShapePool pool;
   const ShapeId ball = add(pool, SphereShape{1.0});
   Scene scene(pool, {.warm_start = true});
@@ -123,7 +123,7 @@ TEST(WarmStart, a_contact_knows_its_place_while_it_lasts) {
   EXPECT_EQ(pairs_before(), (std::vector<std::uint32_t>{none, none, none}));
 }
 
-TEST(WarmStart, a_box_that_slides_over_triangles_keeps_its_four_corners) {
+TEST(WarmStart, sliding_box_keeps_four_points) {
   ShapePool shapes;
   CompositePool composites(shapes);
   const ShapeId floor =
@@ -144,7 +144,7 @@ TEST(WarmStart, a_box_that_slides_over_triangles_keeps_its_four_corners) {
   }
 }
 
-TEST(WarmStart, places_are_those_of_a_twin_that_keeps_the_whole_last_frame) {
+TEST(WarmStart, previous_indices_match_reference) {
   for (const bool reduced : {false, true}) {
     for (const double carry_over : {0.0, 0.005}) {
       Shuffle world(std::max<std::size_t>(20, scaled(60)), 3);
@@ -160,7 +160,7 @@ TEST(WarmStart, places_are_those_of_a_twin_that_keeps_the_whole_last_frame) {
         const ContactLevel level =
             frame % 13 == 12 ? ContactLevel::distance : ContactLevel::manifold;
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-        // Radii are of what the pool knows: the capsule reaches as far as the others.
+        // All shapes have this radius, including the capsule.
         ASSERT_NO_FATAL_FAILURE(
             twin.compare(scene, contacts, reduced, [](Key, Key) { return Shuffle::kRadius; }));
         world.stir(scene, frame);
@@ -172,7 +172,7 @@ TEST(WarmStart, places_are_those_of_a_twin_that_keeps_the_whole_last_frame) {
   }
 }
 
-TEST(WarmStart, is_the_same_on_any_threads_and_with_any_structure) {
+TEST(WarmStart, indices_match_on_any_threads_and_structure) {
   std::vector<std::uint64_t> first;
   for (const StructureKind structure : {linear_bvh(), sweep_and_prune(), automatic()}) {
     for (const int threads : {1, 2, 8}) {
@@ -201,7 +201,7 @@ TEST(WarmStart, is_the_same_on_any_threads_and_with_any_structure) {
   }
 }
 
-TEST(WarmStart, changes_nothing_else_and_costs_no_byte_unless_it_is_asked_for) {
+TEST(WarmStart, warm_start_changes_no_other_result) {
   std::vector<std::uint64_t> shown_without;
   std::size_t bytes_without = 0;
   for (const bool asked : {false, true}) {
@@ -233,7 +233,7 @@ TEST(WarmStart, changes_nothing_else_and_costs_no_byte_unless_it_is_asked_for) {
   }
 }
 
-TEST(WarmStart, of_what_did_not_move_everything_is_where_it_was_and_nothing_is_allocated) {
+TEST(WarmStart, resting_bodies_keep_indices_without_allocation) {
   Shuffle world(scaled(60), 9);
   for (const double carry_over : {0.0, 0.01}) {
     CountingMemory memory;

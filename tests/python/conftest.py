@@ -1,4 +1,4 @@
-"""Puts what tests share on the path of imports."""
+"""Adds the shared modules of the tests to the import path."""
 
 import os
 import sys
@@ -7,6 +7,6 @@ import hypothesis
 
 sys.path.insert(0, os.path.dirname(__file__))
 
-# A machine that is busy is not a failure, and failures come again.
+# A busy machine must not cause failures, and failures must be repeatable.
 hypothesis.settings.register_profile("winnow", deadline=None, derandomize=True, database=None)
 hypothesis.settings.load_profile("winnow")

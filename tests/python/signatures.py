@@ -1,7 +1,7 @@
 """Usage: signatures.py STUB
 
-Compares what the stubs say of arguments with what pybind11 says in the docstrings, which mypy's
-stubtest cannot read: names, order, which have defaults, which are by keyword alone.
+Compares the signatures in the stubs with the docstrings of pybind11, which mypy's stubtest cannot read:
+names and order of arguments, which have defaults, and which are keyword-only.
 """
 
 import ast
@@ -41,7 +41,7 @@ def said_by_module(function):
 
 
 def functions(body, owner):
-    """The last declaration of each name; with several, which defaults there are differs."""
+    """Returns the last declaration of each name; overloads differ in their defaults."""
     found = {}
     for node in body:
         if isinstance(node, ast.ClassDef):
@@ -61,7 +61,7 @@ def main():
     classes = {node.name for node in stub.body if isinstance(node, ast.ClassDef)}
     for name, value in vars(winnow._core).items():
         if isinstance(value, type) and name not in classes:
-            print(name + " is in the module alone")
+            print(name + " is only in the module")
             bad = 1
     for function, nodes in functions(stub.body, winnow._core):
         said = said_by_module(function)
@@ -69,7 +69,7 @@ def main():
             stubbed = said_by_stub(node)
             same = stubbed[:2] == said[:2] and (len(nodes) > 1 or stubbed[2] == said[2])
             if not same and node.name not in ("__len__", "__repr__"):
-                print("%s: the stub says %s, the module %s" % (node.name, stubbed, said))
+                print("%s: the stub has %s, the module %s" % (node.name, stubbed, said))
                 bad = 1
         if not inspect.getdoc(function):
             print(node.name + " has no docstring")

@@ -1,4 +1,4 @@
-"""Which structure is fastest on frames of one's own."""
+"""winnow.advise: which structure is fastest on the frames of the caller."""
 
 import numpy as np
 import winnow
@@ -13,7 +13,7 @@ def frames(count=6, objects=200):
         yield lower + moved, upper + moved
 
 
-def test_structures_are_ranked_by_what_they_took():
+def test_structures_are_ranked_by_median_time():
     names = ["LinearBvh", "UniformGrid", "AutoPartition"]
     known = [name for name in names if name in winnow.structures()]
     advice = winnow.advise(frames(), known)
@@ -28,13 +28,13 @@ def test_structures_are_ranked_by_what_they_took():
         assert one.worst_ms >= one.median_ms and one.first_ms > 0 and one.bytes > 0
 
 
-def test_by_default_all_structures_that_suit_are_raced():
+def test_all_suitable_structures_are_raced_by_default():
     advice = winnow.advise(frames(2, 50))
     assert {a.structure for a in advice.ranking} == set(winnow.structures())
     assert winnow.advise(frames(1, 10), ["LinearBvh"]).frames == 1
 
 
-def test_what_cannot_be_raced_is_refused():
+def test_invalid_races_are_refused():
     boxes = random_boxes(62, 10)
     refused("invalid_argument", winnow.advise, [])
     refused("invalid_argument", winnow.advise, [boxes], [])

@@ -1,5 +1,5 @@
-"""Functions of Python's that winnow calls: predicates, support functions and hooks. What they raise comes
-out of the call, and nothing that they do ends the interpreter or stops it."""
+"""Python functions that winnow calls: predicates, support functions and hooks. Their exceptions are raised
+from the call, and they can neither crash nor block the interpreter."""
 
 import subprocess
 import sys
@@ -15,7 +15,7 @@ from worlds import pair_set, random_boxes, twin_pairs
 
 
 class Odd(Exception):
-    """Raised by the functions of these tests alone."""
+    """Raised only by the functions of these tests."""
 
 
 def raises(*_):
@@ -33,7 +33,7 @@ def box_world(count=300):
     return partition, partition.insert(lower, upper), twin_pairs(lower, upper), lower, upper
 
 
-def test_pairs_that_a_predicate_lets_pass_are_found():
+def test_predicate_selects_pairs():
     partition, _, truth, _, _ = box_world()
 
     def odd_sum(first, second):
@@ -61,7 +61,7 @@ def test_pairs_that_a_predicate_lets_pass_are_found():
     assert pair_set(partition.pairs_with(other)) == both
 
 
-def test_objects_that_a_filter_accepts_are_met():
+def test_filter_function_selects_objects():
     partition, keys, _, lower, upper = box_world()
     data = np.arange(len(keys), dtype=np.uint64)
     partition.remove(keys)
@@ -101,7 +101,7 @@ def pairs_of(scene, contacts=None):
     return {frozenset(pair) for pair in zip(contacts.data_a.tolist(), contacts.data_b.tolist())}
 
 
-def test_bodies_that_a_predicate_lets_meet_do():
+def test_predicate_selects_pairs_of_bodies():
     _, scene, keys, _ = ball_world()
     number = {int(i): n for n, i in enumerate(winnow.ids_of(keys))}
     truth = pairs_of(scene)
@@ -118,7 +118,7 @@ def test_bodies_that_a_predicate_lets_meet_do():
     assert scene.predicate is None and pairs_of(scene) == truth
 
 
-def test_a_question_from_a_layer_meets_what_that_meets():
+def test_query_layer_selects_bodies():
     _, scene, keys, places = ball_world()
     scene.set_layer(keys[::2], 100)
     scene.set_layers_meet([[7, 100]], False)
@@ -133,7 +133,7 @@ def test_a_question_from_a_layer_meets_what_that_meets():
 
 
 @pytest.mark.parametrize("bad", [raises, lambda: 1, lambda a, b: Untrue(), lambda a, b: 1 / 0])
-def test_what_a_predicate_raises_is_raised_and_changes_nothing(bad):
+def test_exception_of_a_predicate_changes_nothing(bad):
     partition, keys, truth, lower, upper = box_world()
     expected = (Odd, TypeError, ZeroDivisionError)
     events = winnow.PairEvents()
@@ -167,7 +167,7 @@ def test_what_a_predicate_raises_is_raised_and_changes_nothing(bad):
     assert pairs_of(scene, contacts) == truth
 
 
-def test_a_predicate_that_recovers_is_asked_about_all_pairs_again():
+def test_predicate_after_an_exception_gets_all_pairs():
     _, scene, _, _ = ball_world()
     truth = pairs_of(scene)
     calls = []
@@ -184,7 +184,7 @@ def test_a_predicate_that_recovers_is_asked_about_all_pairs_again():
     assert pairs_of(scene) == truth
 
 
-def test_what_cannot_be_called_is_a_type_error():
+def test_non_callable_is_a_type_error():
     partition, *_ = box_world()
     shapes, scene, *_ = ball_world()
     for call in [
@@ -205,7 +205,7 @@ def ball(direction):
     return 0.5 * direction
 
 
-def test_a_support_function_is_a_shape_as_any():
+def test_support_function_defines_a_shape():
     shapes = winnow.Shapes()
     own = shapes.add_support(ball, 0.5)
     core = shapes.add_support(lambda direction: [0, 0, 0], 0.0, 0.5)
@@ -242,12 +242,12 @@ def test_a_support_function_is_a_shape_as_any():
         lambda d: -d / 2,
     ],
 )
-def test_what_is_no_convex_shape_is_refused(function):
+def test_function_of_no_convex_shape_is_refused(function):
     refused("invalid_shape", winnow.Shapes().add_support, function, 0.5)
 
 
 @pytest.mark.parametrize("answer", [None, "here", 7, [1, 2], [[1, 2, 3]], [1, 2, "z"], object()])
-def test_what_is_no_point_is_an_exception(answer):
+def test_support_point_of_wrong_type_raises(answer):
     shapes = winnow.Shapes()
     with pytest.raises((TypeError, ValueError)):
         shapes.add_support(lambda direction: answer, 1.0)
@@ -256,7 +256,7 @@ def test_what_is_no_point_is_an_exception(answer):
     refused("invalid_shape", shapes.add_support, ball, 0.5, -1.0)
 
 
-def test_what_a_support_function_raises_later_is_raised():
+def test_later_exception_of_a_support_function_is_raised():
     shapes = winnow.Shapes()
     fails = [False]
 
@@ -297,7 +297,7 @@ def test_what_a_support_function_raises_later_is_raised():
     assert pairs_of(scene, contacts) == {frozenset([1, 2])}
 
 
-def test_functions_that_ask_winnow_are_refused_and_do_not_wait_for_ever():
+def test_callbacks_that_call_winnow_raise_without_deadlock():
     partition, keys, _, lower, upper = box_world(60)
     shapes, scene, bodies, places = ball_world(20)
     contacts, events, narrow = winnow.Contacts(), winnow.PairEvents(), winnow.NarrowPhase()
@@ -337,7 +337,7 @@ def test_functions_that_ask_winnow_are_refused_and_do_not_wait_for_ever():
     assert len(partition) == 60 and len(pairs_of(scene)) > 0
 
 
-def test_threads_ask_with_functions_at_once():
+def test_callbacks_on_several_threads_are_safe():
     partition, _, truth, lower, upper = box_world()
     shapes = winnow.Shapes()
     own = shapes.add_support(ball, 0.5)
@@ -351,7 +351,7 @@ def test_threads_ask_with_functions_at_once():
         try:
             for _ in range(5):
                 work()
-        except BaseException as error:  # told by the test
+        except BaseException as error:  # reported by the test
             failures.append(error)
 
     def right():
@@ -372,7 +372,7 @@ def test_threads_ask_with_functions_at_once():
     assert not failures
 
 
-def test_hooks_are_told_stages_and_refusals():
+def test_hooks_receive_stages_and_refusals():
     stages, entries = [], []
     assert winnow.set_stage_hook(lambda stage, begins: stages.append((stage, begins))) is None
     assert winnow.set_log_hook(entries.append) is None
@@ -397,7 +397,7 @@ def test_hooks_are_told_stages_and_refusals():
     assert len(stages) == told
 
 
-def test_what_a_hook_raises_goes_to_the_unraisable_hook():
+def test_exception_of_a_hook_is_unraisable():
     caught = []
     before, sys.unraisablehook = sys.unraisablehook, lambda info: caught.append(info.exc_type)
     try:
@@ -413,7 +413,7 @@ def test_what_a_hook_raises_goes_to_the_unraisable_hook():
 
 
 @pytest.mark.parametrize("predicate", ["None", "lambda a, b: True"])
-def test_threads_at_work_when_the_interpreter_ends_do_not_end_it_otherwise(predicate):
+def test_interpreter_exits_cleanly_with_threads_at_work(predicate):
     program = """
         import threading, time, numpy, winnow
         lower = numpy.random.default_rng(1).uniform(0, 12, (3000, 3))

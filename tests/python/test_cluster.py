@@ -1,5 +1,5 @@
-"""Clusters: the pairs of one partition, on virtual ranks, on threads that talk as MPI's processes do,
-and on processes of MPI where there is mpi4py."""
+"""Clusters: the pairs of one partition, on virtual ranks, on threads that communicate like MPI processes, and
+on MPI processes if mpi4py is installed."""
 
 import importlib.util
 import shutil
@@ -72,7 +72,7 @@ def test_virtual_ranks_find_the_pairs_of_one_partition(ranks):
     assert cluster.statistics["bodies"] == 400 - min(5, len(own))
 
 
-def test_what_is_wrong_is_refused():
+def test_invalid_calls_are_refused():
     lower, upper = boxes_of(3, 2)
     cluster = winnow.Cluster(ranks=2)
     cluster.add([1, 2, 3], lower, upper)
@@ -90,7 +90,7 @@ def test_what_is_wrong_is_refused():
 
 
 class Threads:
-    """What mpi4py's communicators have, between threads."""
+    """The interface of mpi4py's communicators, between threads."""
 
     def __init__(self, size, breaks_at=None):
         self.size = size
@@ -127,7 +127,7 @@ def run_on_threads(world, work):
     def run(rank):
         try:
             results[rank] = work(world.of(rank))
-        except Exception as error:  # told by the test
+        except Exception as error:  # reported by the test
             results[rank] = error
 
     threads = [threading.Thread(target=run, args=(rank,)) for rank in range(world.size)]
@@ -139,7 +139,7 @@ def run_on_threads(world, work):
 
 
 
-def test_processes_find_the_pairs_of_one_partition():
+def test_threads_as_ranks_find_the_same_pairs():
     names = names_of(300)
     lower, upper = boxes_of(300, 3)
 
@@ -169,7 +169,7 @@ def test_processes_find_the_pairs_of_one_partition():
     assert results[0][2]["cuts"] > 0
 
 
-def test_what_python_raises_comes_out_and_ends_the_cluster():
+def test_exception_of_a_communicator_ends_the_cluster():
     lower, upper = boxes_of(20, 4)
 
     def work(comm):
@@ -187,7 +187,7 @@ def test_what_python_raises_comes_out_and_ends_the_cluster():
     assert run_on_threads(Threads(2, breaks_at=7), work) == ["ended", "ended"]
 
 
-def test_on_mpi():
+def test_mpi_processes_find_the_same_pairs():
     if importlib.util.find_spec("mpi4py") is None or shutil.which("mpirun") is None:
         pytest.skip("there is no mpi4py")
     program = """

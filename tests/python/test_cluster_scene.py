@@ -1,5 +1,5 @@
-"""Clusters of scenes: the contacts of one scene, on virtual ranks and on threads that talk as MPI's
-processes do."""
+"""Clusters of scenes: the contacts of one scene, on virtual ranks and on threads that communicate like MPI
+processes."""
 
 import gc
 
@@ -24,7 +24,7 @@ def bodies_of_all():
 
 
 def of_one_scene(steps=1, step=0.0):
-    """Pairs by names, of one scene, in each step."""
+    """Returns the pairs of one scene, by names, in each step."""
     shapes, balls, ground = shapes_of_all()
     names, kind, places = bodies_of_all()
     scene = winnow.Scene(shapes)
@@ -79,7 +79,7 @@ def test_virtual_ranks_find_the_contacts_of_one_scene(ranks):
     assert not any(set(gone.tolist()) & pair for pair in together(cluster))
 
 
-def test_digests_are_the_same_on_any_number_of_ranks():
+def test_digest_does_not_depend_on_the_rank_count():
     digests = set()
     for ranks in (1, 3):
         shapes, balls, ground = shapes_of_all()
@@ -93,7 +93,7 @@ def test_digests_are_the_same_on_any_number_of_ranks():
     assert len(digests) == 1
 
 
-def test_processes_find_the_contacts_of_one_scene():
+def test_threads_as_ranks_find_the_same_contacts():
     wanted = of_one_scene()[0]
 
     def work(comm):
@@ -114,7 +114,7 @@ def test_processes_find_the_contacts_of_one_scene():
     assert len({result[1] for result in results}) == 1
 
 
-def test_what_was_saved_goes_on_on_other_ranks():
+def test_saved_cluster_continues_on_other_ranks():
     def made(ranks):
         shapes, balls, ground = shapes_of_all()
         cluster = winnow.ClusterScene(shapes, ranks=ranks)
@@ -136,7 +136,7 @@ def test_what_was_saved_goes_on_on_other_ranks():
     refused("size_mismatch", other.restore, [b""] * 3)
 
 
-def test_what_is_wrong_is_refused():
+def test_invalid_calls_are_refused():
     shapes, balls, ground = shapes_of_all()
     cluster = winnow.ClusterScene(shapes, ranks=2)
     places = np.arange(9.0).reshape(3, 3)
@@ -165,7 +165,7 @@ def test_what_is_wrong_is_refused():
     shapes.remove(ground)
 
 
-def test_arrays_of_contacts_do_not_change_and_outlive_the_cluster():
+def test_contact_arrays_are_constant_and_outlive_the_cluster():
     shapes, balls, ground = shapes_of_all()
     names, kind, places = bodies_of_all()
     cluster = winnow.ClusterScene(shapes)
@@ -182,7 +182,7 @@ def test_arrays_of_contacts_do_not_change_and_outlive_the_cluster():
     assert len(depth) and np.array_equal(depth, before)
 
 
-def test_what_a_support_function_raises_comes_out_of_a_cluster():
+def test_exception_of_a_support_function_is_raised():
     shapes = winnow.Shapes()
     fails = [False]
 

@@ -1,4 +1,4 @@
-"""Defaults of Python are those of C++ and of C, of which a program prints a table."""
+"""Python's defaults equal the defaults of C++ and C, which a program prints as a table."""
 
 import ast
 import os
@@ -13,8 +13,8 @@ DRAWING = dict.fromkeys(("objects", "structure", "labels", "max_depth"))
 SWEEP = dict.fromkeys(("pairs", "tolerance", "touching", "first_only"))
 FEATURES = dict.fromkeys(("min_separation", "tolerance", "max_intervals"))
 
-# Function, struct of C++, and its members by the names of arguments; None: the same name. Whether
-# calls are parallel is not among them: answers are the same, and arrays of Python are long.
+# Function, C++ struct, and its members by the names of arguments; None stands for an equal name.
+# Parallel execution is left out: results are equal, and Python arrays are long.
 SAME = [
     ("Partition.__init__", "PartitionOptions",
      {"volume": None, "margin": None, "margin_share": None, "build_budget": None}),
@@ -63,7 +63,7 @@ SAME = [
 
 
 def value(text):
-    """Of a literal, or of numbers that are none."""
+    """Returns the value of a literal, or of inf and nan."""
     number = text.strip()
     if re.fullmatch(r"-?inf", number):
         return float(number)
@@ -71,7 +71,7 @@ def value(text):
 
 
 def python_defaults(name):
-    """Arguments that have one, from the first line of the docstring."""
+    """Returns the arguments with defaults, from the first line of the docstring."""
     function = winnow._core
     for part in name.split("."):
         function = getattr(function, part, None)
@@ -93,7 +93,7 @@ def table():
 
 
 @pytest.mark.parametrize("function, struct, names", SAME, ids=lambda x: x if isinstance(x, str) else "")
-def test_defaults_are_those_of_cpp_and_c(table, function, struct, names):
+def test_defaults_equal_cpp_and_c(table, function, struct, names):
     own = python_defaults(function)
     if own is None and function.startswith("Cluster"):
         pytest.skip("built without clusters")
@@ -102,7 +102,7 @@ def test_defaults_are_those_of_cpp_and_c(table, function, struct, names):
         assert value(own[argument]) == value(table[row]), function + ": " + argument
 
 
-def test_structures_are_those_of_cpp_and_c(table):
+def test_structures_equal_cpp_and_c(table):
     names = value(python_defaults("Scene.__init__")["structures"])
     of_cpp = table["SceneOptions.structures"]
     assert re.findall(r"'(\w+)'", of_cpp) == names

@@ -1,4 +1,4 @@
-"""Cloth: features that may touch, do touch, or are near each other, beside slow twins."""
+"""Cloth: features that may touch, touch, or are near each other, compared with brute force."""
 
 import threading
 
@@ -14,7 +14,7 @@ KINDS = ("vertex_face", "edge_edge")
 
 
 def sheet(side, height=0.0):
-    """A square of side x side vertices in the plane z = height, and its triangles."""
+    """Returns a square of side x side vertices in the plane z = height, and its triangles."""
     x, y = np.meshgrid(np.arange(side), np.arange(side), indexing="ij")
     places = np.stack([x.ravel(), y.ravel(), np.full(side * side, height)], axis=1).astype(float)
     corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
@@ -36,14 +36,14 @@ def edges_of(triangles):
 
 
 def features(kind, triangles, vertices):
-    """Corners of the first features and of the second."""
+    """Returns the corners of the first features and of the second."""
     if kind == "vertex_face":
         return np.arange(vertices)[:, None], triangles
     return edges_of(triangles), edges_of(triangles)
 
 
 def box_pairs(kind, triangles, start, end, reach):
-    """Pairs of features of one mesh that share no vertex and whose boxes overlap."""
+    """Returns the pairs of features of one mesh that share no vertex and whose boxes overlap."""
     firsts, seconds = features(kind, triangles, len(start))
     points = np.stack([start, end])
     pairs = set()
@@ -61,7 +61,7 @@ def box_pairs(kind, triangles, start, end, reach):
 
 
 def corners(kind, triangles, places, pairs):
-    """Four points of each pair, as feature_impacts has them."""
+    """Returns the four points of each pair, in the order of feature_impacts."""
     firsts, seconds = features(kind, triangles, len(places))
     pairs = np.asarray(pairs, np.int64).reshape(-1, 2)
     return np.concatenate([places[firsts[pairs[:, 0]]], places[seconds[pairs[:, 1]]]], axis=1)
@@ -72,7 +72,7 @@ def as_set(pairs):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_candidates_are_what_boxes_say(kind):
+def test_candidates_are_pairs_of_overlapping_boxes(kind):
     rest, triangles, start, end = crumpled(1)
     mesh = winnow.DeformableMesh()
     mesh.build(rest, triangles)
@@ -87,7 +87,7 @@ def test_candidates_are_what_boxes_say(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_impacts_are_those_of_the_features(kind):
+def test_mesh_impacts_equal_feature_impacts(kind):
     rest, triangles, start, end = crumpled(2)
     mesh = winnow.DeformableMesh(parallel=False)
     mesh.build(rest.astype(np.float32), triangles.astype(np.int64))
@@ -102,7 +102,7 @@ def test_impacts_are_those_of_the_features(kind):
     assert found == {pair: time for pair, time in zip(pairs, truth) if np.isfinite(time)}
 
 
-def test_features_touch_where_they_should():
+def test_features_touch_at_known_times():
     triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
     falling = np.array([[0.2, 0.2, 1], [0.2, 0.2, 3], [2, 2, 1]], float)
     start = np.stack([np.vstack([p, triangle]) for p in falling])
@@ -123,14 +123,14 @@ def test_features_touch_where_they_should():
 
 
 def segment_distance(points):
-    """Of edges (points 0 and 1) and (2 and 3), by looking at many places of both."""
+    """Returns the distance of edges (0, 1) and (2, 3), by sampling both."""
     share = np.linspace(0, 1, 201)[:, None]
     first = points[0] + share * (points[1] - points[0])
     second = points[2] + share * (points[3] - points[2])
     return np.linalg.norm(first[:, None] - second[None], axis=2).min()
 
 
-def test_near_edges_are_as_far_apart_as_their_points():
+def test_near_edges_have_the_sampled_distance():
     rest, triangles, start, end = crumpled(3, 5)
     mesh = winnow.DeformableMesh()
     mesh.build(rest, triangles)
@@ -154,7 +154,7 @@ def test_near_edges_are_as_far_apart_as_their_points():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_two_sheets_meet_on_the_way(kind):
+def test_two_sheets_touch_during_the_motion(kind):
     low, triangles = sheet(5)
     high = sheet(5, 1.0)[0] + [0.25, 0.25, 0]
     meshes = winnow.DeformableMesh(), winnow.DeformableMesh()
@@ -172,7 +172,7 @@ def test_two_sheets_meet_on_the_way(kind):
     assert len(meshes[1].proximity_with(meshes[0], kind, 0.04).distance) == 0
 
 
-def test_a_ball_falls_on_cloth():
+def test_ball_that_falls_on_cloth_hits():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.25)[0])
     cloth = winnow.DeformableMesh()
@@ -191,7 +191,7 @@ def test_a_ball_falls_on_cloth():
     assert early.time.min() == pytest.approx(2.70 / 3, abs=1e-5)
 
 
-def test_arrays_may_be_written_to_after_a_step():
+def test_input_arrays_may_change_after_a_step():
     rest, triangles, start, end = crumpled(4)
     mesh = winnow.DeformableMesh()
     mesh.build(rest, triangles)
@@ -206,7 +206,7 @@ def test_arrays_may_be_written_to_after_a_step():
     assert np.array_equal(truth.time, kept)
 
 
-def test_a_refused_step_changes_nothing():
+def test_refused_step_changes_nothing():
     rest, triangles, start, end = crumpled(6)
     mesh = winnow.DeformableMesh()
     refused("invalid_argument", mesh.self_candidates, "edge_edge")
@@ -246,7 +246,7 @@ def test_a_refused_step_changes_nothing():
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1), st.sampled_from(KINDS))
 @settings(max_examples=200)
-def test_any_arrays_are_taken_or_refused(first, second, third, number, kind):
+def test_any_arrays_are_accepted_or_refused(first, second, third, number, kind):
     rest, triangles, start, end = crumpled(7, 3)
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(1.0)[0])
@@ -272,7 +272,7 @@ def test_any_arrays_are_taken_or_refused(first, second, third, number, kind):
             pass
 
 
-def test_threads_ask_and_move_at_once():
+def test_threads_may_query_and_move_at_once():
     meshes = []
     for seed in (8, 9):
         rest, triangles, start, end = crumpled(seed, 5)

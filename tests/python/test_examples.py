@@ -1,4 +1,4 @@
-"""The examples do what they are examples of."""
+"""The examples run and show the effect that they are about."""
 
 import os
 import sys
@@ -21,12 +21,12 @@ def test_boids_align():
     assert alignment[-1] > 3 * alignment[0]
 
 
-def test_a_camera_sees_part_of_the_world():
+def test_camera_sees_part_of_the_world():
     for seen, inside in culling.walk(5000):
         assert 0 < inside < seen < 5000
 
 
-def test_a_lidar_sees_ground_and_boxes():
+def test_lidar_hits_ground_and_boxes():
     points, kinds = lidar.scan()
     assert len(points) > 500 and 0 < kinds.sum() < len(kinds)
     assert np.abs(points).max() < 70
@@ -37,6 +37,6 @@ def test_grains_leave_the_funnel():
     assert left > 0 and depth < 0.1
 
 
-def test_arms_collide_where_they_fold():
+def test_folded_arms_collide():
     straight, folded = np.zeros(5), np.array([0, 0, 3.0, 0.1, 0])
     assert robot_self_collision.collides(np.array([straight, folded])).tolist() == [False, True]

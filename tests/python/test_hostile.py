@@ -1,4 +1,4 @@
-"""Bad input is an exception that names its status, and changes nothing."""
+"""Bad input raises an exception that names the status, and changes nothing."""
 
 import threading
 
@@ -16,7 +16,7 @@ SHAPES = numbers.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=5)
 
 @st.composite
 def any_array(draw):
-    """Arrays of any type, shape, layout and content."""
+    """Draws an array of any type, shape, layout and content."""
     dtype = np.dtype(draw(DTYPES))
     shape = draw(st.one_of(st.tuples(st.integers(0, 6), st.just(3)), SHAPES))
     if dtype.kind == "f":
@@ -50,7 +50,7 @@ def small_world():
 
 @given(any_array(), any_array(), any_array())
 @settings(max_examples=300)
-def test_any_arrays_are_taken_or_refused_whole(first, second, third):
+def test_any_arrays_are_accepted_or_refused_whole(first, second, third):
     partition, keys, truth = small_world()
     calls = [
         lambda: partition.insert(first, second, third),
@@ -82,7 +82,7 @@ def test_any_arrays_are_taken_or_refused_whole(first, second, third):
 
 @given(any_array(), any_array(), any_array(), st.sampled_from(["closest", "any", "all", "some"]))
 @settings(max_examples=300)
-def test_any_questions_are_answered_or_refused(first, second, third, find):
+def test_any_queries_are_answered_or_refused(first, second, third, find):
     partition, keys, _ = small_world()
     for ask in [
         lambda: partition.cast_rays(first, second, find, min_t=third),
@@ -121,7 +121,7 @@ def refused(status, call, *arguments, **named):
     return str(caught.value)
 
 
-def test_statuses_are_named():
+def test_exceptions_name_their_status():
     partition, keys, truth = small_world()
     nan = np.full((1, 3), np.nan)
     zero, one = np.zeros((1, 3)), np.ones((1, 3))
@@ -170,7 +170,7 @@ def test_stale_and_foreign_keys_change_nothing():
     assert pair_set(partition.self_pairs()) == truth
 
 
-def test_empty_arrays_are_questions_without_answers():
+def test_empty_arrays_give_empty_results():
     partition, keys, _ = small_world()
     none = np.empty((0, 3))
     assert len(partition.insert(none, none)) == 0
@@ -185,7 +185,7 @@ def test_empty_arrays_are_questions_without_answers():
     assert len(winnow.Partition().self_pairs()) == 0
 
 
-def test_more_than_there_is_memory_for_is_a_memory_error():
+def test_too_large_request_is_a_memory_error():
     partition, _, _ = small_world()
     with pytest.raises(MemoryError):
         partition.nearest(np.zeros((2, 3)), 2**60)
@@ -196,7 +196,7 @@ def test_more_than_there_is_memory_for_is_a_memory_error():
     assert len(partition) == 20
 
 
-def test_objects_that_were_not_made_are_refused():
+def test_uninitialised_objects_are_refused():
     for kind in (winnow.Partition, winnow.PairEvents):
         with pytest.raises(TypeError):
             kind.__new__(kind).clear()
@@ -217,7 +217,7 @@ def callables_of(module):
             yield value
 
 
-def test_none_in_place_of_anything_is_taken_or_refused():
+def test_none_as_any_argument_is_accepted_or_refused():
     for kind in (winnow.Scene, winnow.Sensors):
         with pytest.raises(TypeError):
             kind(None)
@@ -231,7 +231,7 @@ def test_none_in_place_of_anything_is_taken_or_refused():
                 pass
 
 
-def test_threads_ask_and_change_at_once():
+def test_threads_may_query_and_change_at_once():
     lower, upper = random_boxes(32, 400)
     partition, other = winnow.Partition(), winnow.Partition("AutoPartition")
     keys = partition.insert(lower, upper)

@@ -1,4 +1,4 @@
-"""Which bodies meet, from where on, and which contacts hang together."""
+"""Which bodies collide, contact offsets, and islands of contacts."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ NULL = np.uint64(winnow.NULL_KEY)
 
 @pytest.fixture
 def row():
-    """Ten balls of radius 0.5 in a row, each of which overlaps its neighbours."""
+    """Returns ten balls of radius 0.5 in a row, each of which overlaps its neighbours."""
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.5)[0])
     scene = winnow.Scene(shapes)
@@ -30,7 +30,7 @@ def touching(scene, level="boolean"):
 NEIGHBOURS = {(i, i + 1) for i in range(9)}
 
 
-def test_ignored_pairs_never_meet(row):
+def test_ignored_pairs_have_no_contacts(row):
     _, scene, keys, _ = row
     assert touching(scene) == NEIGHBOURS
     links = np.stack([keys[:4], keys[1:5]], axis=1)
@@ -46,7 +46,7 @@ def test_ignored_pairs_never_meet(row):
     assert not scene.is_ignored([[keys[5], keys[6]]]).any()
 
 
-def test_layers_meet_unless_told_otherwise(row):
+def test_layers_collide_by_default(row):
     _, scene, keys, ball = row
     scene.set_layer(keys[::2], 4095)
     scene.set_layer(keys[1::2], np.arange(5) + 1000)
@@ -89,7 +89,7 @@ def test_contacts_begin_and_rest_at_offsets(row):
 
 
 def islands_of(pairs, movable):
-    """By pair, the number of its island in the order of first pairs, by joining sets."""
+    """Returns, for each pair, the number of its island, in the order of first pairs, by joining sets."""
     sets = {body: {body} for body in movable}
     for a, b in pairs:
         if a in sets and b in sets and sets[a] is not sets[b]:
@@ -105,7 +105,7 @@ def islands_of(pairs, movable):
     return numbers
 
 
-def test_islands_and_colours_are_what_a_twin_says():
+def test_islands_and_colours_equal_a_reference():
     random = np.random.default_rng(91)
     shapes = winnow.Shapes()
     scene = winnow.Scene(shapes)
@@ -133,7 +133,7 @@ def test_islands_and_colours_are_what_a_twin_says():
     refused("invalid_key", winnow.Scene(shapes).islands, contacts)
 
 
-def test_contacts_tell_where_they_were():
+def test_contacts_have_their_places_in_the_last_frame():
     random = np.random.default_rng(92)
     shapes = winnow.Shapes()
     box = int(shapes.add_boxes([0.5, 0.5, 0.5])[0])
@@ -175,7 +175,7 @@ def floor_of_tiles(**options):
     return contacts
 
 
-def test_regions_have_one_manifold():
+def test_contact_reduction_leaves_one_manifold_for_each_region():
     raw, reduced = floor_of_tiles(), floor_of_tiles(contact_reduction=True)
     assert len(raw) == len(reduced) == 1
     assert len(raw.distance) > 1 and len(reduced.distance) == 1
@@ -183,7 +183,7 @@ def test_regions_have_one_manifold():
     assert reduced.contact_depth == pytest.approx(0.005, abs=1e-5)
 
 
-def test_seams_of_floors_are_none():
+def test_seamless_floors_have_no_ghost_contacts():
     aslant = {}
     for seamless in (False, True):
         random = np.random.default_rng(94)
@@ -205,7 +205,7 @@ def test_seams_of_floors_are_none():
     assert aslant[True] == 0 < aslant[False]
 
 
-def test_reserved_scenes_ask_for_no_more(row):
+def test_reserved_scene_does_not_allocate(row):
     shapes, _, _, ball = row
     scene = winnow.Scene(shapes)
     contacts = winnow.Contacts()
@@ -225,7 +225,7 @@ def test_reserved_scenes_ask_for_no_more(row):
     refused("invalid_argument", scene.reserve, level="all")
 
 
-def test_composites_tell_their_parts():
+def test_composite_shapes_list_their_parts():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.25)[0])
     field = shapes.add_height_field(np.zeros((3, 4), np.float32))
@@ -252,7 +252,7 @@ def test_composites_tell_their_parts():
     refused("invalid_key", shapes.compound_children, mesh)
 
 
-def test_closed_meshes_can_be_solids():
+def test_closed_mesh_can_be_solid():
     shapes = winnow.Shapes()
     corners = [[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
     faces = [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
@@ -276,7 +276,7 @@ def test_closed_meshes_can_be_solids():
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=100)
-def test_any_arrays_are_taken_or_refused(first, second, third, number):
+def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 2.0])
     scene = winnow.Scene(shapes)

@@ -1,4 +1,4 @@
-"""Shapes that move and turn: when they meet, what casts and sweeps of scenes find on the way."""
+"""Shapes in rigid motion: times of impact, motion casts and sweeps of scenes."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def random_poses(count, side):
 
 
 def bounded_distances(shapes, shape_of, poses, pairs):
-    """Of pairs of convex shapes where they stand, and by how much these may be wrong."""
+    """Returns the distances of pairs of convex shapes at rest, and their error bounds."""
     result = winnow.NarrowPhase().collide(shapes, shape_of, poses, pairs, level="distance")
     distance, bound = np.empty(len(pairs)), np.empty(len(pairs))
     distance[result.pair], bound[result.pair] = result.distance, result.error_bound
@@ -27,12 +27,12 @@ def bounded_distances(shapes, shape_of, poses, pairs):
 
 
 def distances(shapes, shape_of, poses, pairs):
-    """Of pairs of convex shapes where they stand."""
+    """Returns the distances of pairs of convex shapes at rest."""
     return bounded_distances(shapes, shape_of, poses, pairs)[0]
 
 
 def ball_times(radius, start, end, pairs):
-    """When moving balls first touch, by the quadratic equation; infinity without."""
+    """Returns when moving balls first touch, by the quadratic equation; infinity if they do not."""
     first, second = pairs.T
     gap = start[second] - start[first]
     speed = (end[second] - start[second]) - (end[first] - start[first])
@@ -47,7 +47,7 @@ def ball_times(radius, start, end, pairs):
 
 @pytest.fixture(scope="module")
 def crowd():
-    """Convex shapes of several kinds, motions of 40 bodies, and all of their pairs."""
+    """Returns convex shapes of several kinds, motions of 40 bodies, and all of their pairs."""
     shapes = winnow.Shapes()
     ids = np.concatenate(
         [
@@ -64,7 +64,7 @@ def crowd():
     return shapes, shape_of, motions, pairs
 
 
-def test_motions_begin_and_end_where_they_should():
+def test_motions_begin_and_end_at_the_given_poses():
     start, end = random_poses(30, 9), random_poses(30, 9)
     motions = winnow.motions_between(start, (end[:, :3], end[:, 3:].astype(np.float32)))
     assert motions.shape == (30, 13) and np.array_equal(motions[:, :7], start)
@@ -80,7 +80,7 @@ def test_motions_begin_and_end_where_they_should():
     assert np.allclose(half[3:], [np.cos(np.pi / 4), 0, 0, np.sin(np.pi / 4)])
 
 
-def test_balls_meet_when_the_equation_says():
+def test_ball_impacts_solve_the_quadratic_equation():
     shapes = winnow.Shapes()
     radius = RANDOM.uniform(0.1, 0.5, 60)
     ids = shapes.add_spheres(radius)
@@ -98,7 +98,7 @@ def test_balls_meet_when_the_equation_says():
         assert impacts.time[hit] == pytest.approx(truth[hit], abs=CLOSE)
 
 
-def test_shapes_that_turn_are_apart_until_they_meet(crowd):
+def test_rotating_shapes_are_apart_before_the_impact(crowd):
     shapes, shape_of, motions, pairs = crowd
     impacts = winnow.time_of_impact(shapes, shape_of, motions, pairs)
     assert 50 < impacts.hit.sum() < len(pairs)
@@ -115,7 +115,7 @@ def test_shapes_that_turn_are_apart_until_they_meet(crowd):
         assert abs(there[0] - impacts.gap[i]) <= impacts.error_bound[i] + bound[0] + 1e-12
 
 
-def test_meshes_are_met_by_a_part():
+def test_mesh_impact_names_the_triangle():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.5)[0])
     floor = shapes.add_mesh([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2], [0, 2, 3]])
@@ -127,7 +127,7 @@ def test_meshes_are_met_by_a_part():
     assert np.stack(impacts.normal, axis=1)[:, 2] == pytest.approx([-1, 1])
 
 
-def test_columns_outlive_the_answer(crowd):
+def test_columns_outlive_the_result(crowd):
     shapes, shape_of, motions, pairs = crowd
     impacts = winnow.time_of_impact(shapes, shape_of, motions, pairs)
     time, x = impacts.time[::-1], impacts.normal[0]
@@ -138,7 +138,7 @@ def test_columns_outlive_the_answer(crowd):
     assert not time.flags.writeable
 
 
-def test_motions_are_read_whatever_their_layout(crowd):
+def test_motions_of_any_layout_are_read(crowd):
     shapes, shape_of, motions, pairs = crowd
     truth = winnow.time_of_impact(shapes, shape_of, motions, pairs).time
     spread = np.repeat(motions, 2, axis=0)[::2]
@@ -151,7 +151,7 @@ def standing(shapes, shape_of, poses):
     return scene, scene.add(shape_of, poses, data=np.arange(len(poses)))
 
 
-def test_casts_that_turn_find_what_pairs_do(crowd):
+def test_motion_casts_equal_pairwise_impacts(crowd):
     shapes, shape_of, motions, _ = crowd
     poses = random_poses(40, 4)
     scene, keys = standing(shapes, shape_of, poses)
@@ -174,7 +174,7 @@ def test_casts_that_turn_find_what_pairs_do(crowd):
             assert keys[closest.data[i]] == closest.key[i]
 
 
-def test_sweeps_find_what_pairs_do(crowd):
+def test_sweeps_equal_pairwise_impacts(crowd):
     shapes, shape_of, motions, pairs = crowd
     scene, keys = standing(shapes, shape_of, motions[:, :7])
     ends = winnow.poses_at(motions, 1.0)
@@ -198,7 +198,7 @@ def test_sweeps_find_what_pairs_do(crowd):
     assert first_of_few == pytest.approx(swept.time[swept.first[swept.first != winnow.NO_IMPACT]], abs=CLOSE)
 
 
-def test_sweeps_look_at_the_pairs_that_are_wanted():
+def test_sweep_options_select_pairs():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.5)[0])
     scene = winnow.Scene(shapes)
@@ -222,7 +222,7 @@ def test_sweeps_look_at_the_pairs_that_are_wanted():
     assert len(scene.sweep(keys, ends, touching=False).time) == 0
 
 
-def test_what_is_no_motion_is_refused(crowd):
+def test_invalid_motions_are_refused(crowd):
     shapes, shape_of, motions, pairs = crowd
     scene, keys = standing(shapes, shape_of[:2], motions[:2, :7])
     bad = motions[:2].copy()
@@ -268,7 +268,7 @@ def test_what_is_no_motion_is_refused(crowd):
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=200)
-def test_any_arrays_are_taken_or_refused(first, second, third, number):
+def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 2.0])
     scene, keys = standing(shapes, ids, np.zeros((2, 3)))

@@ -1,4 +1,4 @@
-"""Shapes, and pairs of convex ones."""
+"""Shapes, and the narrow phase on pairs of convex shapes."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def poses_at(*positions):
     return poses
 
 
-def test_two_balls_touch_where_they_should():
+def test_two_balls_touch_as_computed_by_hand():
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 0.5])
     narrow = winnow.NarrowPhase()
@@ -28,7 +28,7 @@ def test_two_balls_touch_where_they_should():
     assert np.allclose([x[0] for x in result.contact_position], [0.875, 0, 0])
 
 
-def test_every_kind_of_shape_has_its_box():
+def test_every_kind_of_shape_has_its_bounds():
     shapes = winnow.Shapes()
     ids = [
         *shapes.add_spheres(1.0),
@@ -50,7 +50,7 @@ def test_every_kind_of_shape_has_its_box():
     assert shapes.footprint()["convex"][1] > 0
 
 
-def test_levels_agree_with_a_twin_on_balls():
+def test_levels_on_balls_agree_with_a_reference():
     random = np.random.default_rng(41)
     radius = random.uniform(0.1, 1.0, 300)
     poses = random.uniform(0, 5, (300, 3))
@@ -70,7 +70,7 @@ def test_levels_agree_with_a_twin_on_balls():
     assert narrow.collide(shapes, ids, poses, pairs, margin=0.1).level == "manifold"
 
 
-def test_poses_of_any_layout_give_the_same_answers():
+def test_poses_of_any_layout_give_equal_results():
     random = np.random.default_rng(42)
     poses = random.normal(size=(60, 7))
     shapes = winnow.Shapes()
@@ -91,7 +91,7 @@ def test_poses_of_any_layout_give_the_same_answers():
         )
 
 
-def test_results_stay_as_they_are():
+def test_results_do_not_change_later():
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 1.0])
     narrow = winnow.NarrowPhase()
@@ -105,7 +105,7 @@ def test_results_stay_as_they_are():
         first[0] = 3
 
 
-def test_rays_enter_shapes():
+def test_rays_hit_shapes_at_known_distances():
     shapes = winnow.Shapes()
     ids = [*shapes.add_spheres(1.0), *shapes.add_boxes([1.0, 1, 1]), shapes.add_hull(CUBE)]
     hits = shapes.cast_rays(ids, np.zeros((3, 3)), [-5, 0, 0], [2, 0, 0])
@@ -114,7 +114,7 @@ def test_rays_enter_shapes():
     assert not missed.hit.any() and np.isinf(missed.t).all()
 
 
-def test_shapes_that_are_used_stay():
+def test_shapes_in_use_cannot_be_removed():
     shapes = winnow.Shapes()
     child = shapes.add_boxes([0.5, 0.5, 0.5])
     compound = shapes.add_compound(child, [[0, 0, 0]])
@@ -139,7 +139,7 @@ def test_shapes_that_are_used_stay():
     shapes.remove([mesh])
 
 
-def test_statuses_are_named():
+def test_exceptions_name_their_status():
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 2.0])
     narrow = winnow.NarrowPhase()
@@ -178,7 +178,7 @@ def test_height_fields_and_meshes_change_in_place():
     refused("size_mismatch", shapes.refit_mesh, mesh, CUBE[:3])
 
 
-def test_compounds_are_made_of_meshes_too():
+def test_compounds_may_contain_meshes():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres([0.5])[0])
     mesh = shapes.add_mesh(CUBE, [[0, 1, 2], [5, 6, 7]])
@@ -201,7 +201,7 @@ def test_compounds_are_made_of_meshes_too():
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=200)
-def test_any_arrays_are_taken_or_refused(first, second, third, number):
+def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 2.0])
     scene = winnow.Scene(shapes)

@@ -37,7 +37,7 @@ def test_every_structure_and_volume_finds_all_pairs(structure, volume):
         assert found == truth
 
 
-def test_pairs_follow_what_moves_on_fresh_and_on_held_arrays():
+def test_pairs_follow_moves_on_fresh_and_held_arrays():
     random = np.random.default_rng(2)
     lower, upper = random_boxes(2, 400)
     partition, keys = filled(lower, upper)
@@ -62,7 +62,7 @@ def test_pairs_follow_what_moves_on_fresh_and_on_held_arrays():
             partition.update(keys[moved], lower[moved], upper[moved])
 
 
-def test_an_array_that_nobody_holds_is_filled_again_where_it_lies():
+def test_array_without_references_is_filled_in_place():
     partition, _ = filled(*random_boxes(3, 300))
     address = partition.self_pairs().ctypes.data
     for _ in range(3):
@@ -73,7 +73,7 @@ def test_an_array_that_nobody_holds_is_filled_again_where_it_lies():
     assert partition.statistics()["incremental_queries"] >= 4
 
 
-def test_arrays_outlive_the_partition_and_cannot_be_written_to():
+def test_arrays_outlive_the_partition_and_are_read_only():
     lower, upper = random_boxes(4, 100)
     partition, _ = filled(lower, upper)
     pairs = partition.self_pairs()
@@ -87,7 +87,7 @@ def test_arrays_outlive_the_partition_and_cannot_be_written_to():
         part.flags.writeable = True
 
 
-def test_floats_are_read_where_they_lie_whatever_their_strides():
+def test_floats_of_any_stride_are_read_in_place():
     lower, upper = random_boxes(5, 50)
     records = np.zeros((50, 9), np.float32)
     records[:, 1:4], records[:, 5:8] = lower, upper
@@ -106,7 +106,7 @@ def test_floats_are_read_where_they_lie_whatever_their_strides():
         assert pair_set(partition.self_pairs()) == twin_pairs(low, high)
 
 
-def test_what_cannot_be_read_in_place_is_copied():
+def test_unsuitable_arrays_are_copied():
     lower, upper = random_boxes(6, 50)
     odd = np.zeros(50 * 12 + 1, np.uint8)[1:].view(np.float32).reshape(50, 3)
     odd[:] = lower
@@ -132,7 +132,7 @@ def test_doubles_are_rounded_outward():
     assert np.nextafter(lower[0, 0], np.float32(1)) > low[0, 0]
 
 
-def test_keys_are_known_until_their_objects_are_removed():
+def test_keys_are_valid_until_removal():
     lower, upper = random_boxes(7, 10)
     partition = winnow.Partition()
     keys = partition.insert(lower, upper, data=np.arange(10) * 3)
@@ -148,7 +148,7 @@ def test_keys_are_known_until_their_objects_are_removed():
     assert np.array_equal(low, lower[5:7]) and np.array_equal(high, upper[5:7])
 
 
-def test_spheres_and_kdops_are_tested_as_such():
+def test_spheres_and_kdops_are_tested_exactly():
     balls = winnow.Partition(volume="sphere")
     keys = balls.insert_spheres([[0, 0, 0], [1.5, 1.5, 0]], 1.0)
     assert len(balls.self_pairs()) == 0
@@ -170,13 +170,13 @@ def test_spheres_and_kdops_are_tested_as_such():
         winnow.Partition().insert_spheres(np.zeros((1, 3)), 1.0)
 
 
-def test_events_say_what_began_and_ended():
+def test_events_report_begun_and_ended_pairs():
     lower, upper = random_boxes(8, 300)
     partition, keys = filled(lower, upper)
     events, alone = winnow.PairEvents(), winnow.PairEvents()
     before = set()
     for frame in range(8):
-        held = partition.self_pairs(events)  # held over the next call in every second frame
+        held = partition.self_pairs(events)  # kept over the next call in every second frame
         partition.pair_changes(alone)
         now = pair_set(held)
         for found in (events, alone):
@@ -192,7 +192,7 @@ def test_events_say_what_began_and_ended():
         partition.update(keys[some], lower[some], upper[some])
 
 
-def test_events_give_client_data_of_objects_that_are_gone():
+def test_ended_pairs_have_the_client_data():
     lower, upper = random_boxes(12, 200)
     partition = winnow.Partition()
     keys = partition.insert(lower, upper, np.arange(200) + 2**40)
@@ -200,7 +200,7 @@ def test_events_give_client_data_of_objects_that_are_gone():
     events = winnow.PairEvents(client_data=True)
     partition.self_pairs(events)
     partition.remove(keys[:50])
-    # Their ids are others' now.
+    # New objects get their ids.
     fresh = partition.insert(lower[:50] + 0.4, upper[:50] + 0.4, np.arange(50))
     data_of.update(zip(fresh.tolist(), range(50)))
     partition.self_pairs(events)
@@ -213,7 +213,7 @@ def test_events_give_client_data_of_objects_that_are_gone():
     assert without.begun_data.shape == without.ended_data.shape == (0, 2)
 
 
-def test_events_are_not_filled_while_an_array_shows_them():
+def test_events_are_not_overwritten_while_referenced():
     partition, _ = filled(*random_boxes(9, 50))
     events = winnow.PairEvents()
     partition.self_pairs(events)
@@ -227,7 +227,7 @@ def test_events_are_not_filled_while_an_array_shows_them():
     partition.self_pairs(events)
 
 
-def test_pairs_with_another_partition_and_with_itself():
+def test_pairs_with_another_partition_and_itself_are_right():
     lower, upper = random_boxes(10, 150)
     one, _ = filled(lower[:100], upper[:100])
     other, _ = filled(lower[100:], upper[100:], "SweepAndPrune")
@@ -237,7 +237,7 @@ def test_pairs_with_another_partition_and_with_itself():
     assert len(one.pairs_with(one)) >= 100
 
 
-def test_filters_part_layers_and_environments():
+def test_filters_separate_layers_and_environments():
     partition = winnow.Partition()
     keys = partition.insert(np.zeros((4, 3)), np.ones((4, 3)))
     partition.set_filter(keys, environment=[0, 0, 1, winnow.EVERY_ENVIRONMENT])
@@ -248,7 +248,7 @@ def test_filters_part_layers_and_environments():
     assert layers.tolist() == [2, 2, 1, 1] and mask[0] == 1 and environment[2] == 1
 
 
-def test_structures_change_while_objects_stay():
+def test_exchanged_structure_keeps_the_objects():
     lower, upper = random_boxes(11, 200)
     partition, keys = filled(lower, upper, "AutoPartition", margin=0.01, margin_share=0.05)
     assert partition.margin == (pytest.approx(0.01), pytest.approx(0.05))
@@ -263,7 +263,7 @@ def test_structures_change_while_objects_stay():
     assert partition.contains(keys).all()
 
 
-def test_memory_is_told_kept_and_given_back():
+def test_memory_is_reported_kept_and_released():
     partition = winnow.Partition()
     partition.reserve(1000, pairs=5000, touch=True)
     lower, upper = random_boxes(12, 1000)
@@ -277,7 +277,7 @@ def test_memory_is_told_kept_and_given_back():
     assert partition.footprint()["bounds"] == (0, 0)
 
 
-def test_a_drawing_shows_every_object():
+def test_drawing_shows_every_object():
     lower, upper = random_boxes(13, 40)
     partition, _ = filled(lower, upper)
     drawing = partition.debug_draw(labels=True)
@@ -287,13 +287,13 @@ def test_a_drawing_shows_every_object():
     assert len(partition.debug_draw(structure=False).boxes) == 40
 
 
-def test_boxes_far_away_are_measured_from_a_point_among_them():
+def test_outward_boxes_far_away_are_tight():
     low = np.array([[1e8, 1e8, 1e8]])
     lower, upper = winnow.outward(low, low + 0.25, [1e8, 1e8, 1e8])
     assert lower.tolist() == [[0, 0, 0]] and upper.tolist() == [[0.25, 0.25, 0.25]]
 
 
-def test_instruction_sets_can_be_chosen():
+def test_instruction_sets_can_be_selected():
     usual = winnow.isa_name()
     assert usual in winnow.available_isas()
     lower, upper = random_boxes(14, 300)

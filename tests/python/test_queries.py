@@ -1,4 +1,4 @@
-"""Rays, swept volumes, regions and nearest objects, many at a time."""
+"""Rays, swept volumes, regions and nearest objects, in batches."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def random_rays(seed, count):
 
 
 def entries(lower, upper, origins, directions):
-    """(rays, boxes): where each enters each."""
+    """Returns the entry of each ray into each box, as an array (rays, boxes)."""
     return np.array(
         [
             [ray_entry(low, high, o.astype(float), d.astype(float)) for low, high in zip(lower, upper)]
@@ -31,7 +31,7 @@ def entries(lower, upper, origins, directions):
     )
 
 
-def test_a_ray_meets_the_nearest_of_two_boxes():
+def test_ray_hits_the_nearer_of_two_boxes():
     partition = winnow.Partition()
     keys = partition.insert([[2, 0, 0], [5, 0, 0]], [[3, 1, 1], [6, 1, 1]], data=[7, 8])
     hits = partition.cast_rays([[0, 0.5, 0.5]], [[1, 0, 0]])
@@ -44,9 +44,9 @@ def test_a_ray_meets_the_nearest_of_two_boxes():
     assert none.key[0] == winnow.NULL_KEY and none.t[0] == np.inf
 
 
-def test_rays_meet_what_a_twin_meets(world):
+def test_rays_agree_with_a_reference(world):
     partition, lower, upper, keys = world
-    origins, directions = random_rays(22, 600)  # more than one task has
+    origins, directions = random_rays(22, 600)  # more than one task processes
     truth = entries(lower, upper, origins, directions)
     closest = partition.cast_rays(origins, directions)
     assert np.allclose(closest.t, truth.min(axis=1), rtol=1e-6)
@@ -62,7 +62,7 @@ def test_rays_meet_what_a_twin_meets(world):
         assert (np.diff(every.t[mine]) >= 0).all()
 
 
-def test_rays_of_any_layout_get_the_same_answer(world):
+def test_rays_of_any_layout_give_equal_results(world):
     partition, _, _, _ = world
     origins, directions = random_rays(23, 50)
     records = np.hstack([origins, directions])
@@ -77,7 +77,7 @@ def test_rays_of_any_layout_get_the_same_answer(world):
     assert np.array_equal(partition.cast_rays(origins, directions, max_t=1e30).t, answer)
 
 
-def test_swept_volumes_of_no_size_are_rays(world):
+def test_swept_volumes_of_zero_size_equal_rays(world):
     partition, _, _, _ = world
     origins, directions = random_rays(24, 300)
     for find in ("closest", "all"):
@@ -93,7 +93,7 @@ def test_swept_volumes_of_no_size_are_rays(world):
     assert (larger.t <= partition.cast_rays(origins, directions).t).all()
 
 
-def test_boxes_meet_what_a_twin_meets(world):
+def test_box_overlaps_agree_with_a_reference(world):
     partition, lower, upper, _ = world
     low, high = random_boxes(25, 80)
     truth = set(zip(*(x.tolist() for x in np.nonzero(overlapping(low, high, lower, upper)))))
@@ -106,7 +106,7 @@ def lists(overlaps):
     return [set(overlaps.ids[a:b].tolist()) for a, b in zip(first[:-1], first[1:])]
 
 
-def test_regions_meet_what_a_twin_meets(world):
+def test_region_overlaps_agree_with_a_reference(world):
     partition, lower, upper, _ = world
     random = np.random.default_rng(26)
     centers = random.uniform(0, 7, (300, 3)).astype(np.float32)
@@ -124,11 +124,12 @@ def test_regions_meet_what_a_twin_meets(world):
     assert lists(partition.overlap_oriented_boxes(centers, [half] * 3, np.eye(3))) == boxes
 
 
-def test_what_touches_in_double_is_met():
+def test_regions_that_touch_in_double_are_found():
     random = np.random.default_rng(27)
     count, radius = 4000, 0.0625
     centers = random.uniform(0, 1, (count, 3))
-    # A box for each ball in a world of its own, whose upper side is the lowest float not below it.
+    # Each ball has a box in its own environment, whose upper side is the lowest float not below the
+    # ball.
     side = (centers[:, 0] - radius).astype(np.float32)
     beyond = np.nextafter(side, np.float32(np.inf))
     side = np.where(side.astype(float) < centers[:, 0] - radius, beyond, side)
@@ -154,7 +155,7 @@ def test_what_touches_in_double_is_met():
         assert all(key in hits.key[a:b] for key, a, b in zip(keys, first[:-1], first[1:]))
 
 
-def test_inside_is_told_from_crossing():
+def test_inside_and_crossing_objects_are_separated():
     partition = winnow.Partition()
     partition.insert([[0, 0, 0], [3, 0, 0], [9, 9, 9]], [[1, 1, 1], [4, 1, 1], [10, 10, 10]])
     found = partition.overlap_spheres([[0.5, 0.5, 0.5]], [2.8])
@@ -162,7 +163,7 @@ def test_inside_is_told_from_crossing():
     assert found.crossing.tolist() == [1] and found.first.tolist() == [0, 2]
 
 
-def test_cameras_see_what_lies_before_them():
+def test_cameras_see_the_objects_in_front():
     partition = winnow.Partition()
     partition.insert([[-1, -1, -6], [-1, -1, 5], [40, 0, -9]], [[1, 1, -5], [1, 1, 6], [41, 1, -8]])
     frusta = winnow.perspective(np.zeros((2, 3)), [[0, 0, -1], [0, 0, 1]], [0, 1, 0], 1.0, 1.6, 0.1, 50)
@@ -183,7 +184,7 @@ def test_cameras_see_what_lies_before_them():
         winnow.perspective([[0, 0, 0]], [0, 0, 0], [0, 1, 0], 1.0, 1.6, 0.1, 50)
 
 
-def test_nearest_are_those_of_a_twin(world):
+def test_nearest_agrees_with_a_reference(world):
     partition, lower, upper, keys = world
     points = np.random.default_rng(27).uniform(-1, 8, (400, 3)).astype(np.float32)
     gap = np.maximum(np.maximum(lower[None] - points[:, None], points[:, None] - upper[None]), 0)
@@ -200,7 +201,7 @@ def test_nearest_are_those_of_a_twin(world):
     assert partition.nearest(points, 0).t.shape == (400, 0)
 
 
-def test_filters_part_who_asks_from_who_is_there(world):
+def test_filters_separate_queries_from_objects(world):
     partition, _, _, keys = world
     partition.set_filter(keys[:150], layers=2)
     origins, directions = random_rays(28, 200)

@@ -1,4 +1,4 @@
-"""What a program did is written down, and played with the same answers."""
+"""Programs are recorded, and replayed with equal results."""
 
 import os
 import pathlib
@@ -31,7 +31,7 @@ def played(file):
     return counts
 
 
-def test_partitions_are_recorded(file):
+def test_partitions_are_recorded_and_replayed(file):
     lower, upper = random_boxes(101, 300)
     recorder = winnow.Recorder(file)
     partition = winnow.Partition("HierarchicalGrid", recorder=recorder)
@@ -75,7 +75,7 @@ def test_partitions_are_recorded(file):
     assert counts["questions"] == 4 * (4 + 3 * 10 + 1 + 20 + 20) + 1
 
 
-def test_scenes_are_recorded(file):
+def test_scenes_are_recorded_and_replayed(file):
     random = np.random.default_rng(102)
     shapes = winnow.Shapes()
     ids = np.concatenate([shapes.add_spheres([0.5, 0.3]), shapes.add_boxes([[0.4, 0.3, 0.5]])])
@@ -127,7 +127,7 @@ def test_scenes_are_recorded(file):
     assert counts["frames"] == 5 and counts["worlds"] == 1
 
 
-def test_sweeps_sensors_predicates_and_what_is_loaded_are_played(file):
+def test_sweeps_sensors_and_predicates_are_replayed(file):
     recorder = winnow.Recorder(file)
     shapes = winnow.Shapes()
     ball = shapes.add_spheres([0.6])
@@ -158,7 +158,7 @@ def test_sweeps_sensors_predicates_and_what_is_loaded_are_played(file):
     assert played(file)["questions"] >= 7
 
 
-def test_a_recorded_scene_is_asked_with_one_contacts(file):
+def test_recorded_scene_cannot_return_to_earlier_contacts(file):
     recorder = winnow.Recorder(file)
     shapes = winnow.Shapes()
     scene = winnow.Scene(shapes, recorder=recorder)
@@ -171,7 +171,7 @@ def test_a_recorded_scene_is_asked_with_one_contacts(file):
     assert recorder.status == "unsupported" and len(one) == 8
 
 
-def test_recordings_outlive_what_they_are_of(file):
+def test_recording_outlives_the_recorder(file):
     recorder = winnow.Recorder(file)
     partition = winnow.Partition(recorder=recorder)
     partition.insert(*random_boxes(103, 20))
@@ -182,7 +182,7 @@ def test_recordings_outlive_what_they_are_of(file):
     assert counts["worlds"] == counts["questions"] == 1
 
 
-def test_a_recording_goes_where_a_path_says(tmp_path):
+def test_recording_accepts_any_kind_of_path(tmp_path):
     plain = tmp_path / "one.winnow"
     for path in (plain, str(plain), os.fsencode(plain), tmp_path / "zwölf.winnow"):
         winnow.Recorder(path).close()
@@ -199,7 +199,7 @@ def test_a_recording_goes_where_a_path_says(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_refused_call_is_not_recorded(file):
+def test_refused_call_is_not_recorded(file):
     recorder = winnow.Recorder(file)
     partition = winnow.Partition(recorder=recorder)
     before = recorder.calls
@@ -211,7 +211,7 @@ def test_a_refused_call_is_not_recorded(file):
     assert recorder.calls == before and len(partition) == 1
 
 
-def test_what_is_no_recording_is_refused(file):
+def test_invalid_recording_is_refused(file):
     with pytest.raises(winnow.StatusError):
         winnow.Recorder("/no/such/folder/run.winnow")
     recorder = winnow.Recorder(file)
@@ -230,7 +230,7 @@ def test_what_is_no_recording_is_refused(file):
 
 @given(any_array(), st.binary(max_size=200))
 @settings(max_examples=100)
-def test_any_bytes_are_played_or_refused(array, more):
+def test_any_bytes_are_replayed_or_refused(array, more):
     head = b"WINNOWRC" + bytes([2, 0, 0, 0, 0, 0, 0, 0])
     for data in (array, more, head + more):
         try:
@@ -239,7 +239,7 @@ def test_any_bytes_are_played_or_refused(array, more):
             pass
 
 
-def test_threads_are_recorded(file):
+def test_calls_of_several_threads_are_recorded(file):
     recorder = winnow.Recorder(file)
     lower, upper = random_boxes(105, 200)
     partition = winnow.Partition(recorder=recorder)

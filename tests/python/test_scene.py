@@ -1,4 +1,4 @@
-"""Bodies, contacts, and questions to their exact shapes."""
+"""Bodies, contacts, and queries of exact shapes."""
 
 import threading
 
@@ -11,7 +11,7 @@ from test_narrow import CUBE, poses_at
 
 @pytest.fixture
 def world():
-    """A floor, and three balls of which the first two touch it and the last two each other."""
+    """Returns a floor and three balls: the first two touch the floor, the last two overlap each other."""
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.5)[0])
     floor = int(shapes.add_half_spaces([0, 0, 1])[0])
@@ -72,7 +72,7 @@ def test_arrays_outlive_contacts_and_scene(world):
     assert sorted(distance.tolist()) == pytest.approx([-0.1, 0.0])
 
 
-def test_bodies_are_known_as_they_stand(world):
+def test_bodies_report_their_state(world):
     shapes, scene, ground, balls, ball = world
     columns = scene.bodies(balls)
     assert columns["shape"].tolist() == [ball] * 3 and columns["data"].tolist() == [1, 2, 3]
@@ -89,7 +89,7 @@ def test_bodies_are_known_as_they_stand(world):
     assert len(scene.bodies([])["pose"]) == 0
 
 
-def test_poses_are_read_whatever_their_layout(world):
+def test_poses_of_any_layout_are_read(world):
     _, scene, _, balls, _ = world
     poses = np.random.default_rng(51).normal(size=(3, 7))
     for same in (
@@ -107,7 +107,7 @@ def test_poses_are_read_whatever_their_layout(world):
     assert np.array_equal(scene.bodies(balls)["pose"], poses.astype(np.float32))
 
 
-def test_rays_meet_exact_shapes(world):
+def test_rays_hit_exact_shapes(world):
     _, scene, ground, balls, _ = world
     hits = scene.cast_rays([[0, 0, 9.0], [9, 0.9, 9.0], [50, 0, 9]], [[0, 0, -1.0]] * 3)
     assert hits.key.tolist() == [balls[0], balls[2], ground[0]]
@@ -168,7 +168,7 @@ def test_shapes_are_cast_overlapped_and_measured(world):
         scene.cast_shapes(shapes.add_half_spaces([0, 0, 1]), poses_at([0, 0, 0]), [1, 0, 0])
 
 
-def test_meshes_and_height_fields_collide_part_by_part():
+def test_mesh_and_field_contacts_name_their_triangles():
     shapes = winnow.Shapes()
     field = shapes.add_height_field(np.zeros((5, 5), np.float32))
     mesh = shapes.add_mesh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 0]], [[0, 1, 2], [1, 3, 2]])
@@ -187,7 +187,7 @@ def test_meshes_and_height_fields_collide_part_by_part():
         assert contacts.contact_depth.max() == pytest.approx(0.005, abs=1e-4)
 
 
-def test_questions_see_every_change(world):
+def test_queries_read_every_change(world):
     shapes, scene, _, balls, ball = world
     down = ([[3, 3, 9.0]], [[0, 0, -1.0]])
     assert scene.cast_rays(*down).t[0] == pytest.approx(9)
@@ -200,7 +200,7 @@ def test_questions_see_every_change(world):
     assert scene.cast_rays(*down).t[0] == pytest.approx(2, abs=1e-5)
 
 
-def test_environments_are_worlds_of_their_own():
+def test_environments_have_no_contacts_with_each_other():
     shapes = winnow.Shapes()
     ball = shapes.add_spheres(0.5)
     scene = winnow.Scene(shapes)
@@ -214,7 +214,7 @@ def test_environments_are_worlds_of_their_own():
     assert np.array_equal(contacts.data_a, contacts.data_b) and len(keys) == 200
 
 
-def test_contacts_of_what_rests_are_carried_over():
+def test_contacts_of_resting_bodies_are_carried_over():
     shapes = winnow.Shapes()
     scene = winnow.Scene(shapes, carry_over=0.1)
     keys = scene.add(shapes.add_spheres([1.0, 1.0]), [[0, 0, 0], [1.5, 0, 0]])
@@ -226,7 +226,7 @@ def test_contacts_of_what_rests_are_carried_over():
     assert abs(contacts.distance[0] + 0.51) <= contacts.error_bound[0] + 1e-9
 
 
-def test_statuses_are_named(world):
+def test_exceptions_name_their_status(world):
     shapes, scene, ground, balls, ball = world
     where = np.zeros((1, 3))
     refused("invalid_key", scene.add, 12345, where)
@@ -261,7 +261,7 @@ def test_statuses_are_named(world):
     assert len(scene.debug_draw().boxes) >= 4
 
 
-def test_threads_ask_and_change_at_once(world):
+def test_threads_may_query_and_change_at_once(world):
     shapes, scene, _, balls, ball = world
     contacts = winnow.Contacts()
     failures = []

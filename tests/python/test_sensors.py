@@ -1,4 +1,4 @@
-"""Volumes that tell who is in them."""
+"""Sensors: volumes that report the bodies inside."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from test_narrow import poses_at
 
 @pytest.fixture
 def world():
-    """Forty bodies at random, of which some are fixed, and a room of three shapes to sense with."""
+    """Returns forty random bodies, some of which are fixed, and three shapes for sensors."""
     random = np.random.default_rng(81)
     shapes = winnow.Shapes()
     ids = np.concatenate([shapes.add_spheres([0.4, 0.8]), shapes.add_boxes([[0.5, 1.0, 0.3]])])
@@ -25,7 +25,7 @@ def pairs_in(sensed):
     return set(zip(sensed.sensor_data.tolist(), sensed.body_data.tolist()))
 
 
-def test_sensors_tell_what_overlaps_do(world):
+def test_sensors_agree_with_overlap_queries(world):
     shapes, ids, scene, keys, random = world
     sensors = winnow.Sensors(scene)
     poses = poses_at(*random.uniform(-3, 3, (12, 3)))
@@ -48,7 +48,7 @@ def test_sensors_tell_what_overlaps_do(world):
         before = truth
 
 
-def test_sensors_choose_whom_they_sense(world):
+def test_sensor_filters_select_bodies(world):
     shapes, ids, scene, keys, _ = world
     big = int(shapes.add_spheres(50.0)[0])
     scene.set_filter(keys[:10], layers=4)
@@ -71,7 +71,7 @@ def test_sensors_choose_whom_they_sense(world):
     assert len(sensors) == 1 and sensors.contains(made).tolist() == [False, True]
 
 
-def test_shapes_of_sensors_stay(world):
+def test_shapes_of_sensors_cannot_be_removed(world):
     shapes, _, scene, _, _ = world
     own = shapes.add_spheres([1.0, 2.0])
     sensors = winnow.Sensors(scene)
@@ -87,7 +87,7 @@ def test_shapes_of_sensors_stay(world):
     shapes.remove(own[1:])
 
 
-def test_sensors_keep_their_scene(world):
+def test_sensors_keep_their_scene_alive(world):
     shapes, ids, scene, keys, _ = world
     sensors = winnow.Sensors(scene)
     sensors.add(shapes.add_spheres(50.0), poses_at([0, 0, 0]))
@@ -124,7 +124,7 @@ def test_refused_calls_change_nothing(world):
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
 @settings(max_examples=100)
-def test_any_arrays_are_taken_or_refused(first, second, third, number):
+def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     shapes = winnow.Shapes()
     ids = shapes.add_spheres([1.0, 2.0])
     scene = winnow.Scene(shapes)

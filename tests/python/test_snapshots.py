@@ -1,4 +1,4 @@
-"""What is saved and loaded goes on as it would have."""
+"""Loaded snapshots continue exactly as the saved objects would have."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def test_partitions_are_saved_and_loaded():
     assert len(partition) == 200
 
 
-def test_scenes_go_on_as_they_would_have():
+def test_loaded_scene_continues_identically():
     shapes, ids = stage()
     scene = winnow.Scene(shapes, margin=0.05, carry_over=0.01)
     places = RANDOM.uniform(0, 4, (60, 3))
@@ -73,7 +73,7 @@ def test_scenes_go_on_as_they_would_have():
     held = winnow.Contacts()
     again.load_contacts(saved[2], held)
     assert moved(again, held, again.keys_of(np.arange(60)), steps) == future
-    # Bodies that were loaded hold their shapes.
+    # Loaded bodies keep their shapes in use.
     refused("invalid_key", others.remove, ids[:1])
     again.clear()
     others.load(saved[0])
@@ -81,7 +81,7 @@ def test_scenes_go_on_as_they_would_have():
         others.load("text")
 
 
-def test_large_answers_lie_where_those_lay_that_nobody_has():
+def test_large_results_reuse_unreferenced_memory():
     points = RANDOM.uniform(0, 9, (20_000, 3)).astype(np.float32)
     partition = winnow.Partition("LinearBvh")
     partition.insert(points, points)

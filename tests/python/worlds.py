@@ -1,10 +1,10 @@
-"""Scenes of random boxes, and slow obvious twins of what is asked of them."""
+"""Scenes of random boxes, and brute-force references for queries."""
 
 import numpy as np
 
 
 def random_boxes(seed, count, side=None):
-    """Lower and upper corners of boxes with about two partners each, (n, 3) float32."""
+    """Returns corners of boxes with about two overlaps each, as (n, 3) float32."""
     random = np.random.default_rng(seed)
     side = side or max(1.0, count ** (1 / 3))
     lower = random.uniform(0, side, (count, 3)).astype(np.float32)
@@ -12,7 +12,7 @@ def random_boxes(seed, count, side=None):
 
 
 def overlapping(lower, upper, other_lower, other_upper):
-    """(n, m) bool: closed overlap of each with each."""
+    """Returns the closed overlap of each box with each, as (n, m) bool."""
     meets = (lower[:, None] <= other_upper[None]) & (other_lower[None] <= upper[:, None])
     return meets.all(axis=2)
 
@@ -27,7 +27,7 @@ def twin_pairs(lower, upper):
 
 
 def ray_entry(lower, upper, origin, direction):
-    """Where a ray enters a box, in double; infinity if it does not."""
+    """Returns where a ray enters a box, in double; infinity if it does not."""
     with np.errstate(divide="ignore", invalid="ignore"):
         a = (lower.astype(float) - origin) / direction
         b = (upper.astype(float) - origin) / direction

@@ -1,3 +1,6 @@
+// Checks of query results against the candidates of the reference implementation; the tests of
+// queries and the fuzz targets call them.
+
 #include "tests/queries/answers.h"
 
 #include <algorithm>
@@ -46,7 +49,7 @@ std::vector<Candidate<Truth>> all_candidates(const Question& question,
   return result;
 }
 
-// The candidate with this id, or null.
+// Returns the candidate with this id, or null.
 template <typename Truth>
 const Candidate<Truth>* find(const std::vector<Candidate<Truth>>& candidates, ObjectId id) {
   const auto at = std::lower_bound(candidates.begin(), candidates.end(), id,
@@ -109,7 +112,7 @@ AssertionResult same_hits(std::span<const Hit> a, std::span<const Hit> b) {
 
 AssertionResult is_any_of(const Hit& hit, std::span<const Hit> all) {
   if (all.empty()) {
-    return hit == Hit{} ? AssertionSuccess() : AssertionFailure() << "a hit where there is none";
+    return hit == Hit{} ? AssertionSuccess() : AssertionFailure() << "a hit although there is none";
   }
   for (const Hit& one : all) {
     if (same_hits({&hit, 1}, {&one, 1})) return AssertionSuccess();
@@ -125,7 +128,7 @@ AssertionResult right_objects(const OverlapBuffer& got, const RegionCandidates& 
                               Order order) {
   for (const ObjectId id : got.ids()) {
     if (find(candidates, id) == nullptr) {
-      return AssertionFailure() << "object " << id << " does not meet the region";
+      return AssertionFailure() << "object " << id << " does not overlap the region";
     }
   }
   std::vector<ObjectId> inside(got.inside().begin(), got.inside().end());
@@ -142,7 +145,7 @@ AssertionResult right_objects(const OverlapBuffer& got, const RegionCandidates& 
   }
   for (const ObjectId id : crossing) {
     if (find(candidates, id)->truth.must_inside) {
-      return AssertionFailure() << "object " << id << " is inside and said to cross";
+      return AssertionFailure() << "object " << id << " is inside but reported as crossing";
     }
   }
   return none_missing({got.ids().begin(), got.ids().end()}, candidates);
@@ -152,7 +155,7 @@ AssertionResult right_nearest(std::span<const Hit> got, const Aabb& from, std::s
                               float radius, std::span<const Object> objects,
                               const Partition& partition) {
   if (AssertionResult formed = well_formed(got, partition); !formed) return formed;
-  if (got.size() > count) return AssertionFailure() << "more than were asked for";
+  if (got.size() > count) return AssertionFailure() << "more than requested";
   std::vector<ObjectId> ids;
   for (const Hit& hit : got) ids.push_back(hit.key.id);
   if (AssertionResult once = none_missing(ids, RegionCandidates{}); !once) return once;
@@ -162,7 +165,7 @@ AssertionResult right_nearest(std::span<const Hit> got, const Aabb& from, std::s
     const CastTruth truth{true, true, exact * (1.0 - 1e-14), exact * (1.0 + 1e-14)};
     if (!std::binary_search(ids.begin(), ids.end(), object.id)) {
       if (truth.latest < static_cast<double>(radius) || exact == 0.0) {
-        // It may stand back only behind as many as were asked for.
+        // An object may be left out only if `count` nearer ones are returned.
         if (got.size() < count)
           return AssertionFailure() << "object " << object.id << " is missing";
         if (got.empty()) continue;

@@ -21,31 +21,31 @@ struct Candidate {
 using CastCandidates = std::vector<Candidate<CastTruth>>;
 using RegionCandidates = std::vector<Candidate<RegionTruth>>;
 
-/// Those objects that may be reported, by id. Objects come sorted by id.
+/// Returns the objects that may be reported, by id. `objects` are sorted by id.
 [[nodiscard]] CastCandidates candidates(const Cast& cast, std::span<const Object> objects);
 [[nodiscard]] RegionCandidates candidates(const Region& region, std::span<const Object> objects);
 
-/// True if this is a right answer to `all`: sorted by (t, id), each object once and with its key
-/// and data, none missing, each at its first touch.
+/// Returns true if this is a right result of `all`: sorted by (t, id), each object once and with
+/// its key and data, none missing, each at its first touch.
 [[nodiscard]] testing::AssertionResult right_hits(std::span<const Hit> got,
                                                   const CastCandidates& candidates,
                                                   const Partition& partition);
 
-/// True if a hit is one of these, or null where there are none.
+/// Returns true if `hit` is one of these, or null if there are none.
 [[nodiscard]] testing::AssertionResult is_any_of(const Hit& hit, std::span<const Hit> all);
 
-/// True if a hit is the first of these, or null where there are none.
+/// Returns true if `hit` is the first of these, or null if there are none.
 [[nodiscard]] testing::AssertionResult is_first_of(const Hit& hit, std::span<const Hit> all);
 
-/// True if these are the same hits, t bit by bit.
+/// Returns true if the hits are equal, t bit by bit.
 [[nodiscard]] testing::AssertionResult same_hits(std::span<const Hit> a, std::span<const Hit> b);
 
-/// True if this is a right answer to `overlap`.
+/// Returns true if this is a right result of `overlap`.
 [[nodiscard]] testing::AssertionResult right_objects(const OverlapBuffer& got,
                                                      const RegionCandidates& candidates,
                                                      Order order);
 
-/// True if this is a right answer to `nearest`.
+/// Returns true if this is a right result of `nearest`.
 [[nodiscard]] testing::AssertionResult right_nearest(std::span<const Hit> got, const Aabb& from,
                                                      std::size_t count, float radius,
                                                      std::span<const Object> objects,

@@ -1,6 +1,5 @@
-// An exception of a callback ends the process the same way wherever it was called from: some
-// kernels that ask a predicate are compiled without exceptions, and half of a parallel answer is
-// none.
+// An exception of a callback ends the process in the same way in every query: some kernels that
+// call a predicate are compiled without exceptions, and half of a parallel result is useless.
 
 #include <winnow/core/debug_draw.h>
 
@@ -10,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
 
-// WebAssembly has neither exceptions nor signals, Windows not those that end a process.
+// WebAssembly has neither exceptions nor signals, Windows lacks signals that end a process.
 #if WINNOW_TEST_EXCEPTIONS
 #include <csignal>
 #endif
@@ -31,14 +30,14 @@ class ThrowingCallbacks : public testing::TestWithParam<int> {
       throw std::runtime_error("x");
     };
   }
-  /// Runs a query on the threads of the test.
+  /// Runs a query on the threads of the test and expects that the process aborts.
   template <typename Query>
   void expect_end(Query&& query) {
     const auto run = [&] {
       try {
         (void)world_.threads().run(query);
       } catch (...) {
-        // Passed on: the process ends, but not as it should.
+        // The exception left the query: the process ends, but without the expected signal.
       }
     };
     EXPECT_EXIT(run(), testing::KilledBySignal(SIGABRT), "");
@@ -51,14 +50,14 @@ class ThrowingCallbacks : public testing::TestWithParam<int> {
   PairOptions options_;
 };
 
-TEST_P(ThrowingCallbacks, end_a_query_of_pairs) {
+TEST_P(ThrowingCallbacks, throwing_predicate_ends_a_pair_query) {
   PairBuffer pairs;
   expect_end([&] { return partition_.self_pairs(pairs, options_); });
   expect_end([&] { return partition_.pairs_with(partition_, pairs, options_); });
   expect_end([&] { return partition_.overlap(BoxView(boxes_), pairs, filter_); });
 }
 
-TEST_P(ThrowingCallbacks, end_a_query_of_objects) {
+TEST_P(ThrowingCallbacks, throwing_predicate_ends_an_object_query) {
   HitBuffer hits;
   OverlapBuffer seen;
   const std::vector<Ray> rays(500, Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}});
@@ -73,7 +72,7 @@ struct ThrowingDraw final : DebugDraw {
   void text(const Vec3f&, std::string_view, Colour) override {}
 };
 
-TEST_P(ThrowingCallbacks, end_a_drawing) {
+TEST_P(ThrowingCallbacks, throwing_drawing_ends_the_process) {
   ThrowingDraw draw;
   expect_end([&] { return partition_.debug_draw(draw); });
 }

@@ -1,4 +1,4 @@
-// Rays and swept volumes through every partition, against the slow obvious twin.
+// Rays and swept volumes in every partition, compared with brute force.
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
   return rays;
 }
 
-/// One hit of each of some rays.
+/// One hit for each of several rays.
 struct FoundOfEach {
   explicit FoundOfEach(std::size_t rays) : key(rays), data(rays), t(rays) {}
 
@@ -65,8 +65,8 @@ std::vector<ClientData> data_for(std::size_t count) {
 
 class Casts : public Conformance {};
 
-// Buffers go from scene to scene and partition to partition.
-TEST_P(Casts, of_every_kind_find_exactly_what_they_touch) {
+// The buffers are reused for all scenes and partitions.
+TEST_P(Casts, casts_of_every_kind_hit_exactly) {
   HitBuffer buffer;
   for (const QuestionSet& set : question_sets()) {
     World world(config());
@@ -82,7 +82,7 @@ TEST_P(Casts, of_every_kind_find_exactly_what_they_touch) {
   }
 }
 
-TEST_P(Casts, of_a_batch_are_those_of_single_rays) {
+TEST_P(Casts, batch_of_rays_equals_single_rays) {
   HitBuffer single;
   HitBuffer batch;
   for (const QuestionSet& set : question_sets()) {
@@ -110,8 +110,8 @@ TEST_P(Casts, of_a_batch_are_those_of_single_rays) {
   }
 }
 
-// Rays in columns of their own, and in a struct with other things, give what an array of them does.
-TEST_P(Casts, of_a_batch_may_be_columns_and_want_only_some_columns_back) {
+// Rays in separate columns and in a struct with other members give the results of an array.
+TEST_P(Casts, batch_reads_columns_and_writes_some_columns) {
   World world(config());
   world.insert(mixed_boxes(900), data_for(900));
   Random random(3);
@@ -146,8 +146,8 @@ TEST_P(Casts, of_a_batch_may_be_columns_and_want_only_some_columns_back) {
   }
 }
 
-// Which of many hits is taken depends on no number of threads.
-TEST_P(Casts, any_hits_of_a_batch_are_those_that_one_thread_finds) {
+// The choice of any hit does not depend on the number of threads.
+TEST_P(Casts, any_hits_do_not_depend_on_threads) {
   const std::vector<Aabb> boxes = mixed_boxes(2000);
   Random random(9);
   const std::vector<Ray> rays = plain_rays(boxes, 3000, random);
@@ -166,7 +166,7 @@ TEST_P(Casts, any_hits_of_a_batch_are_those_that_one_thread_finds) {
   EXPECT_TRUE(data_found(config()) == data_found(alone));
 }
 
-TEST_P(Casts, of_an_empty_batch_are_none) {
+TEST_P(Casts, empty_batch_has_no_hits) {
   World world(config());
   world.insert(uniform_boxes(100));
   HitBuffer buffer;
@@ -178,14 +178,14 @@ TEST_P(Casts, of_an_empty_batch_are_none) {
   EXPECT_EQ(world.partition().any(RayBatch{}, {}), Status::ok);
 }
 
-// Objects that came, went and moved since the structure was made stand in other places of it.
-TEST_P(Casts, are_right_while_objects_come_go_and_move) {
+// Objects that moved or arrived after the build are in other parts of the structure.
+TEST_P(Casts, casts_among_changing_objects_are_right) {
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(800);
   std::vector<Key> keys = world.insert(boxes, data_for(boxes.size()));
   Random random(4);
   HitBuffer buffer;
-  // Ids follow from the calls alone, so the truth is that of every config.
+  // Ids depend only on the calls, so all configurations have the same reference.
   static std::vector<CastCandidates> truths;
   std::size_t question = 0;
   for (int frame = 0; frame < 10; ++frame) {
@@ -209,10 +209,10 @@ TEST_P(Casts, are_right_while_objects_come_go_and_move) {
   }
 }
 
-TEST_P(Casts, meet_what_reaches_to_infinity_as_far_as_floats_go) {
+TEST_P(Casts, casts_hit_infinite_boxes_in_float_range) {
   World world(config());
   constexpr float kEndless = std::numeric_limits<float>::infinity();
-  // The ray climbs a thousandth of its way: it comes to these after 1e38, and after 1e39.
+  // The ray rises by a thousandth of its way: it reaches these boxes after 1e38 and after 1e39.
   const std::vector<Aabb> boxes{{{-1.0F, 1e35F, -1.0F}, {kEndless, kEndless, 1.0F}},
                                 {{-1.0F, 1e36F, -1.0F}, {kEndless, kEndless, 1.0F}}};
   const std::vector<Key> keys = world.insert(boxes);
@@ -223,11 +223,11 @@ TEST_P(Casts, meet_what_reaches_to_infinity_as_far_as_floats_go) {
   EXPECT_EQ(hits[0].key, keys[0]);
   EXPECT_EQ(closest_of(world, ray).key, keys[0]);
   EXPECT_EQ(any_of(world, ray).key, keys[0]);
-  // Where a ray begins in an object it is met, however far out that is.
+  // A ray that begins in an object hits it, however far away that is.
   EXPECT_EQ(all_of(world, Ray{{3.4e38F, 3.4e38F, 0.5F}, {1.0F, 0.0F, 0.0F}}, buffer).size(), 2U);
 }
 
-TEST_P(Casts, with_a_predicate_find_what_it_lets_pass) {
+TEST_P(Casts, predicate_selects_the_hits) {
   World world(config());
   std::vector<ClientData> data;
   for (std::size_t i = 0; i < 700; ++i) data.push_back(i);
@@ -267,8 +267,9 @@ TEST_P(Casts, with_a_predicate_find_what_it_lets_pass) {
 INSTANTIATE_TEST_SUITE_P(All, Casts, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-// The same objects at the same t, to the bit, whoever is asked. Keys carry the partition's stamp.
-TEST(CastResults, are_identical_on_every_partition_and_instruction_set) {
+// All configurations return the same objects at the same t, to the bit. Keys contain the stamp of
+// the partition.
+TEST(CastResults, hits_are_identical_in_every_config) {
   struct Found {
     ObjectId id;
     std::uint32_t t;

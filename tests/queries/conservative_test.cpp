@@ -1,5 +1,5 @@
-// No ray ever misses a box that it touches in exact arithmetic: more than ten million pairs of a
-// ray and a box, a million of them made to be hard.
+// No ray misses a box that it touches in exact arithmetic: more than ten million pairs of a ray and
+// a box, a million of which are hard cases.
 
 #include <winnow/core/eigen.h>
 #include <algorithm>
@@ -21,7 +21,7 @@ std::vector<Config> configs() {
   return result;
 }
 
-// Asks every partition on every instruction set; gives the number of pairs of a ray and a box.
+// Checks every partition on every instruction set; returns the number of pairs of a ray and a box.
 std::size_t check(const std::vector<Aabb>& boxes, const std::vector<Ray>& rays) {
   const std::vector<Object> objects = numbered(boxes);
   std::vector<CastCandidates> truths;
@@ -55,7 +55,7 @@ std::size_t check(const std::vector<Aabb>& boxes, const std::vector<Ray>& rays) 
   return boxes.size() * rays.size();
 }
 
-TEST(Rays, through_large_random_scenes_miss_nothing) {
+TEST(Rays, rays_in_large_random_scenes_miss_nothing) {
   std::size_t pairs = 0;
   const std::size_t count = scaled(16384);
   for (const std::vector<Aabb>& boxes : {uniform_boxes(count), mixed_boxes(count)}) {
@@ -65,7 +65,7 @@ TEST(Rays, through_large_random_scenes_miss_nothing) {
   EXPECT_GE(pairs, scaled(10'000'000));
 }
 
-TEST(Rays, that_are_hard_for_a_box_miss_nothing) {
+TEST(Rays, rays_near_edges_of_hard_scenes_miss_nothing) {
   std::size_t pairs = 0;
   std::uint64_t stream = 32;
   for (const auto* scenes : {&degenerate_scenes(), &infinite_scenes(), &extreme_float_scenes()}) {
@@ -83,8 +83,8 @@ TEST(Rays, that_are_hard_for_a_box_miss_nothing) {
   EXPECT_GE(pairs, scaled(1'000'000));
 }
 
-// One box alone, the ray made for it: every pair is a hard one.
-TEST(Rays, made_for_the_only_box_miss_nothing) {
+// One box and rays aimed at its features: every pair is a hard case.
+TEST(Rays, rays_aimed_at_a_single_box_miss_nothing) {
   Random random(60);
   for (std::size_t n = 0; n < scaled(60); ++n) {
     Aabb box;

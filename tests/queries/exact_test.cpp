@@ -1,4 +1,4 @@
-// The twin itself, where the answer is known.
+// Tests the reference implementation with known results.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 const Aabb kUnit{Vector3f::Zero(), Vector3f::Ones()};
 
-TEST(Exact, loses_nothing_over_the_whole_range_of_float) {
+TEST(Exact, exact_numbers_cover_the_range_of_float) {
   const Exact big(static_cast<double>(std::numeric_limits<float>::max()));
   const Exact small(static_cast<double>(std::numeric_limits<float>::denorm_min()));
   EXPECT_EQ((big + small - big - small).sign(), 0);
@@ -32,7 +32,7 @@ TEST(Exact, loses_nothing_over_the_whole_range_of_float) {
             0);
 }
 
-TEST(Exact, tells_a_grazing_ray_from_one_that_misses_by_an_ulp) {
+TEST(Exact, grazing_ray_differs_from_miss_by_ulp) {
   Ray ray{{-1.0F, 1.0F, 0.5F}, {1.0F, 0.0F, 0.0F}};
   EXPECT_TRUE(truth_of(ray, kUnit).must);
   EXPECT_TRUE(is_first_touch(1.0F, truth_of(ray, kUnit)));
@@ -40,7 +40,7 @@ TEST(Exact, tells_a_grazing_ray_from_one_that_misses_by_an_ulp) {
   EXPECT_FALSE(is_first_touch(1.0F - 0x1p-23F, truth_of(ray, kUnit)));
   ray.origin.y() = std::nextafter(1.0F, 2.0F);
   EXPECT_FALSE(truth_of(ray, kUnit).may);
-  // Through the edge x = 0, y = 1: enters on x and leaves on y at t = 1.
+  // Through the edge x = 0, y = 1: the ray enters on x and leaves on y at t = 1.
   ray = {{-1.0F, 0.0F, 0.5F}, {1.0F, 1.0F, 0.0F}};
   EXPECT_TRUE(truth_of(ray, kUnit).must);
   ray.direction.y() = std::nextafter(1.0F, 2.0F);
@@ -49,12 +49,12 @@ TEST(Exact, tells_a_grazing_ray_from_one_that_misses_by_an_ulp) {
   EXPECT_TRUE(truth_of(ray, kUnit).must);
 }
 
-TEST(Exact, knows_where_round_casts_first_touch) {
+TEST(Exact, round_casts_touch_at_known_times) {
   const SphereCast ball{{{-3.0F, 0.5F, 0.5F}, 1.0F}, {2.0F, 0.0F, 0.0F}};
   EXPECT_TRUE(truth_of(ball, kUnit).must);
   EXPECT_NEAR(truth_of(ball, kUnit).earliest, 1.0, 1e-11);
   EXPECT_NEAR(truth_of(ball, kUnit).latest, 1.0, 1e-11);
-  // Past a corner at a distance of sqrt(2).
+  // Passes a corner at a distance of sqrt(2).
   SphereCast past{{{-3.0F, 2.0F, 2.0F}, 1.4143F}, {1.0F, 0.0F, 0.0F}};
   EXPECT_TRUE(truth_of(past, kUnit).must);
   EXPECT_NEAR(truth_of(past, kUnit).latest, 3.0 - std::sqrt(1.4143 * 1.4143 - 2.0), 1e-3);
@@ -67,7 +67,7 @@ TEST(Exact, knows_where_round_casts_first_touch) {
   EXPECT_NEAR(truth_of(capsule, kUnit).latest, 3.5, 1e-4);
 }
 
-TEST(Exact, knows_which_boxes_meet_a_region) {
+TEST(Exact, regions_overlap_the_expected_boxes) {
   EXPECT_TRUE(truth_of(Region(Vector3f(1, 1, 1)), kUnit).must);
   EXPECT_FALSE(truth_of(Region(Vector3f(1, std::nextafter(1.0F, 2.0F), 1)), kUnit).may);
   EXPECT_TRUE(truth_of(Region(Sphere{{4, 1, 5}, 5.0F}), kUnit).must);
@@ -76,7 +76,7 @@ TEST(Exact, knows_which_boxes_meet_a_region) {
   EXPECT_FALSE(truth_of(Region(Capsule{{3, -9, 0}, {3, 9, 0}, 1.999F}), kUnit).may);
   EXPECT_TRUE(truth_of(Region(OrientedBox{{3, 0, 0}, {2, 1, 1}}), kUnit).must);
   EXPECT_FALSE(truth_of(Region(OrientedBox{{3.0001F, 0, 0}, {2, 1, 1}}), kUnit).may);
-  // A square on its corner, beside the box and overlapping it only in the boxes around both.
+  // A square rotated by 45 degrees beside the box: only the bounding boxes overlap.
   const float h = std::sqrt(0.5F);
   OrientedBox turned{{1.9F, 1.9F, 0.5F}, {1, 1, 1}};
   turned.axes = {h, -h, 0, h, h, 0, 0, 0, 1};

@@ -1,5 +1,6 @@
-// Every question about boxes in every floating-point mode of a host: nothing is missed, and the
-// answers are those of the default mode. What is right was found in that mode, in exact arithmetic.
+// All queries of boxes in every floating-point mode of a host: nothing is missed, and the results
+// equal the results in the default mode. The expected results are computed in the default mode, in
+// exact arithmetic.
 
 #include <winnow/core/kdop.h>
 #include <winnow/core/sphere.h>
@@ -21,13 +22,13 @@
 namespace winnow::test {
 namespace {
 
-/// What a question found: objects or pairs, and all of its answer bit by bit.
+/// The result of a query: objects or pairs, and the whole result bit by bit.
 struct Answer {
   std::vector<std::uint64_t> found;
   std::vector<std::uint64_t> bits;
 };
 
-/// What it has to find: all of these, or any one of them.
+/// The expected result: all of these, or any one of them.
 struct Wanted {
   std::vector<std::uint64_t> all;
   bool one_will_do = false;
@@ -39,7 +40,7 @@ struct Tally {
   std::size_t questions = 0;
   std::size_t expected = 0;
   std::size_t missed = 0;
-  std::size_t others = 0;  ///< answers that are not those of the default mode
+  std::size_t others = 0;  ///< results that differ from the default mode
 
   void add(Answer answer, const Wanted& wanted, const Answer& standard) {
     ++questions;
@@ -85,7 +86,7 @@ Answer answer_of(const PairEvents& events) {
   return answer;
 }
 
-/// Questions about a scene: asks in the mode that is set, and what it has to find.
+/// Queries of a scene: runs them in the current mode; `wanted` has the expected results.
 struct Questions {
   std::function<Answers(const Partition&)> ask;
   std::vector<Wanted> wanted;
@@ -224,7 +225,7 @@ Answer ask_volumes(std::string_view structure, Volume volume, const std::vector<
   return answer_of(pairs);
 }
 
-/// Pairs among spheres and among k-DOPs about the boxes of a scene.
+/// Pairs of spheres and pairs of k-DOPs around the boxes of a scene.
 Questions pairs_of_volumes(const QuestionSet& set, std::string_view structure) {
   Questions questions;
   std::vector<Sphere> spheres;
@@ -241,8 +242,8 @@ Questions pairs_of_volumes(const QuestionSet& set, std::string_view structure) {
   return questions;
 }
 
-/// Pairs of the scene, those that begin, pairs with the boxes of the scene the other way round, and
-/// with these as a view.
+/// Pairs of the scene, begun pairs, pairs with a partition of the reversed boxes, and overlaps with
+/// a view of these.
 Questions pairs_of(const QuestionSet& set, std::string_view structure) {
   Questions questions;
   const std::vector<Aabb> others(set.boxes.rbegin(), set.boxes.rend());
@@ -272,7 +273,7 @@ Questions pairs_of(const QuestionSet& set, std::string_view structure) {
   return questions;
 }
 
-/// When the host's mode is set: while objects are inserted, while questions are asked, or both.
+/// When the host's mode is set: while objects are inserted, during queries, or both.
 struct Phases {
   bool building;
   bool asking;
@@ -287,7 +288,7 @@ Partition partition_of(std::string_view structure, const std::vector<Aabb>& boxe
   return partition;
 }
 
-/// Of every scene, in every structure, on the narrowest and the widest instruction set.
+/// All scenes, in every structure, on the narrowest and the widest instruction set.
 class FloatModes : public testing::TestWithParam<FloatMode> {
  protected:
   using MakeQuestions = std::function<Questions(const QuestionSet&, std::string_view structure)>;

@@ -1,4 +1,4 @@
-// Nearest objects, against distances computed one by one.
+// Nearest objects, compared with distances that are computed one by one.
 
 #include <winnow/core/eigen.h>
 #include <algorithm>
@@ -45,7 +45,7 @@ std::vector<Question> some_questions(std::span<const Aabb> boxes, std::size_t co
                                            0.75F * at.min + 0.25F * other.max};
       const Vector3f point = points[random.below(points.size())];
       q.from = random.chance(0.3) ? at : Aabb{point, point};
-      // Exactly as far as one of them is.
+      // A radius that equals the distance of one of the objects.
       if (random.chance(0.4)) q.radius = round_down(distance(q.from, other));
     }
     if (random.chance(0.1)) q.radius = 0.0F;
@@ -67,7 +67,7 @@ std::vector<Hit> ask(World& world, const Question& q, HitBuffer& buffer,
 
 class Nearest : public Conformance {};
 
-TEST_P(Nearest, objects_are_found_in_every_scene) {
+TEST_P(Nearest, nearest_objects_are_right_in_every_scene) {
   HitBuffer buffer;
   for (const QuestionSet& set : question_sets()) {
     Random random(8);
@@ -81,7 +81,7 @@ TEST_P(Nearest, objects_are_found_in_every_scene) {
   }
 }
 
-TEST_P(Nearest, objects_are_found_while_objects_come_go_and_move) {
+TEST_P(Nearest, nearest_among_changing_objects_are_right) {
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(800);
   std::vector<Key> keys = world.insert(boxes);
@@ -104,8 +104,8 @@ TEST_P(Nearest, objects_are_found_while_objects_come_go_and_move) {
   }
 }
 
-// Squares of distances are beyond floats, or denormal, or distances are.
-TEST_P(Nearest, objects_of_some_layers_are_found_at_any_scale) {
+// The squares of distances overflow or are denormal, or the distances are denormal.
+TEST_P(Nearest, nearest_of_layers_are_right_at_any_scale) {
   HitBuffer buffer;
   Random random(11);
   for (const float scale : {1e30F, 1e-30F, 1e-41F}) {
@@ -132,7 +132,7 @@ TEST_P(Nearest, objects_of_some_layers_are_found_at_any_scale) {
   }
 }
 
-TEST_P(Nearest, of_equal_distance_come_by_id) {
+TEST_P(Nearest, equal_distances_are_sorted_by_id) {
   World world(config());
   world.insert(std::vector<Aabb>(100, {Vector3f::Ones(), Vector3f::Constant(2)}));
   HitBuffer buffer;
@@ -141,7 +141,7 @@ TEST_P(Nearest, of_equal_distance_come_by_id) {
   for (std::size_t i = 0; i < hits.size(); ++i) EXPECT_EQ(hits[i].key.id, i);
 }
 
-TEST_P(Nearest, with_a_predicate_are_those_it_lets_pass) {
+TEST_P(Nearest, predicate_selects_the_nearest_objects) {
   World world(config());
   std::vector<ClientData> data;
   for (std::size_t i = 0; i < 700; ++i) data.push_back(i);
@@ -165,7 +165,7 @@ TEST_P(Nearest, with_a_predicate_are_those_it_lets_pass) {
 INSTANTIATE_TEST_SUITE_P(All, Nearest, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-TEST(NearestResults, are_identical_on_every_partition_and_instruction_set) {
+TEST(NearestResults, nearest_are_identical_in_every_config) {
   for (const QuestionSet& set : question_sets()) {
     Random stream(11);
     const std::vector<Question> questions = some_questions(set.boxes, scaled(24), stream);

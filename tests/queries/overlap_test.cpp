@@ -1,4 +1,4 @@
-// Regions and boxes asked about, against the slow obvious twin.
+// Overlaps with regions and boxes, compared with brute force.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<Pair> boxes_against(World& world, const std::vector<Aabb>& boxes, Pa
 
 class Overlaps : public Conformance {};
 
-TEST_P(Overlaps, with_regions_of_every_kind_are_exactly_what_they_meet) {
+TEST_P(Overlaps, regions_of_every_kind_overlap_exactly) {
   OverlapBuffer buffer;
   for (const QuestionSet& set : question_sets()) {
     World world(config());
@@ -43,14 +43,14 @@ TEST_P(Overlaps, with_regions_of_every_kind_are_exactly_what_they_meet) {
   }
 }
 
-TEST_P(Overlaps, are_right_while_objects_come_go_and_move) {
+TEST_P(Overlaps, overlaps_of_changing_objects_are_right) {
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(800);
   std::vector<Key> keys = world.insert(boxes);
   Random random(6);
   OverlapBuffer buffer;
   PairBuffer pairs;
-  // Ids follow from the calls alone, so the truth is that of every config.
+  // Ids depend only on the calls, so all configurations have the same reference.
   static std::vector<RegionCandidates> truths;
   std::size_t question = 0;
   for (int frame = 0; frame < 10; ++frame) {
@@ -76,7 +76,7 @@ TEST_P(Overlaps, are_right_while_objects_come_go_and_move) {
   }
 }
 
-TEST(OverlapBuffers, that_were_moved_from_are_empty) {
+TEST(OverlapBuffers, moved_from_buffer_is_empty) {
   Partition partition(linear_bvh());
   std::vector<Key> keys(50);
   ASSERT_EQ(partition.insert(uniform_boxes(50), {}, keys), Status::ok);
@@ -90,7 +90,7 @@ TEST(OverlapBuffers, that_were_moved_from_are_empty) {
   EXPECT_TRUE(from.crossing().empty());
 }
 
-TEST_P(Overlaps, of_boxes_are_exact_pairs) {
+TEST_P(Overlaps, boxes_give_exact_pairs) {
   PairBuffer buffer;
   for (const QuestionSet& set : question_sets()) {
     SCOPED_TRACE(set.name);
@@ -110,14 +110,14 @@ TEST_P(Overlaps, of_boxes_are_exact_pairs) {
   }
 }
 
-TEST_P(Overlaps, of_no_boxes_are_none) {
+TEST_P(Overlaps, empty_box_list_has_no_pairs) {
   World world(config());
   world.insert(uniform_boxes(100));
   PairBuffer buffer;
   EXPECT_TRUE(boxes_against(world, {}, buffer, Order::fast).empty());
 }
 
-TEST_P(Overlaps, with_all_of_space_are_everything_and_inside) {
+TEST_P(Overlaps, whole_space_contains_every_object) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   World world(config());
   world.insert(mixed_boxes(500));
@@ -131,7 +131,7 @@ TEST_P(Overlaps, with_all_of_space_are_everything_and_inside) {
   EXPECT_EQ(buffer.inside().size(), 500U);
 }
 
-TEST_P(Overlaps, with_a_predicate_are_what_it_lets_pass) {
+TEST_P(Overlaps, predicate_selects_the_overlaps) {
   World world(config());
   std::vector<ClientData> data;
   for (std::size_t i = 0; i < 700; ++i) data.push_back(i);
@@ -162,8 +162,8 @@ TEST_P(Overlaps, with_a_predicate_are_what_it_lets_pass) {
   EXPECT_EQ(boxes_against(world, boxes, pairs, Order::canonical, filter), expected);
 }
 
-// A buffer that pairs of boxes were written to is no complete result of `self_pairs`.
-TEST_P(Overlaps, of_boxes_do_not_pass_for_the_pairs_of_an_earlier_frame) {
+// A buffer with pairs of boxes must not count as a result of `self_pairs`.
+TEST_P(Overlaps, buffer_of_box_pairs_is_no_earlier_frame) {
   World world(config());
   const std::vector<Aabb> boxes = uniform_boxes(400);
   const std::vector<Key> keys = world.insert(boxes);
@@ -177,9 +177,9 @@ TEST_P(Overlaps, of_boxes_do_not_pass_for_the_pairs_of_an_earlier_frame) {
 INSTANTIATE_TEST_SUITE_P(All, Overlaps, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
-// The same objects, and the same of them inside, whoever is asked; and in the same order on every
-// instruction set and thread count.
-TEST(OverlapResults, are_identical_on_every_partition_and_instruction_set) {
+// All partitions return the same objects, and the same ones as inside; the order is equal on every
+// instruction set and number of threads.
+TEST(OverlapResults, overlaps_are_identical_in_every_config) {
   for (const QuestionSet& set : question_sets()) {
     for (const Order order : {Order::fast, Order::canonical}) {
       std::vector<std::vector<ObjectId>> expected;

@@ -1,5 +1,5 @@
-// Const queries of every kind from several threads at once, right after a change: the answers must
-// be right, and the thread sanitizer says whether they were right by luck.
+// Const queries of every kind from several threads at once, right after a change: the results must
+// be right, and the thread sanitizer finds races that happen to give the right results.
 
 #include <array>
 #include <vector>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kReaders = 4;
 
-// One reader's buffers, kept from frame to frame, and the first thing that was wrong.
+// The buffers of one reader, which are reused in every frame, and its first error.
 struct Reader {
   HitBuffer hits;
   HitBuffer batch;
@@ -63,7 +63,7 @@ Questions prepare(const World& world, const std::vector<Aabb>& boxes) {
   return q;
 }
 
-// Each reader starts with another question, so that each kind is once the first after a change.
+// Each reader starts with another query, so that each kind is once the first after a change.
 void read(const Partition& p, const Questions& q, std::size_t first, Reader& reader) {
   for (std::size_t n = 0; n < kReaders; ++n) {
     switch ((first + n) % kReaders) {
@@ -109,7 +109,7 @@ void read(const Partition& p, const Questions& q, std::size_t first, Reader& rea
 
 class QueryConcurrency : public Conformance {};
 
-TEST_P(QueryConcurrency, of_all_kinds_right_after_a_change_is_safe) {
+TEST_P(QueryConcurrency, concurrent_queries_after_a_change_are_safe) {
   World world(config());
   std::vector<Aabb> boxes = mixed_boxes(400);
   const std::vector<Key> keys = world.insert(boxes);
@@ -118,7 +118,7 @@ TEST_P(QueryConcurrency, of_all_kinds_right_after_a_change_is_safe) {
   for (std::size_t frame = 0; frame < 4; ++frame) {
     move(frame % 2 == 0 ? Motion::few : Motion::much, boxes, random);
     world.update(keys, boxes);
-    // Ids follow from the calls alone, so the truth is that of every config.
+    // Ids depend only on the calls, so all configurations have the same reference.
     static std::deque<Questions> frames;
     if (frames.size() == frame) frames.push_back(prepare(world, boxes));
     const Questions& questions = frames[frame];

@@ -1,4 +1,4 @@
-// What queries refuse: the call says so, clears what it was to fill and changes nothing.
+// Invalid queries: the call returns an error, clears its output and changes nothing.
 
 #include <winnow/core/eigen.h>
 #include <Eigen/Core>
@@ -98,7 +98,7 @@ class QueryInput : public Conformance {
  protected:
   QueryInput() : world_(config()) {
     world_.insert(uniform_boxes(80));
-    // What a refused call must not leave behind.
+    // Fills the buffers with results that a refused call must clear.
     EXPECT_EQ(partition().all(Ray{}, hits_), Status::ok);
     EXPECT_EQ(partition().overlap(Region(kUnit), objects_), Status::ok);
   }
@@ -126,7 +126,7 @@ class QueryInput : public Conformance {
   OverlapBuffer objects_;
 };
 
-TEST_P(QueryInput, that_is_a_bad_cast_is_refused) {
+TEST_P(QueryInput, bad_cast_is_refused) {
   Snapshot before(world_);
   const std::vector<Cast> casts = bad_casts();
   for (std::size_t i = 0; i < casts.size(); ++i) {
@@ -144,7 +144,7 @@ TEST_P(QueryInput, that_is_a_bad_cast_is_refused) {
   EXPECT_TRUE(before.unchanged());
 }
 
-TEST_P(QueryInput, with_one_bad_ray_makes_a_batch_bad) {
+TEST_P(QueryInput, one_bad_ray_refuses_the_batch) {
   Snapshot before(world_);
   for (const Ray& bad : bad_rays()) {
     for (const std::size_t at : {std::size_t{0}, std::size_t{16}, std::size_t{40}}) {
@@ -162,7 +162,7 @@ TEST_P(QueryInput, with_one_bad_ray_makes_a_batch_bad) {
   EXPECT_TRUE(before.unchanged());
 }
 
-TEST_P(QueryInput, that_is_a_bad_region_is_refused) {
+TEST_P(QueryInput, bad_region_is_refused) {
   Snapshot before(world_);
   for (int k = 0; k < 3; ++k) {
     for (const float value : {kNan, kInf, -kInf}) {
@@ -189,7 +189,7 @@ TEST_P(QueryInput, that_is_a_bad_region_is_refused) {
   EXPECT_TRUE(before.unchanged());
 }
 
-TEST_P(QueryInput, that_is_a_bad_plane_is_refused) {
+TEST_P(QueryInput, bad_plane_is_refused) {
   const std::vector<Plane> bad{{{0, 0, 0}, 1.0F},     {{-0.0F, 0, 0}, 1.0F}, {{kNan, 0, 1}, 1.0F},
                                {{1, kInf, 0}, 1.0F},  {{1, 0, 0}, kNan},     {{1, 0, 0}, kInf},
                                {{0, 0, -kInf}, -1.0F}};
@@ -211,7 +211,7 @@ TEST_P(QueryInput, that_is_a_bad_plane_is_refused) {
   expect_refused(frustum);
 }
 
-TEST_P(QueryInput, with_one_bad_box_makes_a_question_bad) {
+TEST_P(QueryInput, one_bad_box_refuses_the_query) {
   Snapshot before(world_);
   PairBuffer pairs;
   for (const Aabb& bad : bad_boxes()) {
@@ -227,7 +227,7 @@ TEST_P(QueryInput, with_one_bad_box_makes_a_question_bad) {
   EXPECT_TRUE(before.unchanged());
 }
 
-TEST_P(QueryInput, that_is_a_bad_distance_or_box_finds_nothing_near) {
+TEST_P(QueryInput, nearest_with_bad_input_is_refused) {
   Snapshot before(world_);
   for (const float radius : {kNan, -1.0F, -kInf, -1e-40F}) {
     fill();

@@ -1,5 +1,5 @@
-// Memory of queries: what footprints say is what was asked for, a steady query asks for nothing,
-// and a refusal leaves the partition, and the buffer, of use.
+// Memory of queries: footprints equal the allocated memory, a steady query does not allocate, and
+// the partition and the buffer remain usable after a refusal.
 
 #include <winnow/core/eigen.h>
 #include <algorithm>
@@ -50,7 +50,7 @@ class QueryMemory : public Conformance {
     sphere_ = {center, 0.3F * as_eigen(middle.max - middle.min).maxCoeff()};
   }
 
-  // One query after the other; each is a way to ask.
+  // Returns all queries, which the tests run one after another.
   [[nodiscard]] std::vector<std::function<Status(Buffers&)>> queries() {
     Partition& p = world_.partition();
     const SphereCast thick{{rays_[0].origin, 5.0F}, rays_[0].direction};
@@ -88,7 +88,7 @@ class QueryMemory : public Conformance {
   Sphere sphere_;
 };
 
-TEST_P(QueryMemory, is_what_the_footprints_say) {
+TEST_P(QueryMemory, footprints_equal_the_allocated_memory) {
   Buffers buffers(&results_);
   EXPECT_EQ(results_.requests(), 0U);
   Random random(52);
@@ -110,7 +110,7 @@ TEST_P(QueryMemory, is_what_the_footprints_say) {
   EXPECT_EQ(results_.requests_from_elsewhere(), 0U);
 }
 
-TEST_P(QueryMemory, is_not_asked_for_in_the_steady_state) {
+TEST_P(QueryMemory, steady_queries_do_not_allocate) {
   Buffers buffers(&results_);
   const auto queries = this->queries();
   const auto play = [&] {
@@ -126,7 +126,7 @@ TEST_P(QueryMemory, is_not_asked_for_in_the_steady_state) {
   }
 }
 
-TEST_P(QueryMemory, that_was_reserved_suffices) {
+TEST_P(QueryMemory, reserved_buffers_do_not_allocate) {
   HitBuffer hits(&results_);
   OverlapBuffer objects(&results_);
   ASSERT_TRUE(hits.reserve(700));
@@ -137,8 +137,8 @@ TEST_P(QueryMemory, that_was_reserved_suffices) {
             results_.outstanding());
 }
 
-// The n-th request is refused, alone or with all after it, until a call makes fewer than n.
-TEST_P(QueryMemory, that_is_refused_leaves_everything_as_it_was) {
+// Refuses only the n-th request, or it and all later ones, until a call makes fewer than n.
+TEST_P(QueryMemory, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto queries = this->queries();
   for (std::size_t q = 0; q < queries.size(); ++q) {
@@ -178,8 +178,8 @@ TEST_P(QueryMemory, that_is_refused_leaves_everything_as_it_was) {
       right_hits(hits.hits(), candidates(Cast(rays_[0]), world_.objects()), world_.partition()));
 }
 
-// Buffers that held much, then little, and that go from partition to partition.
-TEST_P(QueryMemory, of_a_buffer_is_good_for_any_partition) {
+// Buffers with large, then small results, which are used with several partitions.
+TEST_P(QueryMemory, buffer_works_with_any_partition) {
   World small(config());
   small.insert(uniform_boxes(20));
   World empty(config());

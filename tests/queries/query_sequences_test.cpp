@@ -1,5 +1,5 @@
-// Random sequences of changes and queries of every kind, against the plain model. Failing sequences
-// are shrunk by rapidcheck; set WINNOW_SEED for others.
+// Random sequences of changes and queries of every kind, compared with a plain model. rapidcheck
+// shrinks sequences that fail; set WINNOW_SEED for others.
 
 #include <rapidcheck.h>
 
@@ -42,7 +42,7 @@ rc::Gen<Step> steps() {
       rc::gen::set(&Step::seed, rc::gen::inRange<std::uint64_t>(0, 1U << 20U)));
 }
 
-// Mostly on small integers, so that boxes touch exactly.
+// Mostly small integers, so that boxes touch exactly.
 Aabb some_box(Random& random) {
   Aabb box;
   for (int k = 0; k < 3; ++k) {
@@ -55,7 +55,7 @@ Aabb some_box(Random& random) {
   return box;
 }
 
-/// A world, the filters of its objects, and buffers that last.
+/// A world, the filters of its objects, and buffers that are reused.
 class Play {
  public:
   explicit Play(const Config& config) : world_(config) {}
@@ -64,7 +64,7 @@ class Play {
     Random random(step.seed);
     switch (step.kind) {
       case Step::insert:
-        // Many at once, so that sequences reach beyond one block of rows.
+        // Many at once, so that sequences use more than one block of rows.
         for (std::size_t n = random.below(40); n > 0; --n) insert(some_box(random), random);
         break;
       case Step::update:
@@ -110,7 +110,7 @@ class Play {
     return keys;
   }
 
-  // The objects that a filter lets pass.
+  // Returns the objects that pass a filter.
   std::vector<Object> objects(const Filter& filter) const {
     std::vector<Object> all = world_.objects();
     std::erase_if(all, [&](const Object& object) {
@@ -177,7 +177,7 @@ class Play {
 
 class QuerySequences : public Conformance {};
 
-TEST_P(QuerySequences, mixed_with_any_changes_agree_with_the_model) {
+TEST_P(QuerySequences, any_sequence_agrees_with_the_model) {
   const bool held = rc::check([this] {
     Play play(config());
     for (const Step& step : *rc::gen::container<std::vector<Step>>(steps())) play.take(step);

@@ -1,3 +1,6 @@
+// Casts and regions at the boxes of a scene, ordinary and extreme, with their right results;
+// created once per process for all tests of queries.
+
 #include "tests/queries/questions.h"
 #include <winnow/core/eigen.h>
 
@@ -17,7 +20,7 @@ using Eigen::Vector3f;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
 
-// A box of the scene with sides that a centre can be computed of.
+// Returns a box of the scene with finite sides, so that it has a centre.
 Aabb some_box(std::span<const Aabb> boxes, Random& random) {
   if (boxes.empty()) return {Vector3f::Zero(), Vector3f::Ones()};
   Aabb box = boxes[random.below(boxes.size())];
@@ -59,7 +62,7 @@ Region oriented(const Aabb& at, Random& random) {
   for (int k = 0; k < 3; ++k) {
     box.half[k] *= std::array{0.0F, 0.5F, 1.0F, 4.0F}[random.below(4)];
   }
-  // Face to face with the box, as far as floats allow.
+  // Face to face with the box, to the precision of float.
   if (random.chance(0.3)) box.center += as_eigen(box.axes).col(0) * (box.half[0] + size(at));
   if (random.chance(0.1)) as_eigen(box.axes).col(1) += 0.5F * as_eigen(box.axes).col(2);
   return box;
@@ -94,7 +97,7 @@ std::vector<Plane> some_planes(const Aabb& at, Random& random) {
   for (Plane& plane : planes) {
     const auto axis = static_cast<int>(random.below(3));
     if (random.chance(0.5)) {
-      // Along a face, exactly.
+      // Exactly along a face.
       const float end = random.chance(0.5) ? at.min[axis] : at.max[axis];
       plane = {Vector3f::Unit(axis), -end};
       if (random.chance(0.5)) plane = {-plane.normal, -plane.offset};
@@ -107,7 +110,7 @@ std::vector<Plane> some_planes(const Aabb& at, Random& random) {
   return planes;
 }
 
-// Ends of the float range, and numbers of which products leave it.
+// Uses the ends of the float range, and numbers whose products overflow or underflow.
 Region extreme_region(std::size_t kind, Random& random, std::deque<std::vector<Plane>>& planes) {
   const auto value = [&] {
     constexpr std::array<float, 8> kValues{0.0F,  1.0F,  1e-30F,   1e-42F,

@@ -9,17 +9,17 @@
 
 namespace winnow::test {
 
-/// Regions of every kind at, around and between the boxes of a scene. Planes that a region looks at
-/// are added to `planes`, which must outlive it and not lose an element.
+/// Returns regions of every kind at, around and between the boxes of a scene. The planes of regions
+/// are added to `planes`, which must outlive the regions and not lose an element.
 [[nodiscard]] std::vector<Region> some_regions(std::span<const Aabb> boxes, std::size_t count,
                                                Random& random,
                                                std::deque<std::vector<Plane>>& planes);
 
-/// Casts of every kind.
+/// Returns casts of every kind.
 [[nodiscard]] std::vector<Cast> some_casts(std::span<const Aabb> boxes, std::size_t count,
                                            Random& random);
 
-/// A scene with questions about it and their right answers; object ids count the boxes.
+/// A scene with queries and their right results; object ids number the boxes.
 struct QuestionSet {
   std::string name;
   std::vector<Aabb> boxes;
@@ -31,15 +31,15 @@ struct QuestionSet {
   std::vector<RegionCandidates> region_truths;
 };
 
-/// So many casts and regions about a scene, with their right answers.
+/// Adds a scene with this number of casts and regions and their right results.
 void add_questions(std::deque<QuestionSet>& sets, const Scene& scene, std::size_t casts,
                    std::size_t regions);
 
-/// Random, degenerate, infinite and extreme scenes, and those of every size about a block's. Made
-/// once per process.
+/// Returns random, degenerate, infinite and extreme scenes, and scenes of every size near the size
+/// of a block. Created once per process.
 [[nodiscard]] const std::deque<QuestionSet>& question_sets();
 
-/// For messages.
+/// Texts for messages.
 [[nodiscard]] std::string to_string(const Cast& cast);
 [[nodiscard]] std::string to_string(const Region& region);
 

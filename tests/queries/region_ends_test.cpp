@@ -1,6 +1,6 @@
-// Boxes that just touch a region, and others a unit in the last place away from it: exactly the
-// first meet it, though no float tells the two apart. All coordinates are whole numbers, so that
-// 64 bits hold every square and product.
+// Boxes that just touch a region, and boxes one unit in the last place away from it: exactly the
+// first ones overlap, although no float distinguishes the two. All coordinates are integers, so
+// that 64 bits hold every square and product.
 
 #include <winnow/partitions/partition.h>
 
@@ -18,16 +18,16 @@ namespace {
 
 constexpr std::int64_t kRadius = 1 << 20;
 
-/// A box that has its corner nearest to the origin, or to an axis, at (x, y, z) >= 0.
+/// Returns a box whose corner nearest to the origin, or to an axis, is (x, y, z) >= 0.
 Aabb box_from(std::int64_t x, std::int64_t y, std::int64_t z) {
   const Vec3f corner(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
   return {corner, corner + Vec3f::constant(64.0F)};
 }
 
-/// Boxes and which of them meet a region.
+/// Boxes, and which of them overlap a region.
 struct Boxes {
   std::vector<Aabb> all;
-  std::vector<ObjectId> meeting;  // their numbers
+  std::vector<ObjectId> meeting;  // their indices
 
   void add(const Aabb& box, bool meets) {
     if (meets) meeting.push_back(static_cast<ObjectId>(all.size()));
@@ -49,8 +49,8 @@ void expect_meeting(const Boxes& boxes, const Region& region) {
   }
 }
 
-/// Corners within a unit of the circle or ball of `kRadius`: of the first two coordinates, or
-/// three.
+/// Returns boxes with a corner within one unit of the circle or ball of `kRadius`, in the first two
+/// or all three coordinates.
 Boxes boxes_at_ball(int axes) {
   Random random(4);
   Boxes boxes;
@@ -59,7 +59,7 @@ Boxes boxes_at_ball(int axes) {
   };
   for (int i = 0; i < 300; ++i) {
     const std::int64_t z = below(1000);
-    // The larger of the others follows from the smaller one, which decides by few units.
+    // The last x that touches the surface from inside; x + 1 is outside.
     const std::int64_t y = below(2000);
     const std::int64_t rest = kRadius * kRadius - y * y - (axes == 3 ? z * z : 0);
     std::int64_t x = kRadius;
@@ -71,22 +71,22 @@ Boxes boxes_at_ball(int axes) {
   return boxes;
 }
 
-TEST(RegionEnds, of_spheres_are_exact) {
+TEST(RegionEnds, spheres_overlap_exactly_at_their_surface) {
   const Boxes boxes = boxes_at_ball(3);
   expect_meeting(boxes, Sphere{{0, 0, 0}, static_cast<float>(kRadius)});
   expect_meeting(boxes, Capsule{{0, 0, 0}, {0, 0, 0}, static_cast<float>(kRadius)});
 }
 
-TEST(RegionEnds, of_capsules_are_exact) {
+TEST(RegionEnds, capsules_overlap_exactly_at_their_surface) {
   expect_meeting(boxes_at_ball(2), Capsule{{0, 0, -5000}, {0, 0, 5000}, float{kRadius}});
 }
 
-TEST(RegionEnds, of_planes_are_exact) {
+TEST(RegionEnds, planes_separate_exactly_at_their_surface) {
   Random random(5);
   const auto below = [&](int most) {
     return static_cast<std::int64_t>(random.below(static_cast<std::size_t>(most)));
   };
-  // One plane that decides, and no or five others that do not.
+  // One plane decides; there are no or five other planes.
   for (const std::size_t count : {1U, 6U}) {
     for (int round = 0; round < 20; ++round) {
       const std::array<std::int64_t, 3> normal{1, 1 + below(3), below(3)};

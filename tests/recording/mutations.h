@@ -13,7 +13,7 @@
 
 namespace winnow::test {
 
-/// Refuses what is more than so much at a time.
+/// Refuses requests beyond a total number of bytes in use.
 class LimitedMemory final : public std::pmr::memory_resource {
  public:
   explicit LimitedMemory(std::size_t most) : left_(most) {}
@@ -35,7 +35,7 @@ class LimitedMemory final : public std::pmr::memory_resource {
   std::size_t left_;
 };
 
-/// Gives every block of a recording, as far as it goes, the digest that it should have.
+/// Writes the correct digest into every complete block of a recording.
 inline void seal(std::vector<std::byte>& bytes) {
   std::size_t at = 16;
   while (bytes.size() >= at + 16) {
@@ -50,7 +50,7 @@ inline void seal(std::vector<std::byte>& bytes) {
   }
 }
 
-/// The same of a snapshot, and its size.
+/// As above, for a snapshot; also writes its size.
 inline void seal_snapshot(std::vector<std::byte>& bytes) {
   if (bytes.size() < 32) return;
   Digest digest;
@@ -59,7 +59,7 @@ inline void seal_snapshot(std::vector<std::byte>& bytes) {
   std::memcpy(bytes.data() + 16, frame, sizeof frame);
 }
 
-/// Makes something of it another: some bytes, a number of four or eight bytes, or its end.
+/// Changes some bytes, a number of four or eight bytes, or the length.
 inline void mutate(std::vector<std::byte>& bytes, Random& random) {
   const std::size_t changes = 1 + random.below(3);
   for (std::size_t i = 0; i < changes && bytes.size() > 8; ++i) {

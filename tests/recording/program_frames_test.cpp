@@ -1,4 +1,4 @@
-// What the tool makes of a program's recording: frames of boxes, as of any other recording.
+// Frames of boxes that the tool makes of a program's recording.
 
 #include "bench/recordings/recording.h"
 
@@ -24,7 +24,7 @@ class ProgramFrames : public testing::Test {
                                 .string();
 };
 
-TEST_F(ProgramFrames, have_a_row_for_each_id_and_points_for_what_is_gone) {
+TEST_F(ProgramFrames, frames_have_a_row_for_each_id) {
   const Aabb unit{{0, 0, 0}, {1, 1, 1}};
   const Aabb far{{5, 0, 0}, {6, 1, 1}};
   {
@@ -52,7 +52,7 @@ TEST_F(ProgramFrames, have_a_row_for_each_id_and_points_for_what_is_gone) {
   EXPECT_TRUE(recording.program->is_whole);
 }
 
-TEST_F(ProgramFrames, end_with_questions_where_the_program_tells_none) {
+TEST_F(ProgramFrames, frames_follow_queries_without_end_frame) {
   {
     Recorder recorder(path_.c_str());
     RecordedPartition partition(recorder, linear_bvh());
@@ -70,7 +70,7 @@ TEST_F(ProgramFrames, end_with_questions_where_the_program_tells_none) {
   EXPECT_EQ(recording.program->differences, 0U);
 }
 
-TEST_F(ProgramFrames, of_scenes_are_boxes_of_bodies) {
+TEST_F(ProgramFrames, frames_of_scenes_are_boxes_of_bodies) {
   {
     Recorder recorder(path_.c_str());
     record_scene(recorder, 30, 5, {});
@@ -81,7 +81,7 @@ TEST_F(ProgramFrames, of_scenes_are_boxes_of_bodies) {
   EXPECT_EQ(recording.program->differences, 0U);
 }
 
-TEST_F(ProgramFrames, have_the_contacts_of_a_scene_where_its_bodies_are) {
+TEST_F(ProgramFrames, frames_have_contacts_at_the_bodies) {
   {
     Recorder recorder(path_.c_str());
     ShapePool shapes;
@@ -111,7 +111,7 @@ TEST_F(ProgramFrames, have_the_contacts_of_a_scene_where_its_bodies_are) {
   }
 }
 
-TEST_F(ProgramFrames, of_what_is_damaged_are_none) {
+TEST_F(ProgramFrames, damaged_recording_is_refused) {
   {
     Recorder recorder(path_.c_str());
     record_scene(recorder, 30, 5, {});

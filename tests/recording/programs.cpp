@@ -1,3 +1,6 @@
+// Programs that tests of recordings run: sequences of all recorded calls of partitions, scenes,
+// queries, sensors and sweeps.
+
 #include "tests/recording/programs.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +19,7 @@ float uniform_in(Random& random, float low, float high) {
   return static_cast<float>(random.uniform(static_cast<double>(low), static_cast<double>(high)));
 }
 
-/// Boxes by key, of a partition that is recorded.
+/// Boxes by key, in a recorded partition.
 struct Crowd {
   std::vector<Key> keys;
   std::vector<Aabb> boxes;
@@ -188,7 +191,7 @@ void record_volumes(Recorder& recorder, std::size_t count) {
 
 namespace {
 
-/// A mesh, a field, two compounds and one of surfaces, and what changes them in place.
+/// A mesh, a height field, two compounds and a compound of surfaces, and their changes in place.
 struct Landscape {
   explicit Landscape(const SceneWorld& world)
       : pool(world.pool), land(terrain(5)), heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0} {
@@ -240,7 +243,7 @@ struct Landscape {
   std::vector<ShapeId> ids;
 };
 
-/// What happens to bodies besides that they move.
+/// Changes of bodies other than motion.
 void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape, int frame) {
   if (frame == 1) {
     EXPECT_EQ(scene.set_motion(world.keys[0], Motion::sleeping), Status::ok);
@@ -259,7 +262,7 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
   }
   if (frame == 2 || frame == 5) landscape.deform();
   if (frame == 5) {
-    // In the place of one that is gone.
+    // Reuses the id of a body that was removed.
     Key key;
     ShapeId& rock = landscape.ids.back();
     EXPECT_EQ(scene.set_shape(scene->key_of(5), landscape.ids[3]), Status::ok);
@@ -272,7 +275,7 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
   }
 }
 
-/// Pairs and bodies that a program wants to meet, by its own lights.
+/// Predicates of pairs and of bodies.
 struct Wishes {
   ObjectId modulus = 3;
 
@@ -292,7 +295,7 @@ struct Wishes {
   }
 };
 
-/// Rays and moving shapes.
+/// Casts rays and moving shapes.
 void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 9; ++i) {
@@ -334,7 +337,7 @@ void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filt
   EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
 }
 
-/// Every kind of question to a scene.
+/// Makes every kind of query of a scene.
 void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
   cast_all(ask, world, shape, filter);
   std::span<const SceneOverlap> bodies;
@@ -366,7 +369,7 @@ void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filte
 
 namespace {
 
-/// Sensors of many shapes that come, move, change and go, and what they sense.
+/// Adds, moves, changes and removes sensors of many shapes, and senses.
 class Watch {
  public:
   Watch(RecordedScene& scene, std::span<const ShapeId> shapes) : sensors_(scene), shapes_(shapes) {}
@@ -401,7 +404,7 @@ class Watch {
   std::vector<Key> keys_;
 };
 
-/// What bodies meet on their way along x, by their ends and by motions; some are bullets.
+/// Sweeps bodies along x, by end poses or by motions; some are bullets.
 void sweep_all(RecordedSweep& sweep, const SceneWorld& world, bool by_motions) {
   std::vector<Pose> ends;
   std::vector<RigidMotion> motions;
@@ -418,7 +421,7 @@ void sweep_all(RecordedSweep& sweep, const SceneWorld& world, bool by_motions) {
             Status::ok);
 }
 
-/// The scene and its contacts as they stood, once more.
+/// Saves the scene and its contacts, and loads them again.
 void load_again(RecordedScene& scene, Contacts& contacts) {
   Column<std::byte> bodies(std::pmr::get_default_resource());
   Column<std::byte> touching(std::pmr::get_default_resource());

@@ -15,7 +15,7 @@ namespace winnow::test {
 
 using Bytes8 = std::vector<std::byte>;
 
-/// A sink that keeps everything.
+/// Returns a sink that stores everything in `bytes`.
 [[nodiscard]] inline RecordingSink kept_in(Bytes8& bytes) {
   return {[](void* context, std::span<const std::byte> more) {
             auto& all = *static_cast<Bytes8*>(context);
@@ -25,11 +25,11 @@ using Bytes8 = std::vector<std::byte>;
           &bytes};
 }
 
-/// Boxes that come, move and go, and every kind of question to them, for so many frames.
+/// Inserts, moves and removes boxes, and makes every kind of query, for this number of frames.
 void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames);
-/// The same for each kind of volume.
+/// As above, for each kind of volume.
 void record_volumes(Recorder& recorder, std::size_t count);
-/// Bodies that come, move, fall asleep and go, what touches, and every kind of question to them.
+/// Adds, moves, deactivates and removes bodies, computes contacts, and makes every kind of query.
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options);
 
 }  // namespace winnow::test

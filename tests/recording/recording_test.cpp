@@ -1,5 +1,5 @@
-// What a program did is played again with the same answers, bit for bit, wherever it is played; and
-// nothing that anybody may hand over as a recording does any harm.
+// Recorded programs are replayed with bit-identical results on any configuration, and untrusted
+// recordings do no harm.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@
 namespace winnow::test {
 namespace {
 
-/// Plays on every instruction set and number of threads: all answers must be the recorded ones, but
-/// for so many.
+/// Replays on every instruction set and number of threads: all results must equal the recorded
+/// ones, except for this number of differences.
 void expect_same_everywhere(const Bytes8& bytes, std::uint64_t differences = 0) {
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
@@ -37,7 +37,7 @@ void expect_same_everywhere(const Bytes8& bytes, std::uint64_t differences = 0) 
   }
 }
 
-TEST(ProgramRecordings, of_partitions_are_played_bit_for_bit) {
+TEST(ProgramRecordings, partitions_are_replayed_bit_identical) {
   for (const StructureKind& structure : all_structures()) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
@@ -49,7 +49,7 @@ TEST(ProgramRecordings, of_partitions_are_played_bit_for_bit) {
   }
 }
 
-TEST(ProgramRecordings, of_all_volumes_are_played_bit_for_bit) {
+TEST(ProgramRecordings, all_volumes_are_replayed_bit_identical) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   record_volumes(recorder, scaled(500));
@@ -57,7 +57,7 @@ TEST(ProgramRecordings, of_all_volumes_are_played_bit_for_bit) {
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, of_scenes_are_played_bit_for_bit) {
+TEST(ProgramRecordings, scenes_are_replayed_bit_identical) {
   for (const double carry_over : {0.0, 0.02}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
@@ -68,7 +68,7 @@ TEST(ProgramRecordings, of_scenes_are_played_bit_for_bit) {
   }
 }
 
-/// Balls in a row, of which neighbours overlap.
+/// Balls in a row, each of which overlaps its neighbours.
 struct Row {
   Row() {
     EXPECT_EQ(shapes.add(SphereShape{0.6}, ball), Status::ok);
@@ -82,13 +82,13 @@ struct Row {
   std::vector<Key> keys;
 };
 
-/// The version stands behind the eight characters.
+/// Writes the version, which follows the eight characters.
 Bytes8 as_version(Bytes8 bytes, std::uint32_t version) {
   std::memcpy(bytes.data() + 8, &version, sizeof version);
   return bytes;
 }
 
-TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
+TEST(ProgramRecordings, predicate_results_are_recorded) {
   const auto refuse_even = [](void*, ObjectId first, ObjectId) { return first % 2 != 0; };
   Row row;
   Bytes8 bytes;
@@ -117,7 +117,7 @@ TEST(ProgramRecordings, of_predicates_have_what_they_let_pass) {
   EXPECT_EQ(touching, (std::vector<std::size_t>{14, 14, 14, 29}));
 }
 
-/// A row that is recorded, of which one pair parts and meets in turn.
+/// A recorded row, one pair of which ends and begins in turn.
 struct RecordedRow : Row {
   explicit RecordedRow(Recorder& recorder, const SceneOptions& options = {})
       : scene(recorder, shapes, options) {
@@ -132,7 +132,7 @@ struct RecordedRow : Row {
   int asked = 0;
 };
 
-TEST(ProgramRecordings, of_contacts_that_another_scene_filled_in_between_are_played) {
+TEST(ProgramRecordings, contacts_shared_by_two_scenes_are_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
@@ -150,14 +150,14 @@ TEST(ProgramRecordings, of_contacts_that_another_scene_filled_in_between_are_pla
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, end_where_a_scene_is_asked_with_other_contacts_than_its_last_answer) {
+TEST(ProgramRecordings, change_back_to_earlier_contacts_ends_the_recording) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   RecordedRow row(recorder);
   Contacts one;
   Contacts other;
   for (Contacts* contacts : {&one, &one, &other, &other}) row.ask(*contacts);
-  EXPECT_EQ(recorder.status(), Status::ok);  // the second ones were empty
+  EXPECT_EQ(recorder.status(), Status::ok);  // the second contacts were empty
   row.ask(one);
   EXPECT_EQ(one.size(), 29U);
   EXPECT_EQ(recorder.close(), Status::unsupported);
@@ -166,7 +166,7 @@ TEST(ProgramRecordings, end_where_a_scene_is_asked_with_other_contacts_than_its_
   EXPECT_EQ(player.differences(), 0U);
 }
 
-TEST(ProgramRecordings, end_where_a_scene_is_asked_with_contacts_that_were_loaded) {
+TEST(ProgramRecordings, loaded_contacts_end_the_recording) {
   for (const bool into_others : {false, true}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
@@ -185,7 +185,7 @@ TEST(ProgramRecordings, end_where_a_scene_is_asked_with_contacts_that_were_loade
   }
 }
 
-/// Lets pairs pass but those of bodies that it is told not to.
+/// A predicate that rejects pairs of some bodies.
 struct Bouncer {
   [[nodiscard]] PairPredicate predicate() {
     return {[](void* context, ObjectId first, ObjectId second) {
@@ -198,7 +198,7 @@ struct Bouncer {
   std::vector<bool> out = std::vector<bool>(40);
 };
 
-TEST(ProgramRecordings, of_predicates_go_on_after_a_refused_question) {
+TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
   enum class Then { asked_again, another_predicate, another_body };
   for (const Then then : {Then::asked_again, Then::another_predicate, Then::another_body}) {
     Bytes8 bytes;
@@ -212,7 +212,7 @@ TEST(ProgramRecordings, of_predicates_go_on_after_a_refused_question) {
       CountingMemory memory;
       Contacts contacts(&memory);
       memory.refuse_after(0);
-      row.ask(contacts, Status::out_of_memory);  // where all were asked about
+      row.ask(contacts, Status::out_of_memory);  // after all pairs were tested
       memory.grant_all();
       row.asked = 0;
       if (then == Then::another_predicate) row.scene.set_predicate(most.predicate());
@@ -230,7 +230,7 @@ TEST(ProgramRecordings, of_predicates_go_on_after_a_refused_question) {
   }
 }
 
-TEST(ProgramRecordings, of_composites_that_no_body_has_are_played_bit_for_bit) {
+TEST(ProgramRecordings, composites_without_a_body_are_replayed) {
   Row row;
   CompositePool composites(row.shapes);
   const std::vector<Vec3f> corners{{-9, -9, 0}, {90, -9, 0}, {-9, 90, 0}};
@@ -262,14 +262,14 @@ TEST(ProgramRecordings, of_composites_that_no_body_has_are_played_bit_for_bit) {
     EXPECT_EQ(composites.remove(unused), Status::ok);
     collide();
     collide();
-    // Where a pool changed, contacts of composite shapes are made anew.
+    // If a pool has changed, contacts of composite shapes are recomputed.
     EXPECT_EQ(carried, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit) {
+TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
   Row row;
   std::vector<ShapeId> own(40);
   for (std::size_t i = 0; i < own.size(); ++i) {
@@ -302,7 +302,7 @@ TEST(ProgramRecordings, of_questions_from_several_threads_are_played_bit_for_bit
   EXPECT_EQ(player.differences(), 0U);
 }
 
-TEST(ProgramRecordings, questions_by_rules_have_what_predicate_let_pass) {
+TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
   Row row;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -338,7 +338,7 @@ TEST(ProgramRecordings, questions_by_rules_have_what_predicate_let_pass) {
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, of_version_3_take_any_two_bodies) {
+TEST(ProgramRecordings, version_3_ignores_scene_rules_in_queries) {
   Row row;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -358,7 +358,7 @@ TEST(ProgramRecordings, of_version_3_take_any_two_bodies) {
   expect_same_everywhere(as_version(bytes, 3));
 }
 
-TEST(ProgramRecordings, of_questions_take_memory_of_the_question_and_the_recorder_alone) {
+TEST(ProgramRecordings, queries_allocate_only_in_queries_and_recorder) {
   Row row;
   CompositePool composites(row.shapes);
   const std::vector<Vec3f> corners{{-9, -9, 0}, {90, -9, 0}, {-9, 90, 0}};
@@ -379,7 +379,7 @@ TEST(ProgramRecordings, of_questions_take_memory_of_the_question_and_the_recorde
     ASSERT_EQ(scene.refresh(), Status::ok);
     RecordedQueries ask(scene, &of_questions);
     std::span<const SceneOverlap> found;
-    // The first question makes what all ask.
+    // The first query allocates the memory that all queries share.
     ASSERT_EQ(ask.queries().overlap(row.ball, Pose{}, found), Status::ok);
     const std::size_t before = of_scene.requests();
     for (const ShapeId shape : {floor, box}) {
@@ -393,7 +393,7 @@ TEST(ProgramRecordings, of_questions_take_memory_of_the_question_and_the_recorde
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, of_questions_that_were_refused_have_none) {
+TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   Row row;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -434,13 +434,14 @@ void expect_played(std::span<const unsigned char> recording, std::uint64_t calls
   EXPECT_EQ(player.frames(), frames);
 }
 
-TEST(ProgramRecordings, of_older_versions_are_played) {
+TEST(ProgramRecordings, older_versions_are_replayed) {
   expect_played(kVersion1, 22, 1);
-  // The distance and the nearest bodies were the solver's: lanes find them with other last bits.
+  // In version 2 the solver computed the distance and the nearest bodies; the lanes give other last
+  // bits.
   expect_played(kVersion2, 23, 2, 2);
 }
 
-/// Two spheres on a box, in a pool whose ids are none of a recording's numbers.
+/// Two spheres on a box, in a pool whose ids differ from the numbers of the recording.
 struct Pile {
   Pile() {
     for (int i = 0; i < 5; ++i) (void)pool.add(SphereShape{9.0 + i});
@@ -461,7 +462,7 @@ struct Pile {
   Key keys[3];
 };
 
-TEST(ProgramRecordings, of_scenes_that_were_loaded_go_on_from_there) {
+TEST(ProgramRecordings, loaded_scene_is_replayed) {
   Pile pile;
   Column<std::byte> bodies(std::pmr::get_default_resource());
   Column<std::byte> touching(std::pmr::get_default_resource());
@@ -498,7 +499,7 @@ TEST(ProgramRecordings, of_scenes_that_were_loaded_go_on_from_there) {
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, of_sensors_and_sweeps_are_played_bit_for_bit) {
+TEST(ProgramRecordings, sensors_and_sweeps_are_replayed_bit_identical) {
   Pile pile;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -531,10 +532,10 @@ TEST(ProgramRecordings, of_sensors_and_sweeps_are_played_bit_for_bit) {
   expect_same_everywhere(bytes);
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.questions(), 4U + 2U);  // with the two shapes
+  EXPECT_EQ(player.questions(), 4U + 2U);  // including the two shapes
 }
 
-TEST(ProgramRecordings, of_other_versions_are_refused_and_so_is_what_only_newer_ones_have) {
+TEST(ProgramRecordings, unknown_versions_and_newer_calls_are_refused) {
   Bytes8 asking;
   {
     Recorder recorder(kept_in(asking));
@@ -552,7 +553,7 @@ TEST(ProgramRecordings, of_other_versions_are_refused_and_so_is_what_only_newer_
   }
 }
 
-TEST(ProgramRecordings, stand_in_files) {
+TEST(ProgramRecordings, recording_in_a_file_is_replayed) {
   const std::string path =
       (std::filesystem::temp_directory_path() / "winnow_recording_test.winnow").string();
   {
@@ -569,7 +570,7 @@ TEST(ProgramRecordings, stand_in_files) {
   std::filesystem::remove(path);
 }
 
-TEST(ProgramRecordings, of_programs_that_ended_early_are_played_as_far_as_they_go) {
+TEST(ProgramRecordings, truncated_recording_is_replayed_to_its_end) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   record_partition(recorder, linear_bvh(), 100, 3);
@@ -582,7 +583,7 @@ TEST(ProgramRecordings, of_programs_that_ended_early_are_played_as_far_as_they_g
   EXPECT_EQ(player.frames(), 3U);
 }
 
-TEST(ProgramRecordings, end_where_nothing_takes_them_and_the_program_goes_on) {
+TEST(ProgramRecordings, recorder_without_a_sink_returns_an_error) {
   Recorder nowhere(RecordingSink{});
   record_partition(nowhere, linear_bvh(), 50, 2);
   EXPECT_EQ(nowhere.status(), Status::out_of_memory);
@@ -591,8 +592,8 @@ TEST(ProgramRecordings, end_where_nothing_takes_them_and_the_program_goes_on) {
   EXPECT_EQ(no_file.close(), Status::invalid_argument);
 }
 
-TEST(ProgramRecordings, tell_another_answer_from_the_recorded_one) {
-  // The same program, but the recorded digests are of other boxes.
+TEST(ProgramRecordings, difference_from_the_recording_is_reported) {
+  // Changes the boxes and keeps the recorded digest of the result.
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
@@ -606,7 +607,7 @@ TEST(ProgramRecordings, tell_another_answer_from_the_recorded_one) {
   ASSERT_EQ(recorder.close(), Status::ok);
   const float one = 1.0F;
   const float none = 0.5F;
-  // The first box's upper end, and the block's digest anew.
+  // The upper end of the first box, and then the digest of the block.
   auto* const block = bytes.data() + 32;
   const auto size = bytes.size() - 48;
   float bounds[12];
@@ -625,7 +626,7 @@ TEST(ProgramRecordings, tell_another_answer_from_the_recorded_one) {
   EXPECT_EQ(player.differences(), 1U);
 }
 
-/// What was recorded, with something made another; half of them with a digest that fits.
+/// Replays mutated recordings; half of them have a valid digest.
 void play_mutated(const Bytes8& good, std::size_t count) {
   Random random(11);
   std::size_t refused = 0;
@@ -640,7 +641,7 @@ void play_mutated(const Bytes8& good, std::size_t count) {
   EXPECT_GT(refused, count / 16);
 }
 
-TEST(ProgramRecordings, that_anybody_made_up_are_read_or_refused) {
+TEST(ProgramRecordings, untrusted_recordings_are_read_or_refused) {
   Bytes8 partitions;
   {
     Recorder recorder(kept_in(partitions));

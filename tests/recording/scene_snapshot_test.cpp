@@ -1,5 +1,5 @@
-// Scenes, their shapes and contacts that were saved and loaded go on as what was not; and nothing
-// that anybody may hand over as saved does any harm.
+// Loaded scenes, shapes and contacts continue exactly as the saved ones would have, and untrusted
+// snapshots do no harm.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using SavedBytes = std::vector<std::byte>;
 
-/// What save(column) appends.
+/// Returns the bytes that save(column) appends.
 template <typename Save>
 SavedBytes saved_by(const Save& save) {
   Column<std::byte> bytes(std::pmr::get_default_resource());
@@ -24,7 +24,7 @@ SavedBytes saved_by(const Save& save) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// All that a stage is, as bytes.
+/// All snapshots of a stage.
 struct SavedStage {
   SavedBytes shapes;
   SavedBytes composites;
@@ -34,7 +34,7 @@ struct SavedStage {
   friend bool operator==(const SavedStage&, const SavedStage&) = default;
 };
 
-/// A scene and what it is made of.
+/// A scene with its pools and contacts.
 struct Stage {
   explicit Stage(const SceneOptions& options)
       : composites(shapes), scene(shapes, with(options, composites)) {}
@@ -63,7 +63,7 @@ struct Stage {
   Contacts contacts;
 };
 
-/// Adds a mesh that shares, a height field and two compounds of the shapes that there are.
+/// Adds a mesh with shared vertices, a height field, and two compounds of the existing shapes.
 void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
   const MeshData land = terrain(6);
   const std::span<const std::uint32_t> corners(land.corners);
@@ -89,7 +89,7 @@ void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
   EXPECT_EQ(stage.composites.add_compound(surfaces, ids.emplace_back()), Status::ok);
 }
 
-/// Shapes of every kind, some with free places before them.
+/// Adds shapes of every kind, some with free places before them.
 std::vector<ShapeId> add_shapes(Stage& stage) {
   SceneWorld world(1);
   std::vector<ShapeId> ids;
@@ -133,7 +133,7 @@ Pose pose_in(Random& random) {
   return pose;
 }
 
-/// Bodies by their keys, ascending by id.
+/// Returns the keys of all bodies, ascending by id.
 std::vector<Key> keys_of(const Scene& scene) {
   std::vector<Key> keys;
   for (ObjectId id = 0; keys.size() < scene.size(); ++id) {
@@ -142,7 +142,7 @@ std::vector<Key> keys_of(const Scene& scene) {
   return keys;
 }
 
-/// A little of everything that happens to bodies, told by a number.
+/// Makes small changes of many kinds, selected by a number.
 void happen(Scene& scene, Random& random, int number) {
   const std::vector<Key> keys = keys_of(scene);
   const auto key = [&](std::size_t i) { return keys[(i * 7 + 3) % keys.size()]; };
@@ -173,7 +173,7 @@ void happen(Scene& scene, Random& random, int number) {
   EXPECT_EQ(scene.set_shape(key(n + 13), body.shape), Status::ok);
 }
 
-/// All that contacts and some questions tell.
+/// Returns a digest of all contacts and of some queries.
 std::uint64_t told(Stage& stage, ContactLevel level, SceneQueries& queries) {
   Digest digest;
   EXPECT_EQ(stage.scene.collide(level, stage.contacts), Status::ok);
@@ -191,7 +191,7 @@ std::uint64_t told(Stage& stage, ContactLevel level, SceneQueries& queries) {
   return digest.value();
 }
 
-/// Goes on for some frames, by numbers alone.
+/// Continues for some frames; the changes depend only on numbers.
 std::vector<std::uint64_t> go_on(Stage& stage, SceneQueries& queries) {
   Random random(9);
   std::vector<std::uint64_t> all;
@@ -203,7 +203,7 @@ std::vector<std::uint64_t> go_on(Stage& stage, SceneQueries& queries) {
   return all;
 }
 
-/// Bodies with a past; saved in the middle of a frame.
+/// Runs a scene for some frames and stops in the middle of a frame.
 void live(Stage& stage, std::size_t count) {
   Random random(4);
   const std::vector<ShapeId> shapes = add_shapes(stage);
@@ -233,7 +233,7 @@ std::vector<SceneOptions> kinds_of_scenes() {
           {.seamless_floors = true}};
 }
 
-TEST(SceneSnapshots, go_on_bit_for_bit) {
+TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {
   for (const SceneOptions& options : kinds_of_scenes()) {
     Stage first(options);
     live(first, scaled(150));
@@ -241,10 +241,10 @@ TEST(SceneSnapshots, go_on_bit_for_bit) {
     const SavedStage saved = first.save();
     SceneQueries queries(first.scene);
     const std::vector<std::uint64_t> future = go_on(first, queries);
-    // The future is undone, in place: what asks the scene still does.
+    // Goes back to the saved state in place; the queries still use the scene.
     first.load(saved);
     EXPECT_EQ(keys_of(first.scene), keys);
-    // Which stamps come next is not undone.
+    // The next stamps are not restored.
     const SavedStage again = first.save();
     first.load(again);
     EXPECT_TRUE(first.save() == again);
@@ -254,7 +254,7 @@ TEST(SceneSnapshots, go_on_bit_for_bit) {
       for (const int threads : {1, 2}) {
         Stage other({.execution = Workers{threads}.execution()});
         other.load(saved);
-        // The first scene has the keys.
+        // Only the scene differs: the first scene has the keys.
         SavedStage of_other = other.save();
         of_other.scene = saved.scene;
         EXPECT_TRUE(of_other == saved);
@@ -265,7 +265,7 @@ TEST(SceneSnapshots, go_on_bit_for_bit) {
   }
 }
 
-TEST(SceneSnapshots, lead_to_no_key_twice) {
+TEST(SceneSnapshots, loads_never_give_a_key_twice) {
   Stage stage(kinds_of_scenes()[0]);
   live(stage, 40);
   const std::vector<Key> keys = keys_of(stage.scene);
@@ -287,7 +287,7 @@ TEST(SceneSnapshots, lead_to_no_key_twice) {
   }
 }
 
-TEST(SceneSnapshots, of_contacts_are_of_the_scene_as_it_stood) {
+TEST(SceneSnapshots, contacts_are_saved_only_for_their_scene) {
   Stage stage(kinds_of_scenes()[1]);
   live(stage, 60);
   const SavedStage saved = stage.save();
@@ -300,14 +300,14 @@ TEST(SceneSnapshots, of_contacts_are_of_the_scene_as_it_stood) {
   EXPECT_EQ(stage.scene.remove(keys_of(stage.scene)[0]), Status::ok);
   EXPECT_EQ(stage.scene.load_contacts(saved.contacts, strange), Status::invalid_argument);
   EXPECT_EQ(strange.size(), stage.contacts.size());
-  // Bodies of shapes that the pools do not have.
+  // Bodies whose shapes are not in the pools.
   Stage empty({});
   EXPECT_EQ(empty.scene.load(saved.scene), Status::invalid_argument);
   EXPECT_EQ(empty.composites.load(saved.composites), Status::invalid_argument);
   EXPECT_EQ(empty.scene.size(), 0U);
 }
 
-/// Asks what was loaded, whatever it is by now.
+/// Makes calls on whatever was loaded.
 void use(Stage& stage) {
   SceneQueries queries(stage.scene);
   Random random(2);
@@ -320,7 +320,7 @@ void use(Stage& stage) {
   (void)queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits);
 }
 
-TEST(SceneSnapshots, of_a_tier_that_is_gone_are_robust) {
+TEST(SceneSnapshots, removed_tier_loads_as_robust) {
   constexpr std::size_t kTier = 32 + sizeof(std::uint32_t) + sizeof(double);
   const Stage stage({.tier = NarrowTier::robust});
   const SavedBytes saved = saved_by([&](auto& out) { return stage.scene.save(out); });
@@ -335,7 +335,7 @@ TEST(SceneSnapshots, of_a_tier_that_is_gone_are_robust) {
   }
 }
 
-TEST(SceneSnapshots, that_anybody_made_up_are_read_or_refused) {
+TEST(SceneSnapshots, untrusted_snapshots_are_read_or_refused) {
   Stage first(kinds_of_scenes()[1]);
   live(first, 40);
   const SavedStage good = first.save();
@@ -344,7 +344,7 @@ TEST(SceneSnapshots, that_anybody_made_up_are_read_or_refused) {
   const std::size_t count = scaled(2500);
   SavedBytes SavedStage::*const parts[] = {&SavedStage::shapes, &SavedStage::composites,
                                            &SavedStage::scene, &SavedStage::contacts};
-  // What one part of a stage is loaded into, fresh only where something was read.
+  // The stage into which parts are loaded; created again after a successful load.
   std::optional<Stage> stage;
   for (std::size_t i = 0; i < count; ++i) {
     SavedStage saved = good;
@@ -364,7 +364,7 @@ TEST(SceneSnapshots, that_anybody_made_up_are_read_or_refused) {
       ++refused;
       continue;
     }
-    // Who loads a pool loads what uses it.
+    // After loading a pool, everything that uses it must be loaded too.
     const bool holds =
         i % 4 > 1 || ((i % 4 == 1 || stage->composites.load(good.composites) == Status::ok) &&
                       stage->scene.load(good.scene) == Status::ok);

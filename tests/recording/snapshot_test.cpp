@@ -1,6 +1,5 @@
-// What was saved and loaded goes on as what was not: the same keys, the same pairs in the same
-// order, the same answers to the bit; and nothing that anybody may hand over as saved does any
-// harm.
+// Loaded snapshots continue exactly as the saved objects would have: equal keys, equal pairs in
+// equal order, bit-identical results. Untrusted snapshots do no harm.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ std::span<const std::byte> bytes_of(const Column<std::byte>& column) {
   return {column.data(), column.size()};
 }
 
-/// The ids of live objects, ascending.
+/// Returns the ids of live objects, ascending.
 std::vector<ObjectId> live_ids(const Partition& partition) {
   std::vector<ObjectId> ids;
   for (ObjectId id = 0; ids.size() < partition.size(); ++id) {
@@ -33,7 +32,8 @@ std::vector<ObjectId> live_ids(const Partition& partition) {
   return ids;
 }
 
-/// Goes on for some frames of moves, deaths, births and questions; gives all that can be seen.
+/// Runs some frames of moves, removals, insertions and queries; returns everything that callers can
+/// read.
 std::vector<std::uint64_t> go_on(Partition& partition) {
   Random random(5);
   PairBuffer pairs;
@@ -78,7 +78,7 @@ std::vector<std::uint64_t> go_on(Partition& partition) {
   return seen;
 }
 
-/// A partition with a past: objects came and went, some are filtered.
+/// Returns a partition with a history of inserted, removed and filtered objects.
 Partition with_past(StructureKind structure, Volume volume, std::vector<Key>& keys) {
   Partition partition(structure, {.volume = volume, .margin = {0.01F, 0.02F}});
   const std::vector<Aabb> boxes = uniform_boxes(structure.name() == "NSquared" ? 60 : scaled(800));
@@ -97,7 +97,7 @@ Partition with_past(StructureKind structure, Volume volume, std::vector<Key>& ke
   return partition;
 }
 
-TEST(Snapshots, of_partitions_go_on_bit_for_bit) {
+TEST(Snapshots, loaded_partition_continues_bit_identical) {
   for (const StructureKind& structure : all_structures()) {
     for (const Volume volume : {Volume::aabb, Volume::sphere, Volume::kdop14}) {
       SCOPED_TRACE(structure.name());
@@ -105,12 +105,12 @@ TEST(Snapshots, of_partitions_go_on_bit_for_bit) {
       Partition saved = with_past(structure, volume, keys);
       Column<std::byte> bytes(std::pmr::get_default_resource());
       ASSERT_EQ(saved.save(bytes), Status::ok);
-      // The future that is undone.
+      // Changes the partition, which the load must undo.
       (void)go_on(saved);
       ASSERT_EQ(saved.load(bytes_of(bytes)), Status::ok);
       EXPECT_TRUE(saved.contains(keys[0]) && saved.contains(keys[5]) && saved.contains(keys[12]));
       EXPECT_FALSE(saved.contains(keys[4]));
-      // Which stamps come next is not undone.
+      // The next stamps are not restored.
       Column<std::byte> again(std::pmr::get_default_resource());
       ASSERT_EQ(saved.save(again), Status::ok);
       ASSERT_EQ(saved.load(bytes_of(again)), Status::ok);
@@ -132,7 +132,7 @@ TEST(Snapshots, of_partitions_go_on_bit_for_bit) {
   }
 }
 
-TEST(Snapshots, of_partitions_answer_queries_before_anybody_asks_for_pairs) {
+TEST(Snapshots, loaded_partition_answers_queries_before_pairs) {
   const Sphere everywhere{{0, 0, 0}, 1e6F};
   for (const StructureKind& structure : all_structures()) {
     SCOPED_TRACE(structure.name());
@@ -149,7 +149,7 @@ TEST(Snapshots, of_partitions_answer_queries_before_anybody_asks_for_pairs) {
   }
 }
 
-TEST(Snapshots, of_boxes_whose_ends_are_the_wrong_way_round_are_refused) {
+TEST(Snapshots, inverted_boxes_are_refused) {
   const Aabb box{{1.25F, 2.5F, 3.75F}, {5.25F, 6.5F, 7.75F}};
   Partition partition(linear_bvh());
   Key key;
@@ -168,9 +168,9 @@ TEST(Snapshots, of_boxes_whose_ends_are_the_wrong_way_round_are_refused) {
   }
 }
 
-// Of each partition that was loaded, in place or not, new keys name none of the objects that there
-// were after the save.
-TEST(Snapshots, of_partitions_lead_to_no_key_twice) {
+// New keys of every loaded partition, in place or not, differ from all keys that were given after
+// the save.
+TEST(Snapshots, loads_never_give_a_key_twice) {
   const Aabb box{{1, 1, 1}, {3, 3, 3}};
   std::vector<Key> keys;
   auto first = std::make_unique<Partition>(with_past(linear_bvh(), Volume::aabb, keys));
@@ -187,7 +187,7 @@ TEST(Snapshots, of_partitions_lead_to_no_key_twice) {
   };
   for (int round = 0; round < 3; ++round) {
     insert(*first);
-    // Those of slots that the save has live objects in, too.
+    // Also keys of slots that have live objects in the snapshot.
     for (const Key key : {keys[0], keys[7]}) ASSERT_EQ(first->remove(key), Status::ok);
     insert(*first);
     ASSERT_EQ(first->load(bytes_of(bytes)), Status::ok);
@@ -201,7 +201,7 @@ TEST(Snapshots, of_partitions_lead_to_no_key_twice) {
   insert(later);
 }
 
-TEST(Snapshots, of_partitions_have_the_keys_that_were_saved_where_nobody_has_them) {
+TEST(Snapshots, loaded_partition_keeps_keys_unused_elsewhere) {
   Column<std::byte> bytes(std::pmr::get_default_resource());
   std::vector<Key> keys;
   {
@@ -218,7 +218,7 @@ TEST(Snapshots, of_partitions_have_the_keys_that_were_saved_where_nobody_has_the
   EXPECT_EQ(later.key_of(keys[0].id), keys[0]);
 }
 
-/// True if traversals read the same of both, to the bit.
+/// Returns true if traversals read bit-identical data from both.
 bool same_view(const MeshView& a, const MeshView& b) {
   const auto same = [](const auto* x, const auto* y, std::size_t count) {
     return std::memcmp(x, y, count * sizeof *x) == 0;
@@ -242,7 +242,7 @@ bool same_view(const MeshView& a, const MeshView& b) {
   return all && (a.box == nullptr || same(a.box, b.box, 6 * slots));
 }
 
-/// The same mesh, its vertices elsewhere.
+/// Returns the vertices of the mesh at other positions.
 std::vector<Eigen::Vector3f> stirred(const MeshData& data) {
   std::vector<Eigen::Vector3f> vertices = data.vertices;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -251,7 +251,7 @@ std::vector<Eigen::Vector3f> stirred(const MeshData& data) {
   return vertices;
 }
 
-TEST(Snapshots, of_meshes_answer_bit_for_bit) {
+TEST(Snapshots, loaded_mesh_answers_bit_identical) {
   Column<std::byte> bytes(std::pmr::get_default_resource());
   for (const MeshData& data : sample_meshes()) {
     SCOPED_TRACE(data.name);
@@ -269,7 +269,7 @@ TEST(Snapshots, of_meshes_answer_bit_for_bit) {
       EXPECT_EQ(mesh.bounds(), loaded.bounds());
       EXPECT_EQ(mesh.radius(), loaded.radius());
     }
-    // Who is whose neighbour was saved, too.
+    // The neighbours of triangles were saved, too.
     ASSERT_EQ(mesh.refit(data.points()), Status::ok);
     ASSERT_EQ(loaded.refit(data.points()), Status::ok);
     EXPECT_TRUE(same_view(view_of(mesh), view_of(loaded)));
@@ -282,8 +282,8 @@ TEST(Snapshots, of_meshes_answer_bit_for_bit) {
   EXPECT_EQ(mesh.triangles(), 0U);
 }
 
-/// Loads what was saved with something made another, and calls use() where it was taken; most have
-/// a digest that fits.
+/// Loads mutated snapshots, most of which have a valid digest; `load` returns whether one was
+/// accepted.
 template <typename Load>
 void load_mutated(const Column<std::byte>& good, std::size_t count, const Load& load) {
   Random random(3);
@@ -297,7 +297,8 @@ void load_mutated(const Column<std::byte>& good, std::size_t count, const Load& 
   EXPECT_GT(refused, count / 16);
 }
 
-/// Asks and changes what nobody can foresee: boxes may be at the end of all floats.
+/// Queries and changes a partition with unknown content: boxes may be near the ends of the float
+/// range.
 void ask(Partition& partition) {
   PairBuffer pairs;
   HitBuffer hits;
@@ -312,7 +313,7 @@ void ask(Partition& partition) {
   EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
 }
 
-TEST(Snapshots, that_anybody_made_up_are_read_or_refused) {
+TEST(Snapshots, untrusted_snapshots_are_read_or_refused) {
   std::vector<Key> keys;
   Column<std::byte> bytes(std::pmr::get_default_resource());
   for (const Volume volume : {Volume::aabb, Volume::sphere, Volume::kdop26}) {

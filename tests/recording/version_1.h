@@ -2,10 +2,10 @@
 
 namespace winnow::test {
 
-/// A recording of version 1, as it was written by the library of commit 8a66dc5. Of a partition:
-/// three boxes, one moved, self_pairs with and without events and predicate, closest. Of a scene
-/// with carry-over and warm start: a fixed box and two spheres, layers and offsets, a move, collide
-/// with manifolds twice, a removal, collide with fresh contacts.
+/// A recording of version 1, written by the library of commit 8a66dc5. Partition calls: three
+/// boxes, one move, self_pairs with and without events and predicate, closest. Scene calls, with
+/// carry-over and warm start: a fixed box and two spheres, layers and offsets, a move, collide with
+/// manifolds twice, a removal, collide with fresh contacts.
 inline constexpr unsigned char kVersion1[] = {
     0x57, 0x49, 0x4E, 0x4E, 0x4F, 0x57, 0x52, 0x43, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
     0x71, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x77, 0x9A, 0x1B, 0xBE, 0x03, 0xDD, 0xC3, 0xD0,

@@ -2,9 +2,9 @@
 
 namespace winnow::test {
 
-/// A recording of version 2, as it was written by the library of commit 1510fdd. Of a scene with
-/// margin, carry-over and warm start: a fixed box, two spheres and a compound, a predicate, collide
-/// with manifolds, a move, collide again, and again without the predicate; then a ray, a cast, an
+/// A recording of version 2, written by the library of commit 1510fdd. Scene calls, with margin,
+/// carry-over and warm start: a fixed box, two spheres and a compound, a predicate, collide with
+/// manifolds, a move, collide again, and again without the predicate; then a ray, a cast, an
 /// overlap with a predicate, a distance, the nearest, overlaps of sets and a batch of rays.
 inline constexpr unsigned char kVersion2[] = {
     0x57, 0x49, 0x4E, 0x4E, 0x4F, 0x57, 0x52, 0x43, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,

@@ -1,5 +1,5 @@
-// Packing of set lanes, for every mask, against a bit loop; and nothing written past the room that
-// the caller promised.
+// Packing of set lanes, for every mask, compared with a loop over bits; nothing is written beyond
+// the room of the caller.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class Compress : public testing::TestWithParam<Isa> {
   IsaScope isa_{GetParam()};
 };
 
-TEST_P(Compress, packs_the_set_lanes_of_every_mask_in_order) {
+TEST_P(Compress, set_lanes_of_every_mask_are_packed) {
   for (std::uint32_t mask = 0; mask < 65536; ++mask) {
     std::array<std::uint32_t, 18> out;
     out.fill(kUntouched);
@@ -46,7 +46,7 @@ TEST_P(Compress, packs_the_set_lanes_of_every_mask_in_order) {
   }
 }
 
-TEST_P(Compress, packs_floats_as_it_packs_integers) {
+TEST_P(Compress, floats_are_packed_like_integers) {
   std::array<float, 16> lanes;
   std::transform(kLanes.begin(), kLanes.end(), lanes.begin(),
                  [](std::uint32_t lane) { return std::bit_cast<float>(lane); });
@@ -63,7 +63,7 @@ TEST_P(Compress, packs_floats_as_it_packs_integers) {
   }
 }
 
-TEST_P(Compress, emits_the_pairs_of_every_mask_in_order) {
+TEST_P(Compress, pairs_of_every_mask_are_emitted_in_order) {
   for (const std::uint32_t q : {0U, 10U, 0x80000000U, 0xFFFFFFFDU}) {
     for (std::uint32_t mask = 0; mask < 65536; ++mask) {
       std::array<std::uint32_t, 34> plain;

@@ -1,4 +1,4 @@
-// The choice of the instruction set: by default, by the environment, by call.
+// Selection of the instruction set: by default, by the environment, by call.
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
@@ -11,7 +11,7 @@ namespace winnow::test {
 namespace {
 
 #ifdef WINNOW_PRINT_ISA
-// What isa_name() is in a process of its own whose WINNOW_ISA is `value`.
+// Returns isa_name() of a separate process with this WINNOW_ISA.
 std::string isa_of_a_process(const std::string& value) {
   const std::string command = "WINNOW_ISA='" + value + "' " WINNOW_PRINT_ISA;
   std::string output;
@@ -23,12 +23,12 @@ std::string isa_of_a_process(const std::string& value) {
   return output;
 }
 
-TEST(Isa, of_the_environment_is_the_active_one) {
+TEST(Isa, environment_selects_the_active_isa) {
   for (const Isa isa : available_isas())
     EXPECT_EQ(isa_of_a_process(to_string(isa)), to_string(isa));
 }
 
-TEST(Isa, unknown_to_this_machine_falls_back_to_the_widest) {
+TEST(Isa, unknown_isa_falls_back_to_the_widest) {
   const std::string widest = to_string(available_isas().back());
   for (const char* name : {"", "sse9", "AVX2", "avx2 ", "none"}) {
     EXPECT_EQ(isa_of_a_process(name), widest) << name;
@@ -41,7 +41,7 @@ TEST(Isa, unknown_to_this_machine_falls_back_to_the_widest) {
 }
 #endif
 
-TEST(Isa, list_is_never_empty_and_begins_with_the_baseline) {
+TEST(Isa, list_begins_with_the_baseline) {
   ASSERT_FALSE(available_isas().empty());
 #if WINNOW_HAVE_SSE42
   EXPECT_EQ(available_isas().front(), Isa::sse42);
@@ -50,7 +50,7 @@ TEST(Isa, list_is_never_empty_and_begins_with_the_baseline) {
 #endif
 }
 
-TEST(Isa, that_is_set_is_the_active_one) {
+TEST(Isa, set_isa_changes_the_active_isa) {
   const Isa before = active_isa();
   for (const Isa isa : available_isas()) {
     EXPECT_EQ(set_isa(isa), Status::ok);
@@ -63,7 +63,7 @@ TEST(Isa, that_is_set_is_the_active_one) {
   EXPECT_EQ(set_isa(before), Status::ok);
 }
 
-TEST(Isa, that_is_not_available_changes_nothing) {
+TEST(Isa, unavailable_isa_changes_nothing) {
   const Isa before = active_isa();
 #if WINNOW_HAVE_SSE42
   EXPECT_EQ(set_isa(Isa::neon64), Status::invalid_argument);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Every operation of simd/lanes/lanes.h, alone.h, boxes.h, compress.h, places.h and positive.h
-// behind plain pointers, so that an ordinary test can compare each instruction set with a scalar
-// loop. Arrays hold 16 elements unless said.
+// Wraps every operation of simd/lanes/lanes.h, alone.h, boxes.h, compress.h, places.h and
+// positive.h in a function on plain pointers, so that tests can compare each instruction set with a
+// scalar loop. Arrays have 16 elements unless stated otherwise.
 
 #include "simd/kernels/kernels.h"
 
@@ -32,7 +32,7 @@ struct LanesOps {
   unsigned (*count)(std::uint32_t mask);
   unsigned (*first)(std::uint32_t mask);
   std::uint32_t (*lanes_below)(unsigned lanes);
-  /// `columns`: the lower ends of the slabs, then the upper ends; `row` a multiple of 16.
+  /// `columns`: the lower ends of the slabs, then the upper ends; `row`: a multiple of 16.
   std::uint32_t (*overlap3)(const float* const* columns, std::size_t row, const float* low,
                             const float* high);
   std::uint32_t (*overlap13)(const float* const* columns, std::size_t row, const float* low,
@@ -41,22 +41,22 @@ struct LanesOps {
                                       const float* low, const float* high);
   unsigned (*compress_store)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t* out);
   unsigned (*compress_store_floats)(std::uint32_t mask, const float* in, float* out);
-  /// `out` holds 32 elements.
+  /// `out` has 32 elements.
   unsigned (*emit_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                          std::uint32_t* out);
   unsigned (*emit_sorted_pairs)(std::uint32_t mask, const std::uint32_t* in, std::uint32_t q,
                                 std::uint32_t* out);
-  /// Of 16 and of 32 floats.
+  /// `from` has 16 or 32 floats.
   void (*load_packed)(const std::uint32_t* p, float (*axis)[16]);
   void (*pick_of_16)(const float* from, const std::uint8_t* place, float* out);
   void (*pick_of_32)(const float* from, const std::uint8_t* place, float* out);
-  /// Of 48 numbers.
+  /// `place` has 48 numbers.
   bool (*are_below_16)(const std::uint8_t* place);
   bool (*are_below_32)(const std::uint8_t* place);
   void (*larger_positive)(const float* a, const float* b, float* out);
   void (*smaller_positive)(const float* a, const float* b, float* out);
   std::uint32_t (*reduce_min_positive)(const float* in);
-  /// kAloneResults of two doubles, each of which stands alone, and the same of lanes of them.
+  /// Writes kAloneResults results of two doubles, on the scalar path and in lanes.
   void (*alone)(double a, double b, double* out);
   void (*not_alone)(double a, double b, double* out);
   const char* isa_name;

@@ -1,3 +1,5 @@
+// The operations of lanes_ops.h, compiled once for each instruction set; lanes_test.cpp calls them.
+
 #include "simd/lanes/alone.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
@@ -68,7 +70,7 @@ float reduce_min_lanes(const float* in) {
 float reduce_max_lanes(const float* in) {
   return reduce_max(Floats::load_unaligned(in));
 }
-/// kAloneResults of two numbers that stand in all lanes.
+/// Writes kAloneResults results of two numbers that fill all lanes.
 template <typename T>
 void do_all(double first, double second, double* out) {
   const Lanes<T> a = Lanes<T>(T(first));

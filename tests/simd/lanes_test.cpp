@@ -1,5 +1,5 @@
-// Every operation on lanes against a scalar loop, on every instruction set of this machine, with
-// the floats that break such code.
+// Every operation on lanes compared with a scalar loop, on every instruction set of this machine,
+// with hostile floats.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class LaneOps : public testing::TestWithParam<Isa> {
  protected:
   const LanesOps& ops() { return lanes_ops(); }
 
-  // Sixteen floats: hostile ones, ordinary ones and, if asked for, NaNs.
+  // Returns sixteen floats: hostile ones, ordinary ones and optionally NaNs.
   Floats lanes(bool with_nan = false) {
     Floats result;
     for (float& f : result) {
@@ -61,7 +61,7 @@ class LaneOps : public testing::TestWithParam<Isa> {
       by_lanes(a.data(), b.data(), out.data());
       for (std::size_t i = 0; i < 16; ++i) {
         const float expected = scalar(a[i], b[i]);
-        // Zeros of either sign are the same number, and so are all NaNs.
+        // Zeros of either sign count as equal, as do all NaNs.
         ASSERT_TRUE(out[i] == expected || (std::isnan(out[i]) && std::isnan(expected)))
             << a[i] << ", " << b[i] << " gives " << out[i];
       }
@@ -74,7 +74,7 @@ class LaneOps : public testing::TestWithParam<Isa> {
   IsaScope isa_{GetParam()};
 };
 
-TEST_P(LaneOps, table_is_the_one_of_the_active_instruction_set) {
+TEST_P(LaneOps, table_belongs_to_the_active_isa) {
   EXPECT_STREQ(ops().isa_name, to_string(GetParam()));
 }
 
@@ -96,7 +96,7 @@ TEST_P(LaneOps, loads_and_stores_keep_every_bit) {
   }
 }
 
-TEST_P(LaneOps, broadcasts_fill_every_lane) {
+TEST_P(LaneOps, broadcast_fills_every_lane) {
   for (const float value : kHostile) {
     Floats out;
     ops().broadcast(value, out.data());
@@ -109,7 +109,7 @@ TEST_P(LaneOps, broadcasts_fill_every_lane) {
   }
 }
 
-TEST_P(LaneOps, counts_up_from_a_base) {
+TEST_P(LaneOps, count_from_counts_up_from_the_base) {
   for (const std::uint32_t base : {0U, 7U, 0x7FFFFFF8U, 0xFFFFFFF8U}) {
     Uints out;
     ops().count_from(base, out.data());
@@ -117,7 +117,7 @@ TEST_P(LaneOps, counts_up_from_a_base) {
   }
 }
 
-TEST_P(LaneOps, arithmetic_is_lane_wise) {
+TEST_P(LaneOps, arithmetic_works_on_each_lane) {
   expect_lane_wise(
       ops().min, [](float a, float b) { return b < a ? b : a; }, false);
   expect_lane_wise(
@@ -130,7 +130,7 @@ TEST_P(LaneOps, arithmetic_is_lane_wise) {
       ops().divide, [](float a, float b) { return a / b; }, true);
 }
 
-TEST_P(LaneOps, roots_are_rounded_to_nearest) {
+TEST_P(LaneOps, square_roots_are_rounded_to_nearest) {
   for (int round = 0; round < 5000; ++round) {
     const Floats in = lanes(true);
     Floats out;
@@ -143,7 +143,7 @@ TEST_P(LaneOps, roots_are_rounded_to_nearest) {
   }
 }
 
-TEST_P(LaneOps, a_product_and_sum_are_rounded_once_or_twice) {
+TEST_P(LaneOps, multiply_add_is_rounded_once_or_twice) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes();
     const Floats b = lanes();
@@ -159,7 +159,7 @@ TEST_P(LaneOps, a_product_and_sum_are_rounded_once_or_twice) {
   }
 }
 
-TEST_P(LaneOps, lanes_that_do_not_compare_become_infinite) {
+TEST_P(LaneOps, lanes_that_compare_false_become_infinite) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes(true);
     const Floats b = lanes(true);
@@ -170,7 +170,7 @@ TEST_P(LaneOps, lanes_that_do_not_compare_become_infinite) {
   }
 }
 
-TEST_P(LaneOps, compares_are_closed_and_false_for_nan) {
+TEST_P(LaneOps, comparisons_are_closed_and_false_for_nan) {
   for (int round = 0; round < 5000; ++round) {
     const Floats a = lanes(true);
     const Floats b = lanes(true);
@@ -180,7 +180,7 @@ TEST_P(LaneOps, compares_are_closed_and_false_for_nan) {
   }
 }
 
-TEST_P(LaneOps, reductions_find_the_extreme_lane_wherever_it_is) {
+TEST_P(LaneOps, reductions_find_the_extreme_in_any_lane) {
   for (std::size_t at = 0; at < 16; ++at) {
     Floats in;
     in.fill(2.0F);
@@ -196,7 +196,7 @@ TEST_P(LaneOps, reductions_find_the_extreme_lane_wherever_it_is) {
   }
 }
 
-TEST_P(LaneOps, packed_points_have_ten_bits_for_each_axis) {
+TEST_P(LaneOps, packed_points_have_ten_bits_per_axis) {
   for (int round = 0; round < 1000; ++round) {
     alignas(64) std::uint32_t packed[16];
     for (auto& p : packed) p = static_cast<std::uint32_t>(random_.below(1U << 30U));
@@ -211,7 +211,7 @@ TEST_P(LaneOps, packed_points_have_ten_bits_for_each_axis) {
   }
 }
 
-TEST_P(LaneOps, picked_lanes_are_those_that_the_places_say) {
+TEST_P(LaneOps, pick_selects_the_given_lanes) {
   std::array<float, 32> from;
   for (std::size_t i = 0; i < 32; ++i) from[i] = static_cast<float>(i);
   for (int round = 0; round < 1000; ++round) {
@@ -226,7 +226,7 @@ TEST_P(LaneOps, picked_lanes_are_those_that_the_places_say) {
   }
 }
 
-TEST_P(LaneOps, one_place_of_many_is_found_beyond_a_limit) {
+TEST_P(LaneOps, one_place_beyond_the_limit_is_found) {
   for (std::size_t at = 0; at < 48; ++at) {
     std::array<std::uint8_t, 48> place;
     place.fill(15);
@@ -258,7 +258,7 @@ TEST_P(LaneOps, positive_floats_are_ordered_by_their_bits) {
   }
 }
 
-TEST_P(LaneOps, a_double_that_stands_alone_is_computed_as_in_lanes) {
+TEST_P(LaneOps, scalar_path_equals_the_lanes) {
   const std::array hostile{0.0,     -0.0,     1.0,    -1.0,     static_cast<double>(kInf),
                            DBL_MAX, -DBL_MAX, 5e-324, -DBL_MIN, -static_cast<double>(kInf)};
   const auto draw = [&] {
@@ -300,7 +300,7 @@ TEST_P(LaneOps, masks_are_counted_and_searched) {
   for (unsigned n = 0; n <= 16; ++n) EXPECT_EQ(ops().lanes_below(n), (1ULL << n) - 1);
 }
 
-// Slabs of random volumes, hostile ends and empty rows against the definition.
+// Slabs of random volumes, hostile ends and empty rows, compared with the definition.
 template <std::size_t Slabs>
 class Volumes {
  public:
@@ -338,7 +338,7 @@ class Volumes {
   static constexpr std::size_t kRows = 48;
 
  private:
-  // Mostly ends that let slabs overlap, so that a hit is not a rarity with many slabs.
+  // Mostly ends whose slabs overlap, so that hits are frequent even with many slabs.
   static float end(Random& random, float sign) {
     if (random.chance(0.05)) return kHostile[random.below(kHostile.size())];
     if (random.chance(0.02)) return kNan;
@@ -352,7 +352,7 @@ class Volumes {
   std::array<float, Slabs> query_high_;
 };
 
-TEST_P(LaneOps, overlap_is_the_closed_test_of_every_slab) {
+TEST_P(LaneOps, overlap_is_the_closed_test_of_slabs) {
   std::uint32_t hits3 = 0;
   std::uint32_t hits13 = 0;
   for (int round = 0; round < 5000; ++round) {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-// Prints the active instruction set: what isa_test.cpp runs with WINNOW_ISA set.
+// Prints the active instruction set; isa_test.cpp runs this with WINNOW_ISA set.
 int main() {
   std::fputs(winnow::isa_name(), stdout);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Every operation of simd/lanes/rows.h and corners.h behind plain pointers.
+// Wraps every operation of simd/lanes/rows.h and corners.h in a function on plain pointers.
 
 #include "simd/kernels/kernels.h"
 
@@ -8,21 +8,21 @@
 
 namespace winnow::test {
 
-/// `rows`: eight addresses. Outputs: column k at out + 8 k.
+/// `rows`: eight addresses. Output: column k at out + 8 k.
 struct RowsOps {
   void (*load_rows4)(const double* const* rows, double* out);
   void (*load_differences4)(const double* const* rows, const double* const* base, double* out);
   void (*load_rows2)(const double* const* rows, double* out);
   void (*load_rows1)(const double* const* rows, double* out);
-  /// Sixteen doubles to sixteen floats and back.
+  /// Converts sixteen doubles to floats and back.
   void (*to_single)(const double* in, float* out);
   void (*to_double)(const float* in, double* out);
   void (*store_bytes)(std::uint64_t bytes, std::uint32_t base, std::uint32_t* out);
   void (*negate)(const double* in, double* out);
-  /// `corners`: three addresses of four floats. Outputs: axis k at out + 4 k; with `next`, each
-  /// lane's number at the corner before.
+  /// `corners`: three addresses of four floats. Output: axis k at out + 4 k; with `next`, each lane
+  /// gets the number of the following corner.
   void (*load_corners)(const float* const* corners, bool next, double* out);
-  /// Three numbers to four lanes.
+  /// Copies three numbers to four lanes, cyclically.
   void (*join_corners)(const double* in, double* out);
 };
 

@@ -1,5 +1,5 @@
-// Rows and corners into lanes, and lanes into other precisions, against scalar loops, on every
-// instruction set.
+// Loading rows and corners into lanes, and conversions between precisions, compared with scalar
+// loops on every instruction set.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ WINNOW_DEFINE_KERNELS(RowsOps, rows_ops)
 
 namespace {
 
-/// Eight rows of eleven doubles at addresses without order.
+/// Eight rows of eleven doubles at unordered addresses.
 class Rows {
  public:
   explicit Rows(Random& random) : memory_(64 * 11) {
@@ -40,7 +40,7 @@ class RowsToLanes : public testing::TestWithParam<Isa> {
   IsaScope isa_{GetParam()};
 };
 
-TEST_P(RowsToLanes, column_k_holds_element_k_of_every_row) {
+TEST_P(RowsToLanes, column_k_has_element_k_of_every_row) {
   for (int round = 0; round < 500; ++round) {
     const Rows in(random_);
     const Rows base(random_);
@@ -63,7 +63,7 @@ TEST_P(RowsToLanes, column_k_holds_element_k_of_every_row) {
   }
 }
 
-TEST_P(RowsToLanes, precisions_are_rounded_to_the_nearest) {
+TEST_P(RowsToLanes, conversions_are_rounded_to_nearest) {
   for (int round = 0; round < 500; ++round) {
     std::array<double, 16> in{};
     for (double& v : in) v = random_.uniform(-1.0, 1.0) * random_.log_uniform(1e-44, 1e40);
@@ -90,7 +90,7 @@ TEST_P(RowsToLanes, bytes_become_words_above_a_base) {
   }
 }
 
-TEST_P(RowsToLanes, negation_turns_the_sign_of_zero) {
+TEST_P(RowsToLanes, negation_flips_the_sign_of_zero) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::array<double, 8> in{0.0, -0.0, 1.0, -1.0, 5e-324, -5e-324, infinity, -infinity};
   std::array<double, 8> out{};
@@ -101,7 +101,7 @@ TEST_P(RowsToLanes, negation_turns_the_sign_of_zero) {
   }
 }
 
-TEST_P(RowsToLanes, corners_come_in_their_order_and_the_next_takes_the_place_of_each) {
+TEST_P(RowsToLanes, corners_are_loaded_in_order_or_shifted) {
   for (int round = 0; round < 500; ++round) {
     std::array<std::array<float, 4>, 3> corner{};
     for (auto& point : corner) {
@@ -122,7 +122,7 @@ TEST_P(RowsToLanes, corners_come_in_their_order_and_the_next_takes_the_place_of_
   }
 }
 
-TEST_P(RowsToLanes, corners_that_are_joined_come_in_their_order) {
+TEST_P(RowsToLanes, joined_corners_are_in_order) {
   const std::array<double, 3> corner{0x1p-1022, -0.0, 1.0 / 3.0};
   std::array<double, 4> out{};
   rows_ops().join_corners(corner.data(), out.data());

@@ -1,3 +1,6 @@
+// Soak test of a partition: plays random frames on a partition, on a copy loaded from its snapshot,
+// and on a model, and compares them. Called by soak.cpp for each structure.
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -19,7 +22,7 @@ class PartitionSoak {
 
  private:
   void begin_lap();
-  /// What is told to a partition and to its model, one after the other, in each frame.
+  /// Plans the changes of a frame, which are then made on the partition and on its model.
   void plan_frame(std::uint64_t frame);
   void come();
   void go();
@@ -39,9 +42,9 @@ class PartitionSoak {
   SoakPlan plan_;
   SoakTally tally_;
   CountingMemory memory_;
-  CountingMemory saved_memory_;  // of what is saved and loaded
+  CountingMemory saved_memory_;  // for snapshots
   std::size_t most_;
-  std::size_t most_at_once_;  // that come or go
+  std::size_t most_at_once_;  // that arrive or leave
   double side_;
   Random random_;
   Threads threads_;
@@ -51,14 +54,14 @@ class PartitionSoak {
   PairBuffer loaded_pairs_{&saved_memory_};
   PairEvents events_{&memory_};
   Column<std::byte> saved_{&saved_memory_};
-  std::uint64_t followed_ = 0;  // frames that what was loaded still goes on for
+  std::uint64_t followed_ = 0;  // remaining frames in which the loaded copy is compared
 
   std::vector<Object> model_;  // dense, in no order
-  std::set<Pair> told_;        // by events
+  std::set<Pair> told_;        // pairs that are active by the events
   Motion motion_ = Motion::little;
-  double wanted_ = 0.0;  // objects
+  double wanted_ = 0.0;  // number of objects
 
-  // Of this frame.
+  // Changes of the current frame.
   std::vector<ObjectId> gone_;
   std::vector<Aabb> come_;
   std::vector<std::size_t> moved_;
@@ -92,14 +95,14 @@ Aabb PartitionSoak::some_box() {
   Aabb box;
   const double edge = random_.chance(0.02) ? 0.5 * side_ : random_.log_uniform(0.5, 2.0);
   for (int axis = 0; axis < 3; ++axis) {
-    // Quarters, so that some touch exactly.
+    // Multiples of a quarter, so that some boxes touch exactly.
     box.min[axis] = static_cast<float>(0.25 * std::floor(random_.uniform(0.0, 4.0 * side_)));
     box.max[axis] = box.min[axis] + static_cast<float>(edge);
   }
   return box;
 }
 
-/// Or has grown too large to be like the others.
+/// Returns true if the box has left the world or has grown too large.
 bool PartitionSoak::has_left(const Aabb& box) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double least = static_cast<double>(box.min[axis]);
@@ -117,7 +120,7 @@ void PartitionSoak::come() {
 }
 
 void PartitionSoak::go() {
-  // Now and then all of them at once.
+  // Sometimes all objects at once.
   const std::size_t count = random_.chance(2e-4) ? model_.size() : 1 + random_.below(most_at_once_);
   for (std::size_t i = 0; i < count && !model_.empty(); ++i) {
     const std::size_t place = random_.below(model_.size());
@@ -172,7 +175,7 @@ void PartitionSoak::plan_frame(std::uint64_t frame) {
   come();
 }
 
-/// The same calls for what was saved and for what was loaded, whose keys are its own.
+/// Makes the calls of a frame on the original or on the loaded copy, whose keys differ.
 void PartitionSoak::tell(Partition& partition, bool is_followed) {
   keys_.clear();
   for (const ObjectId id : gone_) keys_.push_back(partition.key_of(id));
@@ -192,7 +195,7 @@ void PartitionSoak::tell(Partition& partition, bool is_followed) {
   require(partition.insert(come_, {}, keys_) == Status::ok, "insert was refused");
   for (std::size_t i = 0; i < come_.size() && is_followed; ++i) {
     require(keys_[i].id == model_[model_.size() - come_.size() + i].id,
-            "what was loaded gives another id");
+            "the loaded partition gives another id");
   }
 }
 
@@ -203,7 +206,7 @@ void PartitionSoak::tell() {
   times_.end();
   for (std::size_t i = 0; i < come_.size(); ++i) model_.push_back({keys_[i].id, come_[i], {}});
   tally_.operations +=
-      gone_.size() + moved_.size() + refiltered_.size() + come_.size() + 1 /* the question */;
+      gone_.size() + moved_.size() + refiltered_.size() + come_.size() + 1 /* the query */;
   for (const KeyPair& pair : events_.ended()) {
     require(told_.erase({pair.first.id, pair.second.id}) == 1, "a pair ended that had not begun");
   }
@@ -224,14 +227,14 @@ void PartitionSoak::check() {
   require(told_.size() == pairs_.size() &&
               std::all_of(pairs_.begin(), pairs_.end(),
                           [&](const Pair& pair) { return told_.contains(pair); }),
-          "events and pairs tell differently");
+          "events and pairs differ");
   require(partition_.size() == model_.size(), "another number of objects");
   check_boxes();
   tally_.comparisons += model_.size() * (model_.size() - 1) / 2;
   ++tally_.checks;
 }
 
-/// What partitions hold, and what a box meets.
+/// Compares the content of the partitions and the overlaps with a box.
 void PartitionSoak::check_boxes() {
   const Aabb asked = some_box();
   PairBuffer found;
@@ -246,7 +249,7 @@ void PartitionSoak::check_boxes() {
     if (object.box.overlaps(asked)) truth.push_back(object.id);
   }
   std::sort(truth.begin(), truth.end());
-  require(std::ranges::equal(found, truth, {}, &Pair::second), "a box meets others");
+  require(std::ranges::equal(found, truth, {}, &Pair::second), "a box has other overlaps");
   tally_.comparisons += model_.size();
   ++tally_.operations;
 }
@@ -267,7 +270,7 @@ void PartitionSoak::follow() {
   require(ask_canonical(loaded_) == Status::ok, "self_pairs was refused");
   std::vector<Pair> mine(pairs_.begin(), pairs_.end());
   std::sort(mine.begin(), mine.end());
-  require(std::ranges::equal(mine, loaded_pairs_), "what was loaded finds other pairs");
+  require(std::ranges::equal(mine, loaded_pairs_), "the loaded partition finds other pairs");
   if (--followed_ == 0) ++tally_.snapshots;
 }
 

@@ -1,3 +1,6 @@
+// Soak test of a scene: plays random frames on a scene, on a copy loaded from its snapshot, and on
+// a model, and compares them. Called by soak.cpp.
+
 #include <winnow/winnow.h>
 
 #include <algorithm>
@@ -22,11 +25,11 @@ class SceneSoak {
   SoakTally run();
 
  private:
-  /// Something that happens to one body: told to the model, then to each scene.
+  /// A change of one body, which is made on the model and then on each scene.
   struct Event {
     enum class Kind { add, remove, move, motion, shape, filter, ignore } kind;
     std::size_t body;
-    std::size_t other = 0;  // of ignore
+    std::size_t other = 0;  // for `ignore`
     bool ignored = false;
   };
 
@@ -43,7 +46,7 @@ class SceneSoak {
   SoakPlan plan_;
   SoakTally tally_;
   CountingMemory memory_;
-  CountingMemory saved_memory_;  // of what is saved and loaded
+  CountingMemory saved_memory_;  // for snapshots
   SceneWorld world_;
   Random random_;
   Threads threads_;
@@ -53,13 +56,13 @@ class SceneSoak {
   Contacts loaded_contacts_{&saved_memory_};
   Column<std::byte> saved_{&saved_memory_};
   Column<std::byte> saved_contacts_{&saved_memory_};
-  std::uint64_t followed_ = 0;  // frames that what was loaded still goes on for
+  std::uint64_t followed_ = 0;  // remaining frames in which the loaded copy is compared
 
   std::vector<Event> events_;
-  std::array<std::vector<Key>, 2> keys_;  // by scene, and body of the world
+  std::array<std::vector<Key>, 2> keys_;  // by scene, then by body of the world
   std::set<Names> ignored_;
-  std::set<Names> shown_;    // by the last frame
-  std::set<Names> dormant_;  // of two that rest since they were shown
+  std::set<Names> shown_;    // in the last frame
+  std::set<Names> dormant_;  // pairs of two bodies that have rested since they were reported
   double step_ = 0.02;
   FrameTimes times_{plan_.threads};
 };
@@ -84,7 +87,7 @@ SceneSoak::SceneSoak(const SoakPlan& plan)
   keys_[0] = keys_[1] = world_.keys;
 }
 
-/// A body's motion, shape or filter becomes another, or it is to ignore another body.
+/// Changes the motion state, shape or filter of a body, or sets it to ignore another body.
 void SceneSoak::change(std::size_t i) {
   BodyDefinition& body = world_.bodies[i];
   switch (random_.below(8)) {
@@ -106,7 +109,7 @@ void SceneSoak::change(std::size_t i) {
       break;
     }
     default:
-      // Most fall asleep or wake.
+      // Most bodies fall asleep or wake up.
       body.motion = body.motion == Motion::dynamic ? Motion::sleeping : Motion::dynamic;
       if (random_.chance(0.1)) body.motion = Motion::fixed;
       events_.push_back({Event::Kind::motion, i});
@@ -172,22 +175,23 @@ void SceneSoak::collide(Scene& scene, Contacts& contacts) {
   require(status == Status::ok, "collide was refused");
 }
 
-/// Pairs begin that were neither shown nor dormant, and end or rest that are shown no more.
+/// Checks events: pairs begin if they were neither reported nor dormant; pairs that are no longer
+/// reported end or become dormant.
 void SceneSoak::tell_events() {
   std::set<Names> before = shown_;
   before.insert(dormant_.begin(), dormant_.end());
   shown_.clear();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Names both = names(contacts_.data_a()[i], contacts_.data_b()[i]);
-    require(shown_.insert(both).second, "a pair is shown twice");
+    require(shown_.insert(both).second, "a pair is reported twice");
     const bool persists = contacts_.event()[i] == ContactEvent::persisted;
-    require(!persists || before.contains(both), "a pair persists that was not there");
+    require(!persists || before.contains(both), "a pair persists that had not begun");
     before.erase(both);
   }
   for (const EndedContact& pair : contacts_.ended()) {
-    // One of a body that has another shape or was replaced ends and begins.
+    // A pair ends and begins again if a body was replaced or has another shape.
     const Names both = names(pair.data_a, pair.data_b);
-    require(before.erase(both) == 1 || shown_.contains(both), "a pair ends that was not there");
+    require(before.erase(both) == 1 || shown_.contains(both), "a pair ends that had not begun");
   }
   for (const Names& both : before) {
     require(!world_.removed[both.first] && !world_.removed[both.second] &&
@@ -203,7 +207,7 @@ void SceneSoak::check() {
   for (const auto& [both, distance] : world_.touching(kMargin)) {
     if (!ignored_.contains(both)) truth.insert(both);
   }
-  require(shown_ == truth, "contacts are other pairs than those that touch");
+  require(shown_ == truth, "contacts are not the touching pairs");
   const std::uint64_t live = scene_.size();
   tally_.comparisons += live * (live - 1) / 2;
   ++tally_.checks;
@@ -227,7 +231,7 @@ void SceneSoak::save() {
 void SceneSoak::follow() {
   for (const Event& event : events_) tell(event, loaded_, 1);
   collide(loaded_, loaded_contacts_);
-  require(digest(contacts_) == digest(loaded_contacts_), "what was loaded has other contacts");
+  require(digest(contacts_) == digest(loaded_contacts_), "the loaded scene has other contacts");
   if (--followed_ == 0) ++tally_.snapshots;
 }
 

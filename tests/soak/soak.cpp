@@ -1,12 +1,12 @@
 // Usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] [--objects N]
 // [--check-every N] [--lap N] [NAME...]
 //
-// Plays so many frames of objects that come, go and move on each structure, and of bodies in a
-// scene, beside slow twins; NAME is a structure's or `scene`, all if there is none. With --seconds
-// rounds of so many frames, with other seeds, go on until that time has passed. With --lap objects
-// do the same again after so many frames. Prints a line for each, then one of JSON. Ends with 1
-// where an answer is not the twin's, a snapshot goes on otherwise, a footprint is not what was
-// asked for, or memory grows.
+// Plays the given number of frames of objects that arrive, leave and move on each structure, and of
+// bodies in a scene, compared with brute force. NAME is a structure or `scene`; the default is all.
+// With --seconds, rounds with other seeds continue until the time has passed. With --lap, the
+// objects repeat their motion after this number of frames. Prints a line for each NAME, then one
+// line of JSON. Returns 1 if a result is wrong, a loaded snapshot continues differently, a
+// footprint differs from the allocated memory, or memory grows.
 
 #include <algorithm>
 #include <charconv>
@@ -27,7 +27,7 @@ struct Asked {
   std::vector<std::string> names;
 };
 
-/// False for what is no number or no option.
+/// Returns false for an invalid number or an unknown option.
 bool read_option(Asked& asked, std::string_view name, std::string_view value) {
   std::uint64_t number = 0;
   const auto read = std::from_chars(value.data(), value.data() + value.size(), number);
@@ -75,7 +75,7 @@ bool read_arguments(Asked& asked, int argc, char** argv) {
   return true;
 }
 
-/// Short runs end before each has had its most.
+/// Short runs end before the peak of memory is reached.
 bool is_flat(const SoakTally& tally) {
   constexpr std::uint64_t kLong = 100'000;
   return tally.frames < kLong ||
@@ -97,7 +97,7 @@ SoakTally soak(const std::string& name, const SoakPlan& plan) {
   return name == "scene" ? soak_scene(plan) : soak_partition(structure_named(name), plan);
 }
 
-/// The sums of all, in one line.
+/// Prints the sums of all runs, in one line.
 void print_json(const std::vector<SoakTally>& tallies) {
   SoakTally sum;
   std::uint64_t without = ~std::uint64_t{0};

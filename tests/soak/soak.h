@@ -14,46 +14,46 @@
 
 namespace winnow::test {
 
-/// How long something runs, and how often it is looked at.
+/// The length of a run, and how often it is checked.
 struct SoakPlan {
   std::uint64_t frames = 0;
   std::uint64_t seed = 1;
   int threads = 1;
-  std::uint64_t objects = 256;  ///< at most; a quarter of them where each is tested with all others
-  std::uint64_t check_every = 16;    ///< frames between two comparisons with the twin
+  std::uint64_t objects = 256;       ///< maximum; a quarter if all pairs are tested
+  std::uint64_t check_every = 16;    ///< frames between two comparisons with the reference
   std::uint64_t save_every = 2000;   ///< frames between two snapshots
-  std::uint64_t follow_frames = 16;  ///< that what was loaded goes on for beside what was saved
-  /// Frames after which all is cleared and the same begins anew, which may ask for no more memory;
-  /// 0: never. Of partitions alone.
+  std::uint64_t follow_frames = 16;  ///< frames in which a loaded copy is compared
+  /// Frames after which everything is cleared and repeated, which must need no more memory; 0:
+  /// never. Only for partitions.
   std::uint64_t lap = 0;
 };
 
-/// What was done, and what it took.
+/// The totals of a run.
 struct SoakTally {
   std::string name;
   std::uint64_t frames = 0;
-  /// Objects and bodies that were added, removed, moved or told something, and questions.
+  /// Additions, removals, moves and other changes of objects and bodies, and queries.
   std::uint64_t operations = 0;
-  /// Of two objects or bodies each, by the twin.
+  /// Tests of two objects or bodies by the reference.
   std::uint64_t comparisons = 0;
-  std::uint64_t checks = 0;     ///< frames whose answer was the twin's
-  std::uint64_t snapshots = 0;  ///< that were loaded and went on alike
-  std::uint64_t requests = 0;   ///< for memory, likewise
-  /// After the last frame that asked for memory for itself, not for what is saved and loaded.
+  std::uint64_t checks = 0;     ///< frames whose results equal the reference
+  std::uint64_t snapshots = 0;  ///< loaded snapshots that continued identically
+  std::uint64_t requests = 0;   ///< memory requests, of all of these
+  /// Since the last frame that allocated memory, except for snapshots.
   std::uint64_t frames_without_requests = 0;
-  std::size_t first_peak = 0;  ///< bytes in use at most, first half
+  std::size_t first_peak = 0;  ///< maximum of bytes in use, first half
   std::size_t last_peak = 0;   ///< and second half
-  double median_us = 0.0;      ///< what a frame takes, checks not counted in
-  double p999_us = 0.0;        ///< of a thousand frames the slowest
+  double median_us = 0.0;      ///< time of a frame, without checks
+  double p999_us = 0.0;        ///< exceeded by one frame in a thousand
 };
 
-/// Throws with what did not hold.
+/// Throws `what` if the condition does not hold.
 inline void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
 
-/// Times of frames, as numbers of those that took so long: steps of 1/64 of their size. On one
-/// thread it is the thread's own time, in which nothing else that the machine does counts.
+/// A histogram of frame times with steps of 1/64 of their size. On one thread it counts the CPU
+/// time of the thread, so that other work of the machine does not count.
 class FrameTimes {
  public:
   explicit FrameTimes(int threads)
@@ -61,7 +61,7 @@ class FrameTimes {
 
   void begin() { start_ = now(); }
   void end();
-  /// In microseconds, right to a sixty-fourth; 0 without frames.
+  /// Returns the quantile in microseconds, with a relative error of 1/64; 0 without frames.
   [[nodiscard]] double quantile(double share) const;
 
  private:
@@ -75,15 +75,15 @@ class FrameTimes {
   std::uint64_t frames_ = 0;
 };
 
-/// Watches that memory stays flat and that what is counted is what is held.
+/// Checks that memory stays flat and that footprints equal the memory in use.
 class MemoryWatch {
  public:
-  /// `saved` is the memory of what is saved and loaded, which asks for some each time.
+  /// `saved` is the memory for snapshots, which allocates in every frame with a snapshot.
   MemoryWatch(SoakTally& tally, const CountingMemory& memory, const CountingMemory& saved,
               std::uint64_t frames)
       : tally_(tally), memory_(memory), saved_(saved), frames_(frames) {}
 
-  /// After each frame; `held` is what footprints say.
+  /// Called after each frame; `held` is the sum of the footprints.
   void look(std::uint64_t frame, std::size_t held);
 
  private:
@@ -94,10 +94,10 @@ class MemoryWatch {
   std::uint64_t last_request_ = 0;
 };
 
-/// A partition of this structure, with objects that come, go, move and change their filters.
+/// A partition of this structure, with objects that arrive, leave, move and change their filters.
 [[nodiscard]] SoakTally soak_partition(const StructureKind& structure, const SoakPlan& plan);
 
-/// A scene with bodies that come, go, move, fall asleep, wake and change shapes and filters.
+/// A scene with bodies that arrive, leave, move, fall asleep, wake and change shapes and filters.
 [[nodiscard]] SoakTally soak_scene(const SoakPlan& plan);
 
 }  // namespace winnow::test

@@ -34,7 +34,7 @@ double FrameTimes::quantile(double share) const {
 
 void MemoryWatch::look(std::uint64_t frame, std::size_t held) {
   const std::size_t bytes = memory_.outstanding() + saved_.outstanding();
-  require(held == bytes, "a footprint is not what the memory resource was asked for");
+  require(held == bytes, "a footprint differs from the allocated memory");
   std::size_t& peak = 2 * frame < frames_ ? tally_.first_peak : tally_.last_peak;
   peak = std::max(peak, bytes);
   if (memory_.requests() != tally_.requests) last_request_ = frame;

@@ -1,3 +1,6 @@
+// Reference implementation of casts against one box: rays and boxes in exact arithmetic, spheres
+// and capsules in long double with a search over time.
+
 #include "tests/support/cast_twin.h"
 #include <winnow/core/eigen.h>
 
@@ -26,7 +29,7 @@ struct Fraction {
   float low = 0.0F;
   float divisor = 1.0F;
 
-  // One rounding in each of the two steps and none of the range of double is left.
+  // Each of the two steps rounds once; the range of double suffices.
   [[nodiscard]] double value() const {
     return (static_cast<double>(high) - static_cast<double>(low)) / static_cast<double>(divisor);
   }
@@ -38,13 +41,13 @@ struct Fraction {
   return x * static_cast<double>(b.divisor) <= y * static_cast<double>(a.divisor);
 }
 
-// When a moving box enters and leaves a box that stands still, axis by axis.
+// When a moving box enters and leaves a box at rest, axis by axis.
 struct Slabs {
   std::array<Fraction, 4> entries{};
   std::array<Fraction, 4> exits{};
   std::size_t entry_count = 0;
   std::size_t exit_count = 0;
-  bool apart = false;  // on an axis along which it does not move
+  bool apart = false;  // apart on an axis without motion
 
   Slabs(const BoxCast& cast, const Aabb& box) {
     entries[entry_count++] = {cast.min_t, 0.0F, 1.0F};
@@ -64,7 +67,7 @@ struct Slabs {
   }
 };
 
-// A line against the slabs of a box grown by `slack` on each axis, in double.
+// A line against the slabs of a box that is grown by `slack` on each axis, in double.
 struct Window {
   double entry = -kInf;
   double exit = kInf;
@@ -91,7 +94,7 @@ struct Window {
       exit = std::min(exit, far_gap / d);
     }
   }
-  // Open by the rounding of double.
+  // Tolerates the rounding of double.
   [[nodiscard]] bool is_open() const {
     return !apart && entry <= exit + 1e-15 * (std::abs(entry) + std::abs(exit));
   }
@@ -136,7 +139,7 @@ CastTruth truth_of_slabs(const BoxCast& cast, const Aabb& box) {
   return truth;
 }
 
-// A capsule that moves, and how far it is from a box at each time; convex in time.
+// A moving capsule and its distance from a box at each time, which is convex in time.
 class Approach {
  public:
   Approach(const CapsuleCast& cast, const Aabb& box)
@@ -150,9 +153,9 @@ class Approach {
     return segment_box_square(a_ + way, b_ + way, box_);
   }
 
-  // The time of the least distance in [begin, end], or any at which it is at most `enough`; by
-  // golden section. Where two values are equal but for rounding, so is the least one: the distance
-  // is convex in time.
+  // Returns the time of the least distance in [begin, end], or any time at which it is at most
+  // `enough`, by golden-section search. If two values differ only by rounding, so does the minimum,
+  // since the distance is convex in time.
   [[nodiscard]] double nearest_time(double begin, double end, Real enough) const {
     const Real limit = enough > 0.0L ? enough * enough : 0.0L;
     if (square(begin) <= limit) return begin;
@@ -187,7 +190,8 @@ class Approach {
     return best;
   }
 
-  // Where between `outside` and `within`, earlier or later, the distance comes to at most `reach`.
+  // Returns the time between `outside` and `within`, in either order, at which the distance becomes
+  // `reach`.
   [[nodiscard]] double touch_time(double outside, double within, Real reach) const {
     constexpr std::uint64_t kClose = 256;  // doubles
     const Real limit = reach * reach;
@@ -220,7 +224,8 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
   double size =
       std::max({magnitude(box), static_cast<double>(as_eigen(capsule.a).cwiseAbs().maxCoeff()),
                 static_cast<double>(as_eigen(capsule.b).cwiseAbs().maxCoeff()), radius});
-  // The way to the box counts: to an infinite end of it, that is the range of float.
+  // The length of the motion counts as well: for an infinite end of the box it is the range of
+  // float.
   size = std::max(size, window(size).entry *
                             static_cast<double>(as_eigen(cast.direction).cwiseAbs().maxCoeff()));
   const double slack = tolerance * size;
@@ -239,7 +244,7 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
   const Real inner = r - static_cast<Real>(slack);
   const Real outer = r + static_cast<Real>(slack);
   truth.earliest = approach.touch_time(begin, best, outer) * (1.0 - 1e-14);
-  // A graze may be told anywhere as long as it is one.
+  // A graze may be reported at any time of contact.
   truth.latest = least <= inner ? approach.touch_time(begin, best, inner)
                                 : approach.touch_time(end, best, outer);
   truth.latest *= 1.0 + 1e-14;

@@ -20,10 +20,10 @@
 
 namespace winnow::test {
 
-/// Names of all structures, in the order of `all_structures()`.
+/// Returns the names of all structures, in the order of `all_structures()`.
 [[nodiscard]] std::vector<std::string_view> structure_names();
 
-/// Who runs tasks: nobody else for one thread, threads of an arena, or those of a host.
+/// The threads that run tasks: the caller only (1), threads of an arena, or threads of a host.
 struct Workers {
   int threads = 1;
   std::string_view host{};
@@ -37,11 +37,11 @@ struct Workers {
 
 [[nodiscard]] std::string to_string(const Workers& workers);
 
-/// Each number of threads of an arena, and every host.
+/// Returns each number of threads of an arena, and every host.
 [[nodiscard]] std::vector<Workers> all_workers();
 
-/// A structure, an instruction set, a number of threads (1 means Execution::serial()), how much
-/// of a build a refresh may plan, and which host's threads these are, if not those of an arena.
+/// A structure, an instruction set, a number of threads (1 means Execution::serial()), the build
+/// budget of a refresh, and the host that runs the threads, empty for an arena.
 struct Config {
   std::string partition;
   Isa isa{};
@@ -62,18 +62,19 @@ inline void PrintTo(const Config& config, std::ostream* out) {
   *out << to_string(config);
 }
 
-/// Every partition on every instruction set of this machine on 1, 2 and 8 threads, and on those of
-/// every host; in a quick run on the narrowest and the widest on 1 and 2 threads, and of one host.
+/// Returns every partition on every instruction set of this machine, on 1, 2 and 8 threads and on
+/// the threads of every host; in a quick run on the narrowest and the widest, on 1 and 2 threads
+/// and one host.
 [[nodiscard]] std::vector<Config> all_configs();
 
-/// Those of partitions that report only true pairs. The others report so many that large scenes
-/// take long and show nothing.
+/// Returns the configurations of partitions that report only true pairs. The many false pairs of
+/// the others make large scenes slow without testing more.
 [[nodiscard]] std::vector<Config> exact_configs();
 
-/// The number of threads that tests run on.
+/// Returns the numbers of threads that tests use.
 [[nodiscard]] std::vector<int> thread_counts();
 
-/// Chooses an instruction set for one scope.
+/// Selects an instruction set for one scope.
 class IsaScope {
  public:
   explicit IsaScope(Isa isa) : before_(active_isa()) { EXPECT_EQ(set_isa(isa), Status::ok); }
@@ -86,7 +87,7 @@ class IsaScope {
 };
 
 /// Runs functions on a number of threads: directly, or inside an arena of that size. Without oneTBB
-/// there are no arenas, and work that would run in them is serial.
+/// there are no arenas, and work for them is serial.
 class Threads {
 #if WINNOW_HAVE_TBB
  public:
@@ -112,7 +113,7 @@ class Threads {
 #endif
 };
 
-/// Base of all conformance tests: the config's instruction set is active while a test runs.
+/// Base of all conformance tests: the instruction set of the config is active during a test.
 class Conformance : public testing::TestWithParam<Config> {
  protected:
   [[nodiscard]] const Config& config() const { return GetParam(); }

@@ -9,13 +9,14 @@
 namespace winnow::test {
 namespace {
 
-// More than any machine has. Refused here, since sanitizers end the process rather than throw.
+// More than any machine has. Refused here, since sanitizers would end the process instead of
+// throwing.
 constexpr std::size_t kMost = ~std::size_t{0} >> (sizeof(std::size_t) > 4 ? 24U : 1U);
 
 }  // namespace
 
 CountingMemory::~CountingMemory() {
-  EXPECT_EQ(outstanding_, 0U) << blocks_.size() << " blocks were never given back";
+  EXPECT_EQ(outstanding_, 0U) << blocks_.size() << " blocks were never freed";
 }
 
 std::size_t CountingMemory::outstanding() const {
@@ -81,7 +82,7 @@ void CountingMemory::do_deallocate(void* block, std::size_t bytes, std::size_t a
   const Lock lock(mutex_);
   const auto found = blocks_.find(block);
   if (found == blocks_.end()) {
-    ADD_FAILURE() << "a block was given back that was never handed out";
+    ADD_FAILURE() << "a block was freed that was never allocated";
     return;
   }
   EXPECT_EQ(found->second.bytes, bytes);

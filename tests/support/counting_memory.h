@@ -14,29 +14,29 @@
 
 namespace winnow::test {
 
-/// A memory resource that counts to the byte, notices a block given back with another size or
-/// alignment than it was asked with, and refuses on demand. Safe from several threads.
+/// A memory resource that counts to the byte, reports blocks that are freed with another size or
+/// alignment, and refuses requests on demand. Thread-safe.
 class CountingMemory final : public std::pmr::memory_resource {
  public:
   CountingMemory() = default;
   CountingMemory(const CountingMemory&) = delete;
   CountingMemory& operator=(const CountingMemory&) = delete;
-  /// A test failure if a block was never given back.
+  /// Reports a test failure if a block was never freed.
   ~CountingMemory() override;
 
-  /// Bytes asked for and not yet given back.
+  /// Returns the allocated bytes that are not yet freed.
   [[nodiscard]] std::size_t outstanding() const;
-  /// Requests since construction, refused ones included.
+  /// Returns the number of requests so far, including refused ones.
   [[nodiscard]] std::size_t requests() const;
   [[nodiscard]] std::size_t refusals() const;
-  /// Requests made by any thread but the one that made this object.
+  /// Returns the requests of other threads than the one that constructed this object.
   [[nodiscard]] std::size_t requests_from_elsewhere() const;
 
   /// Grants `count` more requests and refuses all later ones.
   void refuse_after(std::size_t count);
   /// Grants `count` more requests, refuses one, grants the rest.
   void refuse_one_after(std::size_t count);
-  /// Refuses what would bring more than so many bytes into use at once.
+  /// Refuses requests that would bring more than `bytes` into use.
   void refuse_beyond(std::size_t bytes);
   void grant_all();
 

@@ -4,10 +4,10 @@
 
 namespace winnow::test {
 
-/// A number made of floats by a few sums and products, without any rounding: a sum of doubles of
-/// which no two share a bit (Shewchuk, "Adaptive precision floating-point arithmetic and fast
-/// robust geometric predicates", 1997, sections 2.3 to 2.5). Products of up to six floats neither
-/// overflow nor lose a bit at the lower end of double.
+/// A number that is computed from floats by a few sums and products without rounding: a sum of
+/// doubles, no two of which share a bit (Shewchuk, "Adaptive precision floating-point arithmetic
+/// and fast robust geometric predicates", 1997, sections 2.3 to 2.5). Products of up to six floats
+/// neither overflow nor lose a bit at the lower end of double.
 class Exact {
  public:
   Exact(double value) {  // NOLINT(google-explicit-constructor)
@@ -23,7 +23,7 @@ class Exact {
   }
   [[nodiscard]] friend bool operator<(const Exact& a, const Exact& b) { return (a - b).sign() < 0; }
 
-  /// -1, 0 or 1.
+  /// Returns -1, 0 or 1.
   [[nodiscard]] int sign() const {
     if (parts_.empty()) return 0;
     return parts_.back() < 0.0 ? -1 : 1;
@@ -32,7 +32,7 @@ class Exact {
  private:
   void add(double term);
 
-  std::vector<double> parts_;  // of growing magnitude, none of them zero
+  std::vector<double> parts_;  // of increasing magnitude, without zeros
 };
 
 [[nodiscard]] inline Exact abs(const Exact& a) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// How a host may have set its processor: which way it rounds, and what it makes of denormal
-// numbers. On its own: it needs nothing of the tests or of winnow.
+// Floating-point modes that a host may set: the rounding direction and the treatment of denormal
+// numbers. Independent of the tests and of winnow.
 
 #include <cfenv>
 #include <cstdint>
@@ -40,7 +40,7 @@ struct FloatMode {
          (mode.inputs_flushed ? " DAZ" : "");
 }
 
-/// All that the platform has, the default one first.
+/// Returns all modes of the platform, the default one first.
 [[nodiscard]] inline std::vector<FloatMode> all_float_modes() {
   std::vector<FloatMode> modes;
   for (const int rounding : {FE_TONEAREST,
@@ -67,7 +67,7 @@ class FloatModeScope {
     std::fegetenv(&before_);
     std::fesetround(mode.rounding);
 #if defined(__SSE__) && !defined(__wasm__)
-    // Not all systems' environments hold all of the register.
+    // On some systems fesetenv does not restore the whole register.
     _mm_setcsr(_mm_getcsr() | (mode.results_flushed ? 0x8000U : 0U) |
                (mode.inputs_flushed ? 0x40U : 0U));
 #elif defined(__aarch64__)

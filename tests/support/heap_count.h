@@ -4,8 +4,8 @@
 
 namespace winnow::test {
 
-/// Calls of the global operator new so far in this process; always 0 under a sanitizer, which has
-/// its own. Linking heap_count.cpp is what replaces the operator.
+/// Returns the number of calls of the global operator new in this process; always 0 under a
+/// sanitizer, which replaces the operator itself. Linking heap_count.cpp replaces the operator.
 [[nodiscard]] std::size_t heap_requests() noexcept;
 
 }  // namespace winnow::test

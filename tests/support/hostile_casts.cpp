@@ -1,3 +1,5 @@
+// Casts that are hard for a box; hostile_casts.h lists the kinds.
+
 #include "tests/support/hostile_casts.h"
 #include <winnow/core/eigen.h>
 
@@ -25,7 +27,7 @@ float sign(Random& random) {
   return random.chance(0.5) ? 1.0F : -1.0F;
 }
 
-// A point of the box: on a face, on an edge, a corner, inside, or an ulp off any of them.
+// Returns a point of the box: on a face, on an edge, a corner, inside, or an ulp off any of them.
 Vector3f point_of(const Aabb& box, Random& random) {
   Vector3f point;
   for (int k = 0; k < 3; ++k) {
@@ -66,7 +68,7 @@ Vector3f some_direction(Random& random) {
   }
 }
 
-// Longer or shorter, if it stays a direction.
+// Scales the direction, if it remains valid.
 void stretch(Vec3f& direction, Random& random) {
   if (random.chance(0.6)) return;
   const Vector3f stretched =
@@ -74,7 +76,7 @@ void stretch(Vec3f& direction, Random& random) {
   if (stretched.allFinite() && (stretched.array() != 0.0F).any()) direction = stretched;
 }
 
-// Ranges that end where they matter.
+// Sets ranges that end at critical times.
 template <typename AnyCast>
 void limit(AnyCast& cast, const Aabb& box, Random& random) {
   if (random.chance(0.5)) return;
@@ -104,7 +106,7 @@ void limit(AnyCast& cast, const Aabb& box, Random& random) {
   }
 }
 
-// Origins are finite: ends at infinity become something that is not.
+// Origins are finite: replaces infinite ends.
 Aabb bounded(const Aabb& box) {
   Aabb result = box;
   for (int k = 0; k < 3; ++k) {
@@ -114,7 +116,7 @@ Aabb bounded(const Aabb& box) {
   return finite(result);
 }
 
-// A place from which motion along the direction comes to the point, up to rounding.
+// Returns a point from which motion along the direction reaches the given point, up to rounding.
 Vector3f before(const Vector3f& point, const Vector3f& direction, const Aabb& box, Random& random) {
   if (random.chance(0.2)) return point;
   float size =
@@ -171,7 +173,7 @@ Cast hostile_cast(const Aabb& given, Random& random) {
     case 1: {
       SphereCast cast{{ray.origin, some_size(box, random)}, ray.direction};
       if (random.chance(0.05)) cast.sphere.radius = kLargest;
-      // So that it grazes.
+      // Moves the sphere so that it grazes.
       cast.sphere.center[static_cast<int>(random.below(3))] += sign(random) * cast.sphere.radius;
       cast.sphere.center = as_eigen(cast.sphere.center).cwiseMax(-kLargest).cwiseMin(kLargest);
       limit(cast, given, random);
@@ -198,7 +200,7 @@ std::vector<Ray> plain_rays(std::span<const Aabb> boxes, std::size_t count, Rand
     if (rays.size() % 4 == 1) ray.max_t = 0.5F;
     if (rays.size() % 4 == 2) ray.min_t = 0.25F;
     if (rays.size() % 8 == 3) ray.direction = Vector3f::Unit(static_cast<int>(random.below(3)));
-    // From a box to itself, or farther than floats reach.
+    // The direction is zero or beyond the range of float.
     if (!ray.is_valid()) ray.direction = Vector3f(1.0F, 0.5F, static_cast<float>(random.unit()));
     rays.push_back(ray);
   }

@@ -9,15 +9,15 @@
 
 namespace winnow::test {
 
-/// A ray made to be hard for one box: along a face, an edge or through a corner, an ulp off, from
-/// within, with zero components of either sign, of extreme lengths, and with ranges that end at
-/// the very entry. Always valid.
+/// Returns a ray that is hard for one box: along a face, an edge or through a corner, an ulp off,
+/// from inside, with zero components of either sign, of extreme lengths, and with ranges that end
+/// exactly at the entry. Always valid.
 [[nodiscard]] Ray hostile_ray(const Aabb& box, Random& random);
 
-/// The same of the other casts: what moves has the size of the box, or none, or touches it.
+/// As above, for the other casts: the moving volume has the size of the box or none, or touches it.
 [[nodiscard]] Cast hostile_cast(const Aabb& box, Random& random);
 
-/// Rays of common kinds through the scene.
+/// Returns rays of common kinds through the scene.
 [[nodiscard]] std::vector<Ray> plain_rays(std::span<const Aabb> boxes, std::size_t count,
                                           Random& random);
 

@@ -1,3 +1,6 @@
+// Scenes that are hard for partitions: degenerate, infinite and extreme boxes, and numbers of boxes
+// near block boundaries.
+
 #include "tests/support/hostile_scenes.h"
 
 #include <Eigen/Core>
@@ -55,7 +58,8 @@ std::vector<Aabb> diagonal(std::size_t count) {
   return boxes;
 }
 
-// A quarter each: planes, half spaces, slabs and corners; few enough that most pairs overlap.
+// A quarter each of planes, half-spaces, slabs and corners; few enough that reporting most pairs is
+// feasible.
 std::vector<Aabb> unbounded(std::size_t count) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   Random random(9);
@@ -89,7 +93,7 @@ std::vector<Aabb> unbounded(std::size_t count) {
 
 std::vector<Aabb> with_unbounded(std::vector<Aabb> boxes, std::size_t count) {
   const std::vector<Aabb> wide = unbounded(count);
-  // Spread through the rows, so that they stand in the middle of blocks and at their ends.
+  // Distributes them over the rows, so that they are in the middle of blocks and at their ends.
   for (std::size_t i = 0; i < wide.size(); ++i) {
     const std::size_t at = i * boxes.size() / wide.size();
     boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(at), wide[i]);
@@ -105,7 +109,7 @@ std::vector<Aabb> scaled_by(std::vector<Aabb> boxes, float factor) {
   return boxes;
 }
 
-// Corners of the float range and boxes whose extent is not a float.
+// Corners of the float range, and boxes whose extent overflows float.
 std::vector<Aabb> at_flt_max() {
   constexpr float big = std::numeric_limits<float>::max();
   const float below = std::nextafter(big, 0.0F);

@@ -12,15 +12,15 @@ namespace winnow::test {
 struct Scene {
   std::string name;
   std::vector<Aabb> boxes;
-  std::vector<Pair> pairs;  ///< with objects numbered as the boxes are
+  std::vector<Pair> pairs;  ///< objects are numbered like the boxes
 };
 
-/// Made once per process, each with its true pairs.
+/// Created once per process, each with its true pairs.
 [[nodiscard]] const std::vector<Scene>& random_scenes();
 [[nodiscard]] const std::vector<Scene>& degenerate_scenes();
 [[nodiscard]] const std::vector<Scene>& infinite_scenes();
 [[nodiscard]] const std::vector<Scene>& extreme_float_scenes();
-/// Uniform boxes, as many as make the last block of 16 or 256 empty, full or nearly so.
+/// Uniform boxes, in numbers that make the last block of 16 or 256 empty, full or nearly so.
 [[nodiscard]] const std::vector<Scene>& block_boundary_scenes();
 
 }  // namespace winnow::test

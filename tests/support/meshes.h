@@ -10,7 +10,8 @@
 
 namespace winnow::test {
 
-/// A triangle mesh as a caller has it: three corners per triangle, one triangle after another.
+/// A triangle mesh in the layout of a caller: three corners per triangle, one triangle after
+/// another.
 struct MeshData {
   std::string name;
   std::vector<Eigen::Vector3f> vertices;
@@ -24,19 +25,19 @@ struct MeshData {
   }
 };
 
-/// About the z axis, circles of radius 1 about which tubes of radius 0.3: closed, wound outward.
+/// A torus around the z axis with radii 1 and 0.3: closed, wound outward.
 [[nodiscard]] MeshData torus(std::uint32_t rings, std::uint32_t sides);
 /// Hills over [0, cells] x [0, cells], z up: 2 cells^2 triangles.
 [[nodiscard]] MeshData terrain(std::uint32_t cells);
-/// A toothed wheel about the z axis: closed, sharp edges, long thin triangles.
+/// A toothed wheel around the z axis: closed, sharp edges, long thin triangles.
 [[nodiscard]] MeshData gear(std::uint32_t teeth);
-/// Two waving sheets a thousandth apart, whose triangles share no vertex by number.
+/// Two wavy sheets a thousandth apart, whose triangles share no vertex index.
 [[nodiscard]] MeshData thin_sheets(std::uint32_t cells);
-/// The same hills, and a few triangles by themselves among them: where these are, leaves have more
-/// than sixteen vertices.
+/// The terrain with a few separate triangles among the hills, which give some leaves more than
+/// sixteen vertices.
 [[nodiscard]] MeshData littered_terrain(std::uint32_t cells);
-/// Triangles of any size anywhere: points, segments, duplicates, edges of many triangles among
-/// them.
+/// Triangles of any size anywhere, including points, segments, duplicates and edges of many
+/// triangles.
 [[nodiscard]] MeshData degenerate_soup(std::uint32_t triangles, std::uint64_t stream);
 
 /// One of each.

@@ -15,7 +15,7 @@ enum class Motion {
   little,    ///< each by a few hundredths of its size
   much,      ///< each by several times its size
   few,       ///< one in twenty by its size
-  teleport,  ///< each to a place of another one, some with another size
+  teleport,  ///< each to the place of another one, some with another size
   still,     ///< none
 };
 
@@ -24,7 +24,7 @@ inline constexpr std::array kMotions{Motion::little, Motion::much, Motion::few, 
 
 [[nodiscard]] const char* to_string(Motion motion);
 
-/// Moves the boxes and gives the indices of those that changed, ascending.
+/// Moves the boxes and returns the indices of the changed ones, ascending.
 std::vector<std::size_t> move(Motion motion, std::vector<Aabb>& boxes, Random& random);
 
 }  // namespace winnow::test

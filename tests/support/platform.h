@@ -1,6 +1,7 @@
 #pragma once
 
-// What the platform has that some tests need. Where it lacks that, they are skipped or left out.
+// Features of the platform that some tests need. Without a feature its tests are skipped or left
+// out.
 
 #include <gtest/gtest.h>
 
@@ -8,21 +9,21 @@
 #include <mutex>
 #include <new>
 
-/// Threads; libc++ says in <mutex> where it has none.
+/// Threads; libc++ defines a macro if it lacks them.
 #ifdef _LIBCPP_HAS_NO_THREADS
 #define WINNOW_TEST_THREADS 0
 #else
 #define WINNOW_TEST_THREADS 1
 #endif
 
-/// Exceptions that are caught.
+/// Exceptions that can be caught.
 #if defined(__cpp_exceptions) && !defined(__wasm__)
 #define WINNOW_TEST_EXCEPTIONS 1
 #else
 #define WINNOW_TEST_EXCEPTIONS 0
 #endif
 
-/// Where nothing is caught memory that is refused ends the program.
+/// Without exceptions refused memory ends the program.
 #define WINNOW_TEST_NEEDS_EXCEPTIONS() \
   if (WINNOW_TEST_EXCEPTIONS == 0) GTEST_SKIP() << "memory is refused by an exception"
 

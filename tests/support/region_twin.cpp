@@ -1,3 +1,6 @@
+// Reference implementation of overlaps of regions and one box, in exact arithmetic if possible,
+// else in double or long double with error bounds.
+
 #include "tests/support/region_twin.h"
 #include <winnow/core/eigen.h>
 
@@ -41,7 +44,7 @@ RegionTruth truth_of_box(const Aabb& region, const Aabb& box) {
   return about(region.overlaps(box), inside);
 }
 
-// Exactly: the distance from the centre to the nearest, and to the farthest point of the box.
+// Compares exactly: the distances from the centre to the nearest and the farthest point of the box.
 RegionTruth truth_of_sphere(const Sphere& sphere, const Aabb& box) {
   Exact nearest(0.0);
   Real farthest = 0.0L;
@@ -90,7 +93,7 @@ RegionTruth truth_of_capsule(const Capsule& capsule, const Aabb& box) {
   return truth;
 }
 
-// The largest (sign 1) or least (sign -1) value of normal . p + offset over the box, exactly.
+// Returns the sign of the largest or least value of normal . p + offset over the box, exactly.
 int sign_of_extreme(const Plane& plane, const Aabb& box, bool largest) {
   Exact value = exact(plane.offset);
   for (int k = 0; k < 3; ++k) {
@@ -100,7 +103,7 @@ int sign_of_extreme(const Plane& plane, const Aabb& box, bool largest) {
   return value.sign();
 }
 
-// The same in double, with the size of its terms.
+// As above in double, with the magnitude of its terms.
 struct Extreme {
   double value = 0.0;
   double size = 0.0;
@@ -136,7 +139,7 @@ RegionTruth truth_of_planes(std::span<const Plane> planes, const Aabb& box) {
 
 RegionTruth truth_of_frustum(const Frustum& frustum, const Aabb& box) {
   RegionTruth truth = truth_of_planes(frustum.planes, box);
-  // What lies outside of the frustum's own box may be left out.
+  // Boxes outside of the bounds of the frustum may be left out.
   if (!frustum.bounds.overlaps(box)) truth.must = truth.must_inside = false;
   const RegionTruth in_bounds = truth_of_box(frustum.bounds, box);
   truth.must_inside = truth.must_inside && in_bounds.must_inside;
@@ -163,7 +166,7 @@ Exact dot(const ExactPoint& a, const ExactPoint& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// True if the two are apart along a direction.
+// Returns true if a direction separates the two.
 bool apart(const ExactPoint& direction, const OrientedBox& oriented, const Aabb& box) {
   const ExactPoint center{exact(oriented.center[0]), exact(oriented.center[1]),
                           exact(oriented.center[2])};
@@ -182,7 +185,7 @@ bool apart(const ExactPoint& direction, const OrientedBox& oriented, const Aabb&
   return high < middle - half || middle + half < low;
 }
 
-// The gap along a direction in double, negative where they overlap, and the size of its terms.
+// The gap along a direction in double, negative if they overlap, and the magnitude of its terms.
 struct Gap {
   double value = 0.0;
   double size = 0.0;
@@ -211,8 +214,8 @@ struct Gap {
   }
 };
 
-// The directions of which one separates any box and parallelepiped that are apart: normals of faces
-// and products of edges (Gottschalk, Lin, Manocha, "OBBTree", 1996).
+// Directions for a separating-axis test of a box and a parallelepiped: normals of faces and
+// products of edges (Gottschalk, Lin, Manocha, "OBBTree", 1996).
 template <typename Vector, typename Unit, typename Column, typename Cross>
 std::array<Vector, 15> directions(Unit unit_of, Column column_of, Cross cross_of) {
   return {unit_of(0),
@@ -246,7 +249,7 @@ RegionTruth truth_of_oriented(const OrientedBox& oriented, const Aabb& box) {
   bool decided = true;
   for (const Vector3d& direction : rough) {
     const Gap away(direction, oriented, box);
-    // The product of nearly parallel edges has an error of its own, in parts of the edges.
+    // The product of nearly parallel edges has an additional error, relative to the edges.
     const double error = 1e-14 * (away.size + axes * size);
     if (away.value > error) truth.must = false;
     if (std::abs(away.value) <= error) decided = false;
@@ -262,7 +265,7 @@ RegionTruth truth_of_oriented(const OrientedBox& oriented, const Aabb& box) {
       return apart(direction, oriented, box);
     });
   }
-  // Inside is asked where the axes span space: there the coordinates along them are found.
+  // Inside is tested only if the axes span space: then coordinates along them can be computed.
   const Eigen::Matrix3d matrix = oriented.axes.cast<double>();
   if (std::abs(matrix.determinant()) < 1e-3 * axes * axes * axes) {
     truth.must_inside = false;

@@ -20,8 +20,8 @@ namespace winnow::test {
 /// Every box spans the whole scene on `axis` and is small on the other two.
 [[nodiscard]] std::vector<Aabb> wall_boxes(std::size_t count, int axis, std::uint64_t stream = 1);
 
-/// Half of the boxes of extent and position about 1e-20, half about 1e20; each half overlaps as
-/// `uniform_boxes` does, and the small ones lie inside few of the large ones.
+/// Half of the boxes have extents and positions near 1e-20, half near 1e20; each half overlaps as
+/// `uniform_boxes` does, and the small ones are inside few of the large ones.
 [[nodiscard]] std::vector<Aabb> two_scale_boxes(std::size_t count, std::uint64_t stream = 1);
 
 /// Uniform boxes and one at 1e30.
@@ -33,7 +33,7 @@ namespace winnow::test {
 /// Thin and long along one axis each: some cross, most do not.
 [[nodiscard]] std::vector<Aabb> rod_boxes(std::size_t count);
 
-/// Four layers of small boxes on one ground box that touches all of the lowest.
+/// Four layers of small boxes on one ground box that touches all of the lowest layer.
 [[nodiscard]] std::vector<Aabb> pile_boxes(std::size_t count);
 
 }  // namespace winnow::test

@@ -10,15 +10,15 @@
 
 namespace winnow::test {
 
-/// Numbers that ends of boxes are drawn from.
+/// The numbers from which the ends of boxes are drawn.
 struct TinyScene {
   std::string name;
   std::vector<float> ends;
   double flat = 0.0;  ///< probability of an axis without extent
 };
 
-/// Boxes at 0 and flat ones in the planes of the axes; of denormal sizes, at denormal places and
-/// with denormal gaps; about the smallest normal number; and all of these among ordinary boxes.
+/// Boxes at 0 and flat boxes in the planes of the axes; with denormal sizes, positions and gaps;
+/// near the smallest normal number; and all of these among ordinary boxes.
 [[nodiscard]] const std::vector<TinyScene>& tiny_scenes();
 
 [[nodiscard]] std::vector<Aabb> boxes_of(const TinyScene& scene, std::size_t count, Random& random);

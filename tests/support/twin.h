@@ -10,7 +10,7 @@
 
 namespace winnow {
 
-/// For messages; in Pair's own namespace, where GoogleTest looks.
+/// For messages; in the namespace of Pair, where GoogleTest looks it up.
 inline std::ostream& operator<<(std::ostream& out, const Pair& pair) {
   return out << "(" << pair.first << ", " << pair.second << ")";
 }
@@ -19,26 +19,26 @@ inline std::ostream& operator<<(std::ostream& out, const Pair& pair) {
 
 namespace winnow::test {
 
-/// A live object as the tests know it.
+/// A live object as the tests store it.
 struct Object {
   ObjectId id = kNoObject;
   Aabb box;
   ObjectFilter filter{};
 };
 
-/// The slow obvious twin: every pair tested and let pass by the objects' filters, sorted.
+/// Brute force: tests every pair and the filters of its objects; sorted.
 [[nodiscard]] std::vector<Pair> brute_force_pairs(std::span<const Object> objects);
 
-/// The same set by sorting on x first, for scenes too large for the slow twin; sorted.
+/// Returns the same pairs by a sweep along x, for scenes too large for brute force; sorted.
 [[nodiscard]] std::vector<Pair> swept_pairs(std::span<const Object> objects);
 
-/// Whichever of the two suits the size.
+/// Calls one of the two, depending on the size.
 [[nodiscard]] std::vector<Pair> true_pairs(std::span<const Object> objects);
 
 /// Objects 0, 1, 2, ... with these boxes.
 [[nodiscard]] std::vector<Object> numbered(std::span<const Aabb> boxes);
 
-/// Every (object of a, object of b) that overlap, sorted.
+/// Returns every overlapping (object of a, object of b), sorted.
 [[nodiscard]] std::vector<Pair> cross_pairs(std::span<const Object> a, std::span<const Object> b);
 
 }  // namespace winnow::test

@@ -1,11 +1,11 @@
-// What programs for WebAssembly lack with Debian's library for WASI.
+// Functions that Debian's library for WASI lacks.
 
 #include <cstddef>
 #include <cstdint>
 
 extern "C" {
 
-// It cannot throw: what would ends the program.
+// Exceptions are not supported: a throw ends the program.
 [[noreturn]] __attribute__((weak)) void __cxa_throw(void*, void*, void (*)(void*)) {
   __builtin_trap();
 }
@@ -13,7 +13,7 @@ __attribute__((weak)) void* __cxa_allocate_exception(std::size_t) {
   __builtin_trap();
 }
 
-// Divisions of 128 bits by clang's runtime look whether the stack was overwritten.
+// 128-bit divisions of clang's runtime check for stack overwrites.
 extern const std::uintptr_t __stack_chk_guard;
 __attribute__((weak)) const std::uintptr_t __stack_chk_guard = 0xB5A1D7C3;
 [[noreturn]] __attribute__((weak)) void __stack_chk_fail() {

@@ -1,3 +1,6 @@
+// A partition with a plain model that repeats all changes; the conformance tests compare the two
+// after each query.
+
 #include "tests/support/world.h"
 
 #include <algorithm>
@@ -29,8 +32,8 @@ testing::AssertionResult right_set(std::span<const Pair> got, std::span<const Pa
                                      << " true ones, the first is " << difference[0];
 }
 
-// Bit by bit, but that a partition cannot tell an outer end at the largest float from infinity: no
-// box that it takes lies beyond either.
+// Compares bit by bit, except that a partition cannot distinguish an outer end at the largest float
+// from infinity: no valid box is beyond either.
 bool same_box(Aabb a, Aabb b) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   constexpr float largest = std::numeric_limits<float>::max();
@@ -66,7 +69,7 @@ std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const Clie
   const Status status = threads_.run([&] { return partition_.insert(boxes, data, keys); });
   EXPECT_EQ(status, Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    EXPECT_FALSE(entries_.contains(keys[i].id)) << "a live object's id was given out again";
+    EXPECT_FALSE(entries_.contains(keys[i].id)) << "a live object's id was handed out again";
     entries_[keys[i].id] = {keys[i], boxes[i], data.empty() ? 0 : data[i], {}};
   }
   return keys;
@@ -75,7 +78,7 @@ std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const Clie
 Key World::insert(const Aabb& box, ClientData data) {
   Key key;
   EXPECT_EQ(partition_.insert(box, data, key), Status::ok);
-  EXPECT_FALSE(entries_.contains(key.id)) << "a live object's id was given out again";
+  EXPECT_FALSE(entries_.contains(key.id)) << "a live object's id was handed out again";
   entries_[key.id] = {key, box, data, {}};
   return key;
 }
@@ -127,7 +130,7 @@ Status World::pairs_with(const Partition& other, PairBuffer& buffer, const PairO
 
 testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& options) {
   if (const Status status = self_pairs(buffer, options); status != Status::ok) {
-    return testing::AssertionFailure() << "self_pairs answered " << winnow::to_string(status);
+    return testing::AssertionFailure() << "self_pairs returned " << winnow::to_string(status);
   }
   if (options.order == Order::canonical && !std::is_sorted(buffer.begin(), buffer.end())) {
     return testing::AssertionFailure() << "canonical order is not sorted";
@@ -149,7 +152,7 @@ testing::AssertionResult World::has_pairs(const PairBuffer& buffer) const {
 testing::AssertionResult World::may_all_meet(std::span<const Pair> pairs) const {
   for (const Pair& pair : pairs) {
     if (!may_meet(entries_.at(pair.first).filter, entries_.at(pair.second).filter)) {
-      return testing::AssertionFailure() << "the filters of " << pair << " let it not pass";
+      return testing::AssertionFailure() << "the filters of " << pair << " reject it";
     }
   }
   return testing::AssertionSuccess();

@@ -15,16 +15,17 @@
 
 namespace winnow::test {
 
-/// True if `got` is what `self_pairs` may report where `truth` (sorted) is true: each pair once,
-/// first < second; exactly the true ones, or with others if the partition is not exact.
+/// Returns true if `got` is a right result of `self_pairs` for the true pairs `truth` (sorted):
+/// each pair once, first < second; exactly the true ones, or with additional ones if the partition
+/// is not exact.
 [[nodiscard]] testing::AssertionResult right_pairs(std::span<const Pair> got,
                                                    std::span<const Pair> truth, bool exact);
 
-/// The same for pairs between two partitions, where first < second need not hold.
+/// As above, for pairs between two partitions, where first < second need not hold.
 [[nodiscard]] testing::AssertionResult right_cross_pairs(std::span<const Pair> got,
                                                          std::span<const Pair> truth, bool exact);
 
-/// A partition and its plain model, told the same. Calls run on the config's threads.
+/// A partition and a plain model with the same content. Calls run on the config's threads.
 class World {
  public:
   struct Entry {
@@ -41,7 +42,7 @@ class World {
   [[nodiscard]] const Partition& partition() const { return partition_; }
   [[nodiscard]] Threads& threads() { return threads_; }
 
-  // Each must be accepted; each is told to the model.
+  // Each call must succeed and is repeated on the model.
   std::vector<Key> insert(std::span<const Aabb> boxes, std::span<const ClientData> data = {});
   Key insert(const Aabb& box, ClientData data = 0);
   void update(std::span<const Key> keys, std::span<const Aabb> boxes);
@@ -56,20 +57,20 @@ class World {
   Status self_pairs(PairBuffer& buffer, const PairOptions& options = {});
   Status pairs_with(const Partition& other, PairBuffer& buffer, const PairOptions& options = {});
 
-  /// True if a pair query into `buffer` is accepted and right.
+  /// Returns true if a pair query into `buffer` succeeds and is right.
   [[nodiscard]] testing::AssertionResult agrees(PairBuffer& buffer,
                                                 const PairOptions& options = {});
-  /// The same with a fresh buffer.
+  /// As above, with a fresh buffer.
   [[nodiscard]] testing::AssertionResult agrees();
-  /// True if size, keys, boxes (bit by bit), client data and filters are the model's.
+  /// Returns true if size, keys, boxes (bit by bit), client data and filters equal the model.
   [[nodiscard]] testing::AssertionResult holds_its_objects() const;
 
   /// Live objects by id.
   [[nodiscard]] const std::map<ObjectId, Entry>& entries() const { return entries_; }
   [[nodiscard]] std::vector<Object> objects() const;
-  /// True if the pairs are right.
+  /// Returns true if the pairs are right.
   [[nodiscard]] testing::AssertionResult has_pairs(const PairBuffer& buffer) const;
-  /// True if the filters of all pairs' objects let them meet.
+  /// Returns true if the filters of all pairs' objects accept each other.
   [[nodiscard]] testing::AssertionResult may_all_meet(std::span<const Pair> pairs) const;
 
  private:

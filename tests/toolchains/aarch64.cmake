@@ -1,6 +1,6 @@
-# Cross-compiles for AArch64 Linux with Debian's g++-aarch64-linux-gnu; tests run under QEMU.
-# The environment variable WINNOW_AARCH64_ROOT names a folder with the libraries that winnow needs,
-# as unpacked by aarch64.sh.
+# Cross-compiles for AArch64 Linux with Debian's g++-aarch64-linux-gnu; tests run under QEMU. The
+# environment variable WINNOW_AARCH64_ROOT names a folder with the libraries that winnow needs, as
+# unpacked by aarch64.sh.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

@@ -1,11 +1,11 @@
 # shellcheck shell=bash
-# Sourced: what a build for AArch64 on another Debian machine needs.
+# Sourced: packages for an AArch64 build on another Debian machine.
 
 WINNOW_AARCH64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
 
 # winnow_aarch64_root FOLDER: fills FOLDER with the arm64 libraries that winnow and its tests use.
-# They are only unpacked, not installed, with package lists of their own: nothing on the machine
-# changes, so no package of its own architecture can be in the way, and no rights are needed.
+# They are only unpacked, with separate package lists: nothing is installed on the machine, so
+# packages of its own architecture cannot conflict, and no root rights are needed.
 winnow_aarch64_root() {
   local root=$1
   [[ -e "$root/complete" ]] && return

@@ -1,5 +1,5 @@
-# Included by toolchains of platforms for which Debian has no packages of its own: Eigen, xsimd and
-# Boost are headers alone, those of this machine serve. Of other libraries nothing may be found.
+# Included by toolchains of platforms without Debian packages: Eigen, xsimd and Boost consist of
+# headers only, so the headers of this machine are used. Other libraries must not be found.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/host_headers)
 foreach(headers xsimd boost)
   file(CREATE_LINK /usr/include/${headers} ${CMAKE_BINARY_DIR}/host_headers/${headers} SYMBOLIC)

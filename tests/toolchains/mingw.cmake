@@ -1,5 +1,5 @@
 # Cross-compiles for Windows on x86-64 with Debian's g++-mingw-w64-x86-64-posix; tests run under
-# Wine. SSE4.2 alone: g++ does not align the stack for wider vectors there
+# Wine. Only SSE4.2: g++ does not align the stack for wider vectors there
 # (https://gcc.gnu.org/bugzilla/show_bug.cgi?id=54412).
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR AMD64)

@@ -1,5 +1,5 @@
 // Usage: node wasi.mjs PROGRAM.wasm [ARGUMENT...]
-// Runs a program for WASI, which sees the files of this machine.
+// Runs a program for WASI with access to the files of this machine.
 import {readFile} from 'node:fs/promises';
 import {WASI} from 'node:wasi';
 

@@ -1,6 +1,7 @@
-# Cross-compiles to WebAssembly with Debian's clang 16 and library for WASI; programs run under Node.
-# The folder build/wasm-root, which wasm.sh fills, has headers that give SSE4.2 by the 128-bit vectors
-# of WebAssembly. Eigen gets them as well, so that sums are added in the order of other machines.
+# Cross-compiles to WebAssembly with Debian's clang 16 and library for WASI; programs run under
+# Node. The folder build/wasm-root, which wasm.sh fills, has headers that implement SSE4.2 with the
+# 128-bit vectors of WebAssembly. Eigen uses them as well, so that sums are added in the same order
+# as on other machines.
 set(CMAKE_SYSTEM_NAME WASI)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 set(CMAKE_C_COMPILER clang-16)
@@ -19,12 +20,13 @@ endif()
 set(winnow_wasm_flags "--sysroot=/ -isystem ${winnow_wasm_root} -isystem /usr/include/wasm32-wasi \
 -msimd128 -D__SSE__ -D__SSE2__ -D__SSE3__ -D__SSSE3__ -D__SSE4_1__ -D__SSE4_2__")
 set(CMAKE_C_FLAGS_INIT "${winnow_wasm_flags}")
-# Boost would derive from std::unary_function, which libc++ has no longer, include a header of mutexes,
-# which WASI has not, and align numbers as Microsoft's compilers write it, as this is not g++.
+# Without these options Boost derives from std::unary_function, which libc++ has removed, includes a
+# header of mutexes, which WASI lacks, and uses Microsoft's syntax for alignment, as this is not
+# g++.
 set(winnow_wasm_boost "-DBOOST_NO_CXX98_FUNCTION_BASE -DBOOST_DISABLE_THREADS \
 -DBOOST_SMART_PTR_DETAIL_LIGHTWEIGHT_MUTEX_HPP_INCLUDED -fdeclspec")
-# Nothing is thrown there: what would ends the program. For a compiler that claims to be g++ Eigen has
-# assembler of x86. Googletest would capture output with calls that WASI has not.
+# A throw ends the program. For a compiler that claims to be g++, Eigen uses x86 assembler.
+# Googletest would capture output with calls that WASI lacks.
 set(CMAKE_CXX_FLAGS_INIT "-nostdinc++ -isystem /usr/lib/llvm-16/include/wasm32-wasi/c++/v1 \
 ${winnow_wasm_flags} -fignore-exceptions -fgnuc-version=0 -DGTEST_HAS_STREAM_REDIRECTION=0 \
 ${winnow_wasm_boost}")

@@ -1,4 +1,4 @@
-// The pictures as the tool wrote them, one a frame: columns are base64 of little-endian values.
+// The pictures that the tool wrote, one per frame. Columns are base64 of little-endian values.
 
 const kPictures = JSON.parse(document.getElementById("pictures").textContent);
 
@@ -13,7 +13,7 @@ const floatsOf = (text) => new Float32Array(bytesOf(text));
 const indicesOf = (text) => new Uint32Array(bytesOf(text));
 const wideOf = (text) => new BigUint64Array(bytesOf(text));
 
-// What one picture tells. Boxes are six floats: lower ends, then upper ends.
+// Decodes one picture. A box is six floats: the lower corner, then the upper one.
 function read(picture) {
   const objects = {
     boxes: floatsOf(picture.objects.boxes),
@@ -41,7 +41,7 @@ function read(picture) {
   return {picture, objects, pairs, rays, questionBoxes, partners: partnersOf(pairs)};
 }
 
-// By place, only of objects in a pair.
+// Maps the place of each object that has a pair to the places of its partners.
 function partnersOf(pairs) {
   const partners = new Map();
   for (let i = 0; i < pairs.length; i += 2) {
@@ -53,11 +53,12 @@ function partnersOf(pairs) {
   return partners;
 }
 
-// The frame that is shown.
+// The decoded picture of the frame that is shown.
 let now = read(kPictures[0]);
 
-// Where most of the scene is. Past the middle 96 % of the ends it goes on by half of their range at
-// most, so that one box far away does not shrink all others to a dot.
+// Returns the box that the camera shows. It contains the middle 96 % of the ends of all boxes and
+// extends past them by at most half of their range, so that one box far away does not shrink all
+// others to a dot.
 function findFrame() {
   const low = [0, 0, 0];
   const high = [0, 0, 0];
@@ -86,14 +87,14 @@ function findFrame() {
   return {low, high, centre, radius};
 }
 
-// The graphics card gets coordinates in units of the frame's radius from the frame's centre: floats
-// far from the origin, or very large or small ones, lose nothing on the way. The frame is that of the
-// first picture, so that motion is seen as it is.
+// The GPU gets coordinates relative to the frame's centre, in units of its radius, so that floats
+// far from the origin, very large or very small lose no precision. All pictures use the frame of
+// the first one, so that motion is visible.
 const kFrame = now.objects.count ? findFrame() : {low: [-1, -1, -1], high: [1, 1, 1],
                                                centre: [0, 0, 0], radius: Math.sqrt(3)};
 const kFarthest = 40;
 
-// Ends at infinity are drawn a little outside of the frame.
+// Ends at infinity are drawn slightly outside of the frame.
 function placed(value, axis) {
   const c = kFrame.centre[axis];
   const r = kFrame.radius;

@@ -1,7 +1,7 @@
-// The layers: what the legend can switch.
+// Builds the layers of the picture, which the legend switches on and off.
 
-// Okabe and Ito's colours, as winnow's own (partitions/debug_colours.h), so that all can be told
-// apart by people of any colour vision.
+// The palette of Okabe and Ito, which is safe for colour-blind readers; also used by
+// partitions/debug_colours.h.
 const kColours = {
   object: [160, 168, 178],
   paired: [230, 159, 0],
@@ -16,10 +16,10 @@ const kColours = {
 const kScene = new THREE.Scene();
 const kLayers = [];
 const kLabels = [];
-const kSwitched = new Map();  // by name, what has been switched on or off
+const kSwitched = new Map();  // layer name -> on or off, for layers that the user switched
 
-// A layer of no things is left out. `count` is what the legend shows; `counted` is the mesh that
-// draws as many, `id` the name of that number in the tool's counts.
+// Adds a layer unless it is empty. `count` is the number in the legend, `counted` the mesh that
+// draws that number of things, and `id` the name of the number in the counts of the tool.
 function addLayer({meshes, counted = meshes[0], mark = "box", shown = true, ...facts}) {
   if (facts.count === 0) return;
   for (const mesh of meshes) if (mesh.isObject3D) kScene.add(mesh);
@@ -40,7 +40,7 @@ function boxesAt(places) {
   return boxes;
 }
 
-// Many things are drawn thinner, so that what is behind them still shows.
+// Draws large numbers of things fainter, so that things behind them remain visible.
 const thinned = (opacity, count) => Math.max(0.05, opacity * Math.min(1, Math.sqrt(500 / count)));
 
 function addObjects() {
@@ -51,7 +51,7 @@ function addObjects() {
   const names = ["touch nothing", "in a pair"];
   [kColours.object, kColours.paired].forEach((colour, which) => {
     const boxes = boxesAt(places[which]);
-    // Orange edges tell enough; orange all over would drown what is asked about.
+    // Orange edges are sufficient; orange faces would hide the chosen object.
     const fill = colour.map((c, k) => 0.45 * c + 0.55 * kColours.object[k]);
     addLayer({
       id: "objects_drawn",
@@ -94,11 +94,11 @@ function addContacts() {
   });
 }
 
-// What a partition calls its cells.
+// Name of the partition's cells in the legend.
 const kCell = kPictures[0].counts.partition === "SweepAndPrune" ? "strip" : "cell";
 
 function addStructure() {
-  let budget = 4000;  // boxes that can be told apart on a screen
+  let budget = 4000;  // at most this many boxes can be distinguished on a screen
   for (const layer of now.picture.structure.layers) {
     const boxes = placedColumn(floatsOf(layer.boxes));
     const lines = placedColumn(floatsOf(layer.lines));
@@ -124,7 +124,7 @@ function addStructure() {
 
 const unique = (places) => [...new Set(places)].sort((a, b) => a - b);
 
-// Where a ray is drawn to: past the frame and past its last hit.
+// Returns the ray parameter up to which a ray is drawn: past the frame and past its last hit.
 function endOfRay(ray) {
   const o = [0, 1, 2].map((axis) => (ray.origin[axis] - kFrame.centre[axis]) / kFrame.radius);
   const d = Array.from(ray.direction, (x) => x / kFrame.radius);
@@ -195,7 +195,7 @@ function addQuestionBoxes() {
   }
 }
 
-// Names of objects are a layer of text; what the structure says stays with its lines.
+// Client data are a text layer of their own; labels of the structure belong to its layer.
 function addLabels() {
   const labels = now.picture.structure.texts.slice(0, 500).map((text) => {
     const element = document.createElement("span");

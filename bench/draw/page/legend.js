@@ -1,4 +1,4 @@
-// The panels: what this is, and what can be switched.
+// The panels: the caption, and the legend that switches layers.
 
 const grouped = (n) => n.toString().replace(/\B(?=(\d{3})+$)/g, ",");
 const plural = (n, one, many) => `${grouped(n)} ${n === 1 ? one : many || one + "s"}`;
@@ -69,7 +69,7 @@ function entryFor(layer) {
   return label;
 }
 
-// How solid objects look, once that has been chosen.
+// The opacity of faces of objects that the user chose, or null.
 let chosenFill = null;
 function solidity() {
   const label = document.createElement("label");

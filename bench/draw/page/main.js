@@ -1,6 +1,6 @@
-// Puts the page together, and says in #report what was drawn, as counted on the way to the graphics
-// card. If the address ends in #check it also reads back pixels, switches every layer off and on
-// again, points at the middle of the frame, and goes through all frames.
+// Assembles the page, and writes to #report how many things were sent to the GPU. If the address
+// ends in #check it also reads back pixels, switches every layer off and on, points at the centre
+// of the frame, and shows all frames.
 
 const kErrors = [];
 window.addEventListener("error", (e) => kErrors.push(String(e.message)));
@@ -44,7 +44,8 @@ function drawnNow() {
   return drawn;
 }
 
-// How many frames show other numbers of objects, pairs and contacts than their pictures say.
+// Counts the frames that draw other numbers of objects, pairs or contacts than their pictures
+// state.
 function wrongFrames() {
   let wrong = 0;
   kPictures.forEach((picture, index) => {

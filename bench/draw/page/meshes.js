@@ -1,10 +1,10 @@
-// What a layer is made of: instanced boxes (edges and faces), lines of a width in pixels, and dots.
-// One draw call each, whatever their number.
+// Meshes of a layer: instanced boxes (edges and faces), lines with a width in pixels, and dots.
+// Each takes one draw call, whatever the number of instances.
 
 const kUniforms = {
   resolution: {value: new THREE.Vector2(1, 1)},
   pixelRatio: {value: 1},
-  // Distance of the camera from the point it looks at: things behind it fade.
+  // Distance of the camera from its target; things behind the target fade.
   reach: {value: 3},
 };
 
@@ -88,7 +88,8 @@ void main() {
 }`,
 };
 
-// Beside solid objects a thing is drawn twice: as it is, and faintly where it is hidden.
+// A material for things that are visible, or with `hidden` for things behind solid objects, which
+// are drawn a second time and fainter.
 function material(kind, colour, opacity, width, hidden) {
   return new THREE.RawShaderMaterial({
     uniforms: {
@@ -140,7 +141,7 @@ function instanced(vertices, count, first, second, columns) {
   const buffer = new THREE.InstancedInterleavedBuffer(columns, 6, 1);
   geometry.setAttribute(first, new THREE.InterleavedBufferAttribute(buffer, 3, 0));
   geometry.setAttribute(second, new THREE.InterleavedBufferAttribute(buffer, 3, 3));
-  // The name of this member differs between versions of three.js.
+  // The name of this member depends on the version of three.js.
   geometry.maxInstancedCount = count;
   geometry.instanceCount = count;
   return geometry;
@@ -152,7 +153,7 @@ function finished(mesh, order) {
   return mesh;
 }
 
-// `boxes`: six placed floats each.
+// `boxes`: six placed floats per box.
 function boxEdges(boxes, colour, opacity, order) {
   const geometry = instanced(kEdgeVertices, boxes.length / 6, "low", "high", boxes);
   const lines = new THREE.LineSegments(geometry, material("edges", colour, opacity));
@@ -166,14 +167,14 @@ function boxFaces(boxes, colour, opacity, order) {
   return finished(new THREE.Mesh(geometry, material("faces", colour, opacity)), order);
 }
 
-// `ends`: six placed floats a line.
+// `ends`: six placed floats per line.
 function wideLines(ends, colour, opacity, width, order) {
   const quad = [0, -1, 0, 1, -1, 0, 1, 1, 0, 0, -1, 0, 1, 1, 0, 0, 1, 0];
   const geometry = instanced(quad, ends.length / 6, "from", "to", ends);
   return finished(new THREE.Mesh(geometry, material("lines", colour, opacity, width)), order);
 }
 
-// The same mesh where something solid hides it.
+// Returns a copy of the mesh that draws only the parts behind solid objects.
 function ghost(mesh, kind, opacity) {
   const {colour, width} = mesh.material.uniforms;
   const rgb = colour.value.toArray().map((c) => 255 * c);
@@ -189,7 +190,7 @@ function dots(points, colour, size, order) {
   return finished(new THREE.Points(geometry, material("dots", colour, 1, size)), order);
 }
 
-// How many boxes, lines or dots a mesh sends to the graphics card.
+// Returns the number of boxes, lines or dots that a mesh sends to the GPU.
 function drawnBy(mesh) {
   const geometry = mesh.geometry;
   return geometry.isInstancedBufferGeometry ? geometry.maxInstancedCount

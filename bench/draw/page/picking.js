@@ -1,8 +1,8 @@
-// What is under the pointer: the first object that a ray from the eye meets, among those shown.
+// Finds the object under the pointer: the first visible one on a ray from the eye.
 
 const kChosen = {place: -1, pinned: false, mesh: null};
 
-// By whether the object is in a pair: whether the layer of such objects is switched on.
+// Returns whether the layers of objects without and with a pair are shown.
 function pickable() {
   const shown = (paired) => kLayers.some((l) => l.paired === paired && l.shown);
   return [shown(false), shown(true)];
@@ -30,7 +30,7 @@ function objectAt(x, y) {
   const shown = pickable();
   for (let place = 0; place < now.objects.count; ++place) {
     const t = entry(now.placed, place, eye, direction);
-    // A box around the eye hides everything and is seldom meant.
+    // Skips boxes that contain the eye: they would hide everything, and are seldom the target.
     if (t > 0 && t < nearest && shown[Number(now.partners.has(place))]) {
       nearest = t;
       best = place;

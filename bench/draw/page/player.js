@@ -1,5 +1,5 @@
-// Frames one after the other: a slider, a button, and the arrow keys. What is switched off stays so,
-// and a chosen object stays chosen.
+// Plays the frames, with a slider, a button and the arrow keys. Layers that are off and the chosen
+// object are kept from frame to frame.
 
 const kFramesPerSecond = 20;
 const kPlayer = {at: 0, timer: null};

@@ -1,4 +1,4 @@
-// The camera, and when to draw: on demand, so that an idle page costs nothing.
+// The camera. Draws on demand only, so that an idle page costs nothing.
 
 const kBackground = 0x12161c;
 const kRenderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: false});
@@ -34,19 +34,19 @@ function fitWindow() {
   kUniforms.pixelRatio.value = ratio;
   kUniforms.resolution.value.set(window.innerWidth * ratio, window.innerHeight * ratio);
   kCamera.aspect = window.innerWidth / window.innerHeight;
-  // What the panels leave free is where the picture belongs.
+  // Centres the picture in the area beside the panels.
   const legend = window.innerWidth > 700 ? 262 : 0;
   kCamera.setViewOffset(window.innerWidth, window.innerHeight, legend / 2, 0, window.innerWidth,
                         window.innerHeight);
   drawSoon();
 }
 
-// From above one corner, as far away as to have all of the frame in sight.
+// Looks from above a corner, at a distance that shows the whole frame.
 function resetView() {
   const half = Math.tan(kCamera.fov * Math.PI / 360);
   const free = Math.max(0.4, (window.innerWidth - 262) / window.innerHeight);
   const distance = 1.08 / Math.sin(Math.atan(half * Math.min(1, free)));
-  // A thin scene is looked at from its broad side.
+  // Looks at the broad side of a thin scene.
   const extent = kFrame.high.map((high, axis) => high - kFrame.low[axis]);
   const most = Math.max(...extent);
   const from = [0.55, -1, 0.5].map((base, axis) => base / (0.3 + extent[axis] / most));

@@ -1,4 +1,4 @@
-"""winnow for Conan 2: `conan create bench/packaging/conan` in a tree of winnow's sources."""
+"""winnow for Conan 2: run `conan create bench/packaging/conan` in winnow's source tree."""
 
 import os
 import re
@@ -67,7 +67,7 @@ class Winnow(ConanFile):
     def package(self):
         copy(self, "LICENSE", src=self.source_folder, dst=os.path.join(self.package_folder, "licenses"))
         CMake(self).install()
-        # CMakeDeps and PkgConfigDeps write their own.
+        # CMakeDeps and PkgConfigDeps generate these files.
         rmdir(self, os.path.join(self.package_folder, "lib", "cmake"))
         rmdir(self, os.path.join(self.package_folder, "lib", "pkgconfig"))
 

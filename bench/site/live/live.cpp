@@ -1,5 +1,6 @@
-// The scene of page one: boxes that drift about a plane, which of them overlap, and what the page's
-// pointer asks. One scene a page; JavaScript reads the arrays where they lie, until the next call.
+// The scene on the site's first page: boxes that drift in a plane, their overlapping pairs, and the
+// queries at the page's pointer. There is one scene per page; JavaScript reads the arrays from
+// memory, until the next call.
 
 #include <winnow/partitions/partition.h>
 #include <winnow/simd/isa.h>
@@ -37,7 +38,7 @@ Live& live() {
   return scene;
 }
 
-// Off the walls, and back in.
+// Reverses the speed at the walls.
 void bounce(winnow::Aabb& box, winnow::Vec3f& speed, int axis, float end) {
   if (box.min[axis] < 0.0F && speed[axis] < 0.0F) speed[axis] = -speed[axis];
   if (box.max[axis] > end && speed[axis] > 0.0F) speed[axis] = -speed[axis];
@@ -48,8 +49,7 @@ void bounce(winnow::Aabb& box, winnow::Vec3f& speed, int axis, float end) {
 extern "C" {
 
 #ifdef __wasm__
-// The library for WASI cannot throw: what would ends the scene, as an exception in a callback ends
-// a program. Nothing here does.
+// The WASI library cannot throw; an exception traps. No function in this file throws.
 [[noreturn]] __attribute__((weak)) void __cxa_throw(void*, void*, void (*)(void*)) {
   __builtin_trap();
 }
@@ -58,7 +58,7 @@ __attribute__((weak)) void* __cxa_allocate_exception(std::size_t) {
 }
 #endif
 
-/// So many boxes at random; false if there was no memory for them.
+/// Adds this many boxes at random positions; returns false if memory ran out.
 EXPORTED("live_start") bool live_start(std::uint32_t count) {
   Live& scene = live();
   std::mt19937 random(7);
@@ -69,7 +69,7 @@ EXPORTED("live_start") bool live_start(std::uint32_t count) {
   scene.boxes.resize(count);
   scene.speeds.resize(count);
   scene.keys.resize(count);
-  // As much of the plane is covered, however many there are.
+  // The covered share of the plane does not depend on the number of boxes.
   const float edge = 45.0F / std::sqrt(static_cast<float>(count));
   for (std::size_t i = 0; i < count; ++i) {
     const winnow::Vec3f size(edge * draw(0.4F, 1.6F), edge * draw(0.4F, 1.6F), 1.0F);
@@ -80,7 +80,7 @@ EXPORTED("live_start") bool live_start(std::uint32_t count) {
   return scene.partition.insert(scene.boxes, {}, scene.keys) == winnow::Status::ok;
 }
 
-/// Moves every box, and finds all pairs.
+/// Moves every box and returns the number of overlapping pairs.
 EXPORTED("live_step") std::uint32_t live_step(float seconds) {
   Live& scene = live();
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
@@ -95,15 +95,15 @@ EXPORTED("live_step") std::uint32_t live_step(float seconds) {
   return static_cast<std::uint32_t>(scene.pairs.size());
 }
 
-/// What a ball about a point meets.
+/// Returns the number of boxes that overlap a ball.
 EXPORTED("live_near") std::uint32_t live_near(float x, float y, float radius) {
   Live& scene = live();
   (void)scene.partition.overlap(winnow::Sphere{{x, y, 0.5F}, radius}, scene.near);
   return static_cast<std::uint32_t>(scene.near.size());
 }
 
-/// Where a ray from the middle to a point first meets a box, 1 at the point; above 1 if it meets
-/// none.
+/// Returns the ray parameter of the first hit on the segment from the centre to a point (1 at the
+/// point), or a value above 1 without a hit.
 EXPORTED("live_ray") float live_ray(float x, float y) {
   const winnow::Vec3f eye(kWidth / 2, kHeight / 2, 0.5F);
   Live& scene = live();
@@ -113,11 +113,11 @@ EXPORTED("live_ray") float live_ray(float x, float y) {
   return scene.hit.t;
 }
 
-/// Six floats a box: its least and greatest corner.
+/// Returns six floats for each box: its lower and upper corner.
 EXPORTED("live_boxes") const float* live_boxes() {
   return live().boxes.front().min.data();
 }
-/// Two numbers of boxes a pair.
+/// Returns two box numbers for each pair.
 EXPORTED("live_pairs") const winnow::Pair* live_pairs() {
   return live().pairs.begin();
 }

@@ -1,4 +1,4 @@
-// Page one: winnow runs in this page, and what it finds is drawn.
+// The scene on the first page: runs live.cpp in WebAssembly and draws its boxes, pairs and query results.
 {
   const canvas = document.querySelector('.live canvas');
   const facts = document.querySelector('.live output');
@@ -8,8 +8,8 @@
   let engine, count = 0, pointer = null, running = true, last = 0;
   const spent = [], steps = [];
 
-  // What a library for programs asks of a system: an environment, which is empty here, and folders,
-  // of which there is none: no such number.
+  // The WASI imports of the module: an empty environment, no open folders (8: bad file descriptor), and
+  // "not supported" (52) for all other calls.
   const system = memory => new Proxy({
     environ_sizes_get(variables, bytes) {
       const view = new DataView(memory().buffer);

@@ -1,8 +1,8 @@
-// The menu is folded where it would stand above the page.
+// The menu is folded on narrow screens, where it is above the page.
 const menu = document.querySelector('.menu');
 if (matchMedia('(max-width: 899px)').matches) menu.open = false;
 
-// For tests: how far the page reaches beyond the right edge.
+// For tests: the width of the page beyond the right edge, and its height.
 if (location.hash === '#check') {
   document.body.dataset.beyond =
     document.documentElement.scrollWidth - document.documentElement.clientWidth;

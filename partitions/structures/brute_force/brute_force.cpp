@@ -1,4 +1,4 @@
-// Structures without any structure: every row against every other.
+// Brute force: every row is tested against every other row.
 
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
 #include "partitions/structures/costs.h"
@@ -35,7 +35,7 @@ const FlatKernel& testing(Volume volume) noexcept {
   return kernels.aabb;
 }
 
-/// Unordered rows, and a kernel for their volume that goes through them.
+/// Unordered rows with the kernel for their volume.
 class BruteForce : public Structure {
  public:
   using KernelFor = const FlatKernel& (*)(Volume) noexcept;
@@ -54,14 +54,14 @@ class BruteForce : public Structure {
         .self_pairs(view(), first_block(task), first_block(task + 1), sink);
   }
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept override {
-    // Boxes are held against boxes, as every structure does.
+    // Boxes are tested against boxes, as in every structure.
     const Volume volume = batch.is_box ? Volume::aabb : pool().volume();
     return kernel_for_(volume).query(view(), batch, sink);
   }
 
  private:
-  // Early blocks meet more later ones: tasks take blocks so that each has about the same number of
-  // block pairs. Blocks behind x of all meet x^2 of the pairs.
+  // The number of later blocks falls with the block's index; tasks take ranges of blocks with equal
+  // numbers of block pairs. The last x of all blocks (a share) have x^2 of the pairs.
   [[nodiscard]] std::uint32_t first_block(std::size_t task) const noexcept {
     const std::size_t tasks = pair_tasks();
     if (task >= tasks) return static_cast<std::uint32_t>(pool().blocks());
@@ -77,8 +77,8 @@ class BruteForce : public Structure {
   const KernelFor kernel_for_;
 };
 
-/// Reports every pair of objects without looking at their bounds: the baseline that says what a
-/// test is worth, and the slow obvious twin of every other structure.
+/// Reports every pair of objects without testing bounds: the baseline for the value of a test, and
+/// the reference for tests of every other structure.
 class NSquared final : public BruteForce {
  public:
   explicit NSquared(const StructureInput& input) noexcept : BruteForce(input, untested) {}
@@ -86,9 +86,9 @@ class NSquared final : public BruteForce {
   [[nodiscard]] bool tests_volumes() const noexcept override { return false; }
 };
 
-/// Tests the bounding volume of every object against every other, 16 at a time: no structure at
-/// all, the least memory, and the fastest choice for some dozens of objects. O(n^2 / 16) tests.
-/// Exact for its volume.
+/// Tests the bounding volume of every object against every other, 16 at a time: the least memory,
+/// and the best choice for some dozens of objects by its costs below. O(n^2 / 16) tests. Exact for
+/// its volume.
 class BoundsNSquared final : public BruteForce {
  public:
   explicit BoundsNSquared(const StructureInput& input) noexcept : BruteForce(input, testing) {}

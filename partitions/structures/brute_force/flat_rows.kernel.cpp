@@ -1,3 +1,6 @@
+// Kernels of brute_force.cpp, for each kind of volume: tests blocks of 16 rows against single rows.
+// With filters, blocks whose filters cannot pass are skipped.
+
 #include "partitions/structures/brute_force/flat_rows.kernel.h"
 #include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
@@ -8,10 +11,10 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-// The id of an empty row, which is never asked about.
+// The id of an empty row. Empty rows make no queries.
 constexpr std::uint32_t kNoId = ~0U;
 
-/// The rows from `at` on that hold an object.
+/// The rows of [at, at + 16) that hold an object.
 Mask16 live_rows(const RowView& rows, std::size_t at) {
   Mask16 live = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -20,7 +23,7 @@ Mask16 live_rows(const RowView& rows, std::size_t at) {
   return live;
 }
 
-/// Reports everything but holes.
+/// Accepts all rows but holes.
 struct Untested {
   struct Block {
     Mask16 live;
@@ -33,7 +36,7 @@ struct Untested {
   static Mask16 test(const Block& block, const Query&) { return block.live; }
 };
 
-/// Boxes (3 slabs) and k-DOPs, whose further slabs follow the box's six columns.
+/// Tests boxes (3 slabs) and k-DOPs, whose further slabs follow the box's six columns.
 template <int Slabs>
 struct SlabTest {
   using Block = Slabs16<Slabs>;
@@ -66,7 +69,7 @@ struct SlabTest {
   static constexpr int high_end(int s) { return s < 3 ? s + 3 : Slabs + s; }
 };
 
-/// Spheres.
+/// Tests spheres.
 struct SphereTest {
   struct Block {
     Floats center[3];
@@ -95,8 +98,8 @@ struct SphereTest {
   }
 };
 
-/// Calls visit(begin, end) for runs of blocks from `from` on, among which are all that may hold
-/// something that `range` may meet. What lies between two runs is at least `gap` blocks.
+/// Calls visit(begin, end) for ranges of blocks from `from` on that contain all blocks whose
+/// filters may pass `range`. Two ranges are at least `gap` blocks apart.
 template <bool Filtered, typename Visit>
 bool visit_runs(const FlatView& view, std::uint32_t from, const FilterRange& range,
                 std::uint32_t gap, Visit&& visit) {
@@ -130,7 +133,7 @@ bool visit_runs(const FlatView& view, std::uint32_t from, const FilterRange& ran
   return whole && visit(begin, end);
 }
 
-/// Hits on their way to the filters, which would keep a loop of tests from its registers.
+/// Hits are stored before filters are tested, so that the loop of volume tests keeps its registers.
 struct NotedHits {
   static constexpr std::uint32_t kRoom = 64;
 
@@ -165,8 +168,8 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
   return true;
 }
 
-/// The same for rows with filters, of which those of block a ask that `asking` names. Filters are
-/// looked at behind the loop of tests, whose registers they would take.
+/// As above for rows with filters; only the rows of block a in `asking` are tested. Filters are
+/// tested after the loop of volume tests, to keep registers free for it.
 template <typename Test>
 bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, std::uint32_t b,
                          PairSink& sink) {
@@ -184,7 +187,7 @@ bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, s
     asking = passing_rows(view.rows, a_row, asking, range_of(view.blocks.filters[0], b));
     for (Mask16 left = asking; left != 0; left &= left - 1) ask(first(left));
   } else {
-    // Of one environment few rows are left out: telling which costs more than testing them.
+    // With one environment few rows are excluded: a selection would cost more than their tests.
     for (std::uint32_t i = 0; i < kLanes; ++i) ask(i);
   }
   sink.tests += count(asking);
@@ -225,7 +228,7 @@ bool self_pairs(const FlatView& view, std::uint32_t begin, std::uint32_t end, Pa
                                  : find_self_pairs<Test, false>(view, begin, end, sink);
 }
 
-/// Writes the hits of a row of a batch that filters let pass.
+/// Writes the hits of one batch row that pass the filters.
 template <bool Filtered>
 bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t row,
                   const NotedHits& noted, const FilterRange& range, PairSink& sink) {
@@ -242,7 +245,7 @@ bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t r
 
 template <typename Test>
 struct FlatQuery {
-  /// A few blocks are tested sooner than a run is ended.
+  /// Testing a few blocks costs less than ending a range.
   static constexpr std::uint32_t kGap = 8;
 
   template <bool Filtered>

@@ -1,4 +1,5 @@
-// Bounding-volume hierarchies: block trees over all rows, which differ in the order of these.
+// Bounding-volume hierarchies: block trees over all rows. LinearBvh and StaticBvh differ only in
+// the order of the rows.
 
 #include "partitions/structures/costs.h"
 #include "partitions/structures/structure.h"
@@ -7,14 +8,16 @@
 namespace winnow {
 namespace {
 
-/// Linearised bounding-volume hierarchy: rows in an order in which every 16, 256, 4096 ... that
-/// follow each other are near each other (see kd_order.h), blocks of 16 rows as leaves, and above
-/// them implicit nodes of 16 children that one compare tests at once: no pointers, no node that
-/// holds anything but boxes. A frame refits the nodes above what moved; the order is made anew when
-/// refitting has cost more tests than a build is worth. No parameter, no world bounds; suits every
-/// scene, mixed sizes included. Self pairs: O(n log n + pairs) for boxes of bounded overlap. Exact.
+/// Linearised bounding-volume hierarchy: rows in a spatial order in which every aligned group of
+/// 16, 256, 4096 ... rows is compact (tree/kd_order.h). Blocks of 16 rows are the leaves; above
+/// them are implicit nodes with 16 children whose boxes are tested by one SIMD compare. There are
+/// no pointers, and nodes hold only boxes. Each frame refits the nodes above moved rows; the order
+/// is rebuilt when wear exceeds the price of a build. It needs no parameter and no world bounds and
+/// suits every scene, including mixed sizes. Self pairs: O(n log n + pairs) for boxes of bounded
+/// overlap. Exact.
 ///
-/// All of this is what the partition does with rows that no structure wants.
+/// The hierarchy itself is the block tree of SpatialIndex (index/, tree/), which holds all rows
+/// that a structure does not order; this class only selects it.
 class LinearBvh final : public Structure {
  public:
   using Structure::Structure;
@@ -22,12 +25,12 @@ class LinearBvh final : public Structure {
   [[nodiscard]] std::uint64_t build_price() const noexcept override { return 4; }
 };
 
-/// Bounding-volume hierarchy for objects that hardly ever move: the tree of LinearBvh, its rows in
-/// an order that a search by the surface-area heuristic finds (see append_in_sah_order). A build
-/// takes many times as long, so it waits for much more wear. From then on rays and boxes meet 1 %
-/// fewer nodes in even scenes, 5 to 8 % fewer in clusters and where sizes are spread 100:1, and a
-/// third fewer where large and small objects, 1000:1, lie within each other. Where environments are
-/// in use the order is that of LinearBvh, which keeps them apart. Exact.
+/// Bounding-volume hierarchy for objects that rarely move: the tree of LinearBvh with rows in the
+/// order of a surface-area heuristic (append_in_sah_order). A build takes many times as long, so it
+/// is due only after much more wear. Rays and boxes then visit 1 % fewer nodes in even scenes, 5 to
+/// 8 % fewer in clusters and in scenes with sizes spread 100:1, and a third fewer in scenes in
+/// which objects of sizes 1000:1 overlap. If environments are in use the order is that of
+/// LinearBvh, which groups rows by environment. Exact.
 class StaticBvh final : public Structure {
  public:
   explicit StaticBvh(const StructureInput& input) noexcept
@@ -48,7 +51,7 @@ class StaticBvh final : public Structure {
   }
 
  private:
-  Column<SahBox> boxes_;  // while building
+  Column<SahBox> boxes_;  // scratch of builds
 };
 
 constexpr StructureCosts kLinearCosts{.frame = 100,

@@ -16,7 +16,8 @@ struct Extent {
   float high = -kEndless;
 };
 
-// Where the finite ends of the first `count` rows lie; all of the axis if there are none.
+// Returns the range of the finite bounds of the first `count` rows; the whole axis if there are
+// none.
 Extent bounded_part(const RowView& rows, std::size_t axis, std::size_t count) noexcept {
   Extent part;
   for (std::size_t row = 0; row < count; ++row) {
@@ -53,7 +54,7 @@ class CellPicture {
   void arrow(DebugDraw& draw, std::string_view meaning) const;
 
  private:
-  // Where cell c of axis k begins, and the one before it ends.
+  // The lower edge of cell c on axis k, which is the upper edge of cell c - 1.
   [[nodiscard]] float edge(std::size_t k, std::uint32_t c) const noexcept {
     const CellAxis& axis = axes_[k];
     if (axis.count == 1) return c == 0 ? whole_[k].low : whole_[k].high;
@@ -66,7 +67,7 @@ class CellPicture {
   std::array<Extent, 3> whole_;
 };
 
-// Beside the cells, a little longer than they are, so that it does not run through them.
+// The arrow is beside the cells and a little longer than they are, so that it does not cross them.
 void CellPicture::arrow(DebugDraw& draw, std::string_view meaning) const {
   Vec3f from;
   std::array<double, 3> length{};
@@ -114,7 +115,7 @@ void draw_cells(DebugDraw& draw, const CellLayout& layout, const RowView& rows,
     for (std::uint32_t row = start[c]; row < start[c + 1]; ++row) {
       contents.merge(stored_box(rows.column, row));
     }
-    if (!contents.is_valid()) continue;  // nothing, or holes only
+    if (!contents.is_valid()) continue;  // empty, or only holes
     draw.box(picture.cell(c), kCellColour);
     draw.box(contents, kContentsColour);
   }

@@ -10,12 +10,12 @@
 
 namespace winnow {
 
-/// Draws every cell that holds an object, the box around what it holds, and an arrow along axis 0
-/// with its name and `meaning`. Cell c holds rows [start[c], start[c + 1]).
+/// Draws every cell that holds an object, the bounds of its contents, and an arrow along axis 0
+/// with the axis name and `meaning`. Cell c holds rows [start[c], start[c + 1]).
 ///
-/// A cell is drawn where it would be if every object lay still: in truth it reaches a little
-/// further (see CellAxis), and the first and last of an axis without end. An axis that is not
-/// divided is drawn as long as the bounded part of what lies in the cells.
+/// Cells are drawn without their slack (see CellAxis); the first and last cell of an axis are drawn
+/// bounded although they are unbounded. An axis that is not divided is drawn as long as the bounded
+/// part of the contents.
 void draw_cells(DebugDraw& draw, const CellLayout& layout, const RowView& rows,
                 const Column<std::uint32_t>& start, std::string_view meaning);
 

@@ -1,3 +1,7 @@
+// Chooses cells from a sample of the scene: tries several limits for the edges of objects in cells,
+// sizes cells for each, and takes the layout with the lowest estimated cost. SweepAndPrune and
+// FlatGrid call it when they plan a build.
+
 #include "partitions/structures/cells/cell_layout.h"
 
 #include "core/sort/end_values.h"
@@ -20,12 +24,13 @@ namespace {
 constexpr float kUnbounded = 1e30F;
 constexpr double kMostCells = 2048;  // on an axis
 constexpr double kLeastWidening = 1.02;
-constexpr double kTreeQuery = 14.0;  // tests of 16 that an object of the tree costs
+constexpr double kTreeQuery = 14.0;  // tests of 16 volumes per object in the tree
 constexpr std::size_t kRowsPerStretch = 8192;
-constexpr std::size_t kRowsPerSample = 64;  // one row of so many is looked at, if they are enough
+constexpr std::size_t kRowsPerSample = 64;  // the sample has one row in this many, within its
+                                            // limits
 
-// The value that comes at place `at` of all in ascending order. Reorders them, so that those before
-// this place are the lower ones.
+// Returns the value at index `at` in ascending order. Reorders the values so that lower ones come
+// before the index.
 float value_at(std::span<float> values, std::size_t at) noexcept {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(at);
   if (at + 1 == values.size()) {
@@ -36,7 +41,7 @@ float value_at(std::span<float> values, std::size_t at) noexcept {
   return *place;
 }
 
-// The least and the largest lower end on an axis.
+// The range of lower bounds on an axis.
 std::ranges::minmax_result<float> ends_of(const BoundsPool& pool, std::size_t axis) noexcept {
   std::ranges::minmax_result<float> ends{kEndless, -kEndless};
   for (std::size_t row = 0; row < pool.rows(); ++row) {
@@ -47,7 +52,7 @@ std::ranges::minmax_result<float> ends_of(const BoundsPool& pool, std::size_t ax
   return ends;
 }
 
-// True where cells for edges like these would be about the same.
+// True if cells for these edges would be about the same as for the other edges.
 bool is_about(const std::array<float, 3>& edges, const std::array<float, 3>& others) noexcept {
   constexpr float kAbout = 1.0F / 32.0F;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -73,8 +78,8 @@ void SceneSample::choose_rows(const BoundsPool& pool,
   const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
   const auto take = [&](std::size_t row) { rows[count++] = static_cast<std::uint32_t>(row); };
   if (pool.rows() <= kMost) {
-    // By their ids: few objects that come back to where they were get the same cells again,
-    // whatever order the rows are in.
+    // Select by ids: if a few objects return to former positions they get the same cells again,
+    // whatever the order of rows.
     const auto k = static_cast<unsigned>(std::bit_width(step)) - 1;
     for (std::size_t row = 0; row < pool.rows(); ++row) {
       const ObjectId id = pool.ids()[row];
@@ -108,7 +113,7 @@ void SceneSample::look_along(std::size_t a, const BoundsPool& pool,
   high[a] = std::min(most, static_cast<float>(std::min(range.high, 3e38)));
 }
 
-/// One way to lay out cells, and what it is expected to cost.
+/// A possible layout and its estimated cost.
 struct CellLayout::Trial {
   std::array<double, 3> reach{};  // by axis
   std::array<double, 3> width{};
@@ -117,10 +122,10 @@ struct CellLayout::Trial {
   double small_share = 0.0;
   double cost = std::numeric_limits<double>::infinity();
 
-  // Axes along which objects are spread over several of their own size.
+  // Divides axes along which objects are spread over several times their size.
   void divide(const SceneSample& s, const std::array<float, 3>& quantile_edge_of) {
     for (std::size_t a = 0; a < 3; ++a) {
-      // A little more, for what the sample did not see and for edges that differ by rounding.
+      // A margin for objects outside the sample and for rounding.
       reach[a] = 1.001 * static_cast<double>(quantile_edge_of[a]);
       divided[a] = s.range(a) > 3.0 * reach[a] && s.range(a) > 0.0 && std::isfinite(s.range(a));
     }
@@ -152,7 +157,7 @@ struct CellLayout::Trial {
     }
     if (free_axes == 0) return;
     const double most = d.most_cells(n);
-    // Of cells that are widened some axes soon have one alone, and others have to do more.
+    // If an axis is reduced to one cell, the other axes must be widened more.
     for (double least = 1.0; total > most || least == 1.0; least = kLeastWidening) {
       const double widen = total > most ? root(free_axes, total / most) : 1.0;
       total = 1.0;
@@ -165,7 +170,7 @@ struct CellLayout::Trial {
     }
   }
 
-  // Edge of a cube that holds a block of n objects spread evenly.
+  // The edge of a cube that holds a block of rows if n objects are evenly spread.
   [[nodiscard]] double block_edge(const SceneSample& s, const CellDemand& d, double n) const {
     if (d.rows_per_block == 0.0) return 0.0;
     std::array<double, 4> factor{d.rows_per_block / n};
@@ -176,7 +181,7 @@ struct CellLayout::Trial {
     return root_of_product(axes, std::span(factor).first(axes + 1));
   }
 
-  // Tests of 16 that the whole scene is expected to cost.
+  // Estimates the cost of all pairs in the scene, in tests of 16 volumes.
   void estimate(const SceneSample& s, const CellDemand& d, std::size_t fast) {
     const double n = small_share * static_cast<double>(s.objects);
     const double total = cells[0] * cells[1] * cells[2];
@@ -212,7 +217,8 @@ struct CellLayout::Trial {
 bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   usable_ = false;
   if (s.objects < kFewestInCells || s.count < 8) return true;
-  // The axis with the most room in units of the objects' edges prunes best: it runs fastest.
+  // The axis with the most room in units of the objects' edges prunes best; its cells are
+  // consecutive in memory.
   std::size_t fast = 0;
   const auto room = [&](std::size_t a) { return s.range(a) / (s.mean_edge[a] + 1e-30); };
   for (std::size_t a = 1; a < 3; ++a) {
@@ -255,8 +261,8 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
 
 namespace {
 
-/// True if whatever guess_cell puts into a cell lies within it: the guess never falls as x grows,
-/// so this needs to be looked at beside the ends of the cells alone.
+/// True if guess_cell(x) always returns a cell that contains x. It is monotonic, so tests beside
+/// the bounds of cells suffice.
 bool agrees(const CellAxis& axis) noexcept {
   for (std::uint32_t c = 0; c < axis.count; ++c) {
     const float before = std::nextafter(axis.from[c], -kEndless);
@@ -286,9 +292,9 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
     at += 2 * axis.count;
     const double low = static_cast<double>(s.low[axis.axis]);
     const double width = trial.width[axis.axis];
-    // An axis that is not divided puts no bound on edges.
+    // An axis that is not divided does not limit edges.
     axis.reach = trial.divided[axis.axis] ? static_cast<float>(trial.reach[axis.axis]) : kEndless;
-    // Room for the rounding of the difference that is compared with it.
+    // A margin for the rounding of the difference that is compared with the limit.
     axis.limit = axis.reach * 0.9999995F;
     const double slack = 0.499 * (width - trial.reach[axis.axis]);
     for (std::uint32_t c = 0; c < axis.count; ++c) {
@@ -299,7 +305,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
     to[axis.count - 1] = kEndless;
     axis.origin = s.low[axis.axis];
     axis.inverse = axis.count > 1 ? static_cast<float>(1.0 / width) : 0.0F;
-    // Far from the origin floats may be too coarse to keep cells two apart from touching.
+    // Far from the origin floats may be too coarse to separate cells that are two apart.
     for (std::uint32_t c = 0; c + 2 < axis.count; ++c) {
       const double end = static_cast<double>(to[c]) + static_cast<double>(axis.reach);
       usable_ =
@@ -310,7 +316,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
   return true;
 }
 
-// Tells the axes where the ends of their cells are.
+// Sets the pointers of the axes to the bounds of their cells.
 void CellLayout::aim_axes() noexcept {
   const float* at = edges_.data();
   for (CellAxis& axis : axes_) {
@@ -321,7 +327,7 @@ void CellLayout::aim_axes() noexcept {
 }
 
 bool CellLayout::reserve(std::size_t cells, Pages pages) noexcept {
-  // All of them on one axis, or as many as there may be on each.
+  // At most all cells on one axis, or the maximum on each.
   const std::size_t ends = std::min(cells + 2, 3 * (static_cast<std::size_t>(kMostCells) + 1));
   if (!edges_.reserve(2 * ends, pages)) return false;
   if (!edges_.empty()) aim_axes();
@@ -361,7 +367,7 @@ bool CellLayout::fits(const Structure::Place& box, std::uint32_t cell) const noe
 
 bool CellLayout::fits(const Structure::Place& box, std::size_t row,
                       const Column<std::uint32_t>& start) const noexcept {
-  // Mostly the box's own corner still lies in the cell that holds the row.
+  // Usually the box's lower corner still lies in the cell of the row.
   const std::uint32_t own = cell_of(box);
   if (own != kNoCell && row >= start[own] && row < start[own + 1]) return true;
   const auto after = std::upper_bound(start.begin(), start.end(), row);

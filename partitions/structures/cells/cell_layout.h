@@ -15,23 +15,23 @@
 
 namespace winnow {
 
-/// Where an axis, or a box, has no end.
+/// The bound of an axis or box without an end.
 inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
-/// Where and how large the objects of a scene are, from a sample: enough to lay out cells.
+/// Positions and sizes of a sample of a scene's objects, for the layout of cells.
 struct SceneSample {
   static constexpr std::size_t kLeast = 256;
   static constexpr std::size_t kMost = 2048;
 
-  /// `live` rows of the pool are objects.
+  /// Samples the pool, of which `live` rows hold objects.
   SceneSample(const BoundsPool& pool, std::size_t live, const Execution& execution) noexcept;
 
-  std::size_t objects = 0;  ///< live rows in all
+  std::size_t objects = 0;  ///< live rows of the pool
   std::size_t count = 0;    ///< rows in the sample
   std::array<std::array<float, kMost>, 3> edge;
-  std::array<float, 3> low{};  ///< of the lower ends, outliers clipped
+  std::array<float, 3> low{};  ///< range of lower bounds, without outliers
   std::array<float, 3> high{};
-  std::array<double, 3> mean_edge{};  ///< of the bounded ones
+  std::array<double, 3> mean_edge{};  ///< of the bounded edges
 
   [[nodiscard]] double range(std::size_t axis) const noexcept {
     return static_cast<double>(high[axis]) - static_cast<double>(low[axis]);
@@ -43,56 +43,57 @@ struct SceneSample {
                   const std::array<std::uint32_t, kMost>& rows) noexcept;
 };
 
-/// What a layout is asked to weigh up.
+/// Requirements of a structure for its layout.
 struct CellDemand {
-  double slack_share = 0.3;      ///< of the reach, that objects may drift by on either side
-  double cells_per_object = 2;   ///< at most, but for the fewest objects
+  double slack_share = 0.3;      ///< of the reach: how far objects may drift on either side
+  double cells_per_object = 2;   ///< at most, except with few objects
   bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
-  /// Objects that ask together: beside the fast axis cells are at least as wide as a cube of them.
+  /// Rows of a block, which are tested together; other axes than the fast one get cells at least as
+  /// wide as a cube that holds this many rows. 0: no limit.
   double rows_per_block = 0;
 
-  /// Cells of a layout for so many objects, at most.
+  /// The maximum number of cells for `objects` objects.
   [[nodiscard]] double most_cells(double objects) const noexcept {
     return std::max(8.0, cells_per_object * objects);
   }
 };
 
-/// Cells over three axes: which objects are small enough, how large the cells are, which axis runs
-/// fastest. Cells of an axis are wide enough that boxes two cells apart cannot touch.
+/// Cells over three axes: their size, the order of axes, and the maximum edge of objects in cells.
+/// Cells are wide enough that boxes two cells apart cannot touch.
 class CellLayout {
  public:
   explicit CellLayout(std::pmr::memory_resource* memory) noexcept : edges_(memory) {}
 
-  /// Lays out cells for the objects of a pool. False if memory is refused; `usable()` is false
-  /// afterwards if no layout beats keeping every object in the tree.
+  /// Chooses the layout with the lowest estimated cost. Returns false if an allocation fails.
+  /// `usable()` is false afterwards if no layout is better than keeping all objects in the tree.
   [[nodiscard]] bool choose(const SceneSample& sample, const CellDemand& demand) noexcept;
 
-  /// Makes room for a layout of so many cells. False if memory is refused.
+  /// Makes room for a layout of `cells` cells. Returns false if an allocation fails.
   [[nodiscard]] bool reserve(std::size_t cells, Pages pages) noexcept;
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
-  /// Axes by how fast they run: 0 is the one along which cells of a run follow each other.
+  /// Axes in the order in which cell numbers run: cells along axis 0 (the fast axis) are
+  /// consecutive.
   [[nodiscard]] const CellAxis& axis(std::size_t speed) const noexcept { return axes_[speed]; }
   [[nodiscard]] std::size_t cells() const noexcept {
     return std::size_t{axes_[0].count} * axes_[1].count * axes_[2].count;
   }
-  /// How far an object may drift along the fast axis if that is swept.
+  /// How far an object may drift along the fast axis if that axis is swept.
   [[nodiscard]] float drift() const noexcept { return drift_; }
 
   static constexpr std::uint32_t kNoCell = 0xFFFFFFFFU;
-  /// Writes the cell of every row, as cell_of says; kNoCell for empty rows. There is room for whole
-  /// blocks.
+  /// Writes cell_of() of every row, and kNoCell for empty rows. `cell` has room for whole blocks.
   void find_cells(const BoundsPool& pool, std::uint32_t* cell,
                   const Execution& execution) const noexcept;
-  /// The cell for a box, or kNoCell if it does not suit any.
+  /// Returns the cell for a box, or kNoCell if the box is too large.
   [[nodiscard]] std::uint32_t cell_of(const Structure::Place& box) const noexcept;
   /// True if the box may stay in the cell.
   [[nodiscard]] bool fits(const Structure::Place& box, std::uint32_t cell) const noexcept;
-  /// The same for the cell that holds the box's row: cell c holds rows [start[c], start[c + 1]).
+  /// As above for the cell of the row; cell c holds rows [start[c], start[c + 1]).
   [[nodiscard]] bool fits(const Structure::Place& box, std::size_t row,
                           const Column<std::uint32_t>& start) const noexcept;
 
-  /// Exchanges two layouts of the same memory resource.
+  /// Swaps two layouts with the same memory resource.
   void swap(CellLayout& other) noexcept;
 
   void release() noexcept;

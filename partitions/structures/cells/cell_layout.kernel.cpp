@@ -5,7 +5,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Number of the cell on an axis, as guess_cell says.
+/// The number of the cell on an axis; computes the same as guess_cell.
 Uints number_on(const CellAxis& axis, const Floats& x) {
   const Floats place = (x - axis.origin) * axis.inverse;
   const Floats last = Floats(static_cast<float>(axis.count - 1));

@@ -9,9 +9,9 @@
 namespace winnow {
 
 struct CellLayoutKernels {
-  /// Writes the cell of each row of [begin, end), or ~0 for those that are too long for any and for
-  /// empty rows. `begin` is a multiple of 16; columns are readable, and `cell` is writable, to the
-  /// next multiple of 16 after `end`.
+  /// Writes the cell of each row of [begin, end), or ~0 for empty rows and for rows with an edge
+  /// above the limit. `begin` is a multiple of 16; columns are readable and `cell` is writable up
+  /// to the next multiple of 16 after `end`.
   void (*cells)(const float* const* column, const CellAxis* axes, std::size_t begin,
                 std::size_t end, std::uint32_t* cell);
 };

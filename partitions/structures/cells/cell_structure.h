@@ -11,9 +11,8 @@
 
 namespace winnow {
 
-/// What structures have in common whose regular rows lie in cells, one after another: how pair
-/// finding and the search for what left its cell are cut into tasks, and whose memory is whose.
-/// Each holds its cells twice: as they are in use, and as the next build plans them.
+/// Base class of structures whose regular rows lie in consecutive cells: divides pair finding and
+/// the search for misfits into tasks, and owns the starts of cells, both current and planned.
 class CellStructure : public Structure {
  public:
   explicit CellStructure(const StructureInput& input) noexcept
@@ -29,7 +28,7 @@ class CellStructure : public Structure {
         },
         rows, most);
   }
-  /// What is left to the tree of a first build, which is to be there soon, is cut coarsely.
+  /// The first build should be available soon, so the tree's rows are ordered coarsely.
   [[nodiscard]] KdParts first_parts() const noexcept final { return KdParts::cells; }
   [[nodiscard]] std::size_t pair_tasks() const noexcept final { return pair_cut().tasks(); }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept final {
@@ -44,40 +43,41 @@ class CellStructure : public Structure {
  protected:
   ~CellStructure() = default;
 
-  /// Room for a build of so many cells and listed rows, or of none but the tree's.
+  /// Makes room for a build with up to `cells` cells and `listed` entries of the list, or with all
+  /// rows in the tree.
   [[nodiscard]] bool reserve_cells(const BuildRoom& room, std::size_t cells,
                                    std::size_t listed) noexcept {
     return Structure::reserve(room) && planned_start_.reserve(cells + 1, room.pages) &&
            room.list.reserve(listed, room.pages);
   }
 
-  /// Into how many units pair finding can be cut, where there are regular rows.
+  /// The number of units that pair finding can be divided into if there are regular rows.
   [[nodiscard]] virtual std::size_t pair_units() const noexcept { return places(); }
-  /// Pairs of the regular rows of units [begin, end) with each other and with rows behind them.
+  /// Finds the pairs of the regular rows of units [begin, end) with each other and with rows behind
+  /// them.
   virtual bool find_pairs(std::uint32_t begin, std::uint32_t end,
                           PairSink& sink) const noexcept = 0;
 
-  /// Cells, or lines of cells: what rows are searched by for those that left.
+  /// The number of places, which are cells or lines of cells: the units of the search for misfits.
   [[nodiscard]] virtual std::size_t places() const noexcept = 0;
   [[nodiscard]] virtual std::uint32_t first_row(std::uint32_t place) const noexcept = 0;
-  /// Writes to `out` the rows of places [begin, end) that left; returns how many.
+  /// Writes the rows of places [begin, end) that no longer fit to `out`; returns their number.
   virtual std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
                                     std::uint32_t* out) const noexcept = 0;
 
-  /// Rows that do not fit cells ask all cells that they cross: where more than a tenth of a scene
-  /// does so, the tree serves all of it better.
+  /// Rows outside cells query all cells that they cross. If they are more than a tenth of the
+  /// scene, the tree is better for all rows.
   [[nodiscard]] static bool are_too_many_apart(std::size_t apart, const RowPlan& plan) noexcept {
     return apart > plan.objects / 10;
   }
-  /// Makes every live row part of the rest, whatever the plan has listed.
+  /// Discards the plan's lists and makes every live row part of the rest.
   void leave_cells(const RowPlan& plan) const noexcept {
     plan.regular.clear();
     plan.rest.clear();
     leave_all(plan);
   }
 
-  /// Makes those live rows that have no cell in the plan's list part of the rest; `regular` others
-  /// have one.
+  /// Appends live rows without a cell in the plan's list to the rest; `regular` rows have one.
   void list_rest(std::size_t regular, const RowPlan& plan) const noexcept {
     const std::size_t most = plan.objects - regular;
     for (std::size_t row = 0; row < plan.rows && plan.rest.size() < most; ++row) {
@@ -91,7 +91,7 @@ class CellStructure : public Structure {
 
  private:
   [[nodiscard]] TaskCut pair_cut() const noexcept {
-    // Of fewer rows the pairs are sooner found than a task is begun.
+    // With fewer rows, starting a task costs more than finding the pairs.
     constexpr std::size_t kRowsOfTask = 128;
     if (regular_rows() == 0) return {};
     return {pair_units(), std::min(kMostTasks, regular_rows() / kRowsOfTask + 1)};

@@ -1,15 +1,15 @@
 #pragma once
 
-// What kernels of structures of cells have in common: a table of their functions, and which rows no
-// longer keep to the bounds of their cell.
+// Common code of kernels for structures with cells: the table of their functions, and the search
+// for rows outside the bounds of their cell.
 
 #include "partitions/structures/cells/cells.kernel.h"
 #include "partitions/tree/block_pairs.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// The functions of a structure: `Cells` finds the pairs of units, visits the runs of rows among
-/// which are all that may overlap a box, says how long a run goes on, and finds misfits.
+/// The kernel functions of a structure. `Cells` provides find_pairs, visit_runs (visits ranges of
+/// rows that contain all rows overlapping a box), goes_on (where a range ends) and find_misfits.
 template <typename Cells, typename View>
 struct CellFunctions {
   static bool self_pairs(const View& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
@@ -39,7 +39,7 @@ struct CellFunctions {
   static constexpr CellKernels<View> table() { return {self_pairs, query, Cells::find_misfits}; }
 };
 
-/// Lower ends within [from, to] on one axis, edges within limit.
+/// Tests on one axis: lower bound within [from, to], edge within limit.
 struct AxisBounds {
   const float* low;
   const float* high;
@@ -63,8 +63,8 @@ struct AxisBounds {
   }
 };
 
-/// Calls kept(row) for every 16 rows of [begin, end) and writes those that it leaves out, but for
-/// empty rows, which have nothing to lose; returns how many.
+/// Calls kept(row) for each 16 rows of [begin, end) and writes the rows that it rejects, without
+/// empty rows; returns their number.
 template <typename Kept>
 std::uint32_t write_misfits(const RowView& rows, std::uint32_t begin, std::uint32_t end,
                             std::uint32_t* out, Kept&& kept) {

@@ -1,3 +1,6 @@
+// FlatGrid: plans cells (cells/cell_layout.h), sorts rows by cell, and dispatches to the kernels of
+// flat_grid.kernel.cpp.
+
 #include "core/sort/counting_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
 #include "partitions/structures/cells/cell_layout.h"
@@ -13,19 +16,19 @@ WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)
 
 namespace {
 
-// More objects than this in a cell are pruned better by the tree.
+// The tree prunes more objects than this in a cell better.
 constexpr std::uint32_t kOverfull = 48;
 constexpr CellDemand kDemand{.rows_per_block = 10};
 
-/// Uniform grid: each object belongs to the one cell of its box's lower corner, and rows are sorted
-/// by cell (counting sort), so that the cells of a line are one run of rows. 16 rows of a line look
-/// for partners together, behind them in their own line and in the neighbouring ones: each pair is
-/// met once and no object is stored twice. Cells are wider than the boxes by a slack that objects
-/// may drift within, so that slow scenes keep their order for many frames. Cell size, the axis that
-/// runs fastest, and which objects are too large for cells come from a sample of the scene at each
-/// build. Objects too large or in overfull cells go to a block tree and are asked against the grid;
-/// where they are many all do.
-/// Self pairs: O(n + cells + pairs) where density is even. Exact.
+/// Uniform grid. Each object belongs to the cell of its box's lower corner, and rows are sorted by
+/// cell (counting sort), so that the cells of a line are one range of rows. Blocks of 16 rows of a
+/// line search together for partners behind them in their line and in neighbouring lines: each pair
+/// is found once and no object is stored twice. Cells are wider than the boxes by a slack within
+/// which objects may drift, so slow scenes keep their order for many frames. Each build chooses the
+/// cell size, the order of axes and the maximum size of objects in cells from a sample of the
+/// scene. Objects that are too large or in overfull cells go to a block tree and query the grid; if
+/// they are many, all objects go to the tree. Self pairs: O(n + cells + pairs) for even density.
+/// Exact.
 class FlatGrid final : public CellStructure {
  public:
   explicit FlatGrid(const StructureInput& input) noexcept;
@@ -71,7 +74,7 @@ Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   return Planned::done;
 }
 
-// Leaves the cell of each row in the list.
+// Leaves the cell of each row in `plan.list`.
 Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;

@@ -1,3 +1,5 @@
+// Kernels of FlatGrid: self pairs, batch queries and the search for misfits in lines of cells.
+
 #include "partitions/structures/grid/flat_grid.kernel.h"
 #include "partitions/structures/cells/cells.wide.h"
 
@@ -10,13 +12,13 @@ struct Run {
   std::uint32_t end;
 };
 
-/// Rows of cells [first, last] of a line.
+/// The rows of cells [first, last] of a line.
 Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::uint32_t last) {
   const std::uint32_t* start = grid.start + std::size_t{line} * grid.axis[0].count;
   return {start[first], start[last + 1]};
 }
 
-/// Adds the rows that may touch a block of line `own`, of that line and those behind it.
+/// Adds the rows of line `own` and of later lines that may touch a block of line `own`.
 template <bool Filtered>
 bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered>& pairs) {
   std::uint32_t first[3];
@@ -38,9 +40,9 @@ bool add_neighbours(const GridView& grid, std::uint32_t own, BlockPairs<Filtered
   return true;
 }
 
-/// Appends to the `found` rows of a line at `out`, which ascend, those others that left their cell
-/// along the line, and returns the new count. Cells are short: this goes row by row and leaves the
-/// rest to the wide test.
+/// Appends the rows that left their cell along the line to the `found` ascending rows at `out`,
+/// without duplicates, and returns the new count. Cells are short, so this tests single rows; the
+/// other bounds are tested 16 rows at a time.
 std::uint32_t left_along_line(const GridView& grid, const std::uint32_t* start, std::uint32_t* out,
                               std::uint32_t found) {
   const CellAxis& axis = grid.axis[0];
@@ -90,7 +92,7 @@ struct GridCells {
       const std::uint32_t lines = slow * grid.axis[1].count;
       std::uint32_t mid = first[1];
       while (mid <= last[1]) {
-        // Whole lines follow each other in memory: one run.
+        // Whole lines are consecutive rows: one range.
         const bool whole = first[0] == 0 && last[0] + 1 == grid.axis[0].count;
         const std::uint32_t until = whole ? last[1] : mid;
         const std::uint32_t begin = run_of(grid, lines + mid, first[0], last[0]).begin;

@@ -7,15 +7,15 @@
 
 namespace winnow {
 
-/// Rows in cell order: cell c holds rows [start[c], start[c + 1]). Cells along axis 0 follow each
-/// other, so that neighbouring cells of a line are one run of rows.
+/// Rows in cell order: cell c holds rows [start[c], start[c + 1]). Cells along axis 0 are
+/// consecutive, so neighbouring cells of a line are one range of rows.
 struct GridView {
   RowView rows;
   const std::uint32_t* start = nullptr;
   CellAxis axis[3];
 };
 
-/// Places and units are lines: rows of cells on axis 0.
+/// Places and units are lines: cells along axis 0.
 using FlatGridKernels = CellKernels<GridView>;
 
 WINNOW_KERNELS(FlatGridKernels, flat_grid_kernels);

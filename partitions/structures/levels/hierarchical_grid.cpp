@@ -1,3 +1,6 @@
+// HierarchicalGrid: plans levels (size_classes.h, level_layout.h), sorts the rows of each level by
+// line and cell, and dispatches to the kernels of hierarchical_grid.kernel.cpp.
+
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
 #include "core/sort/stretches.h"
@@ -21,20 +24,20 @@ WINNOW_DEFINE_KERNELS(LevelRowsKernels, level_rows_kernels)
 
 namespace {
 
-// More objects than this in a cell, beyond what its line is cut into, are pruned better by the
-// tree.
+// The tree prunes more objects than this in a cell better, if a finer division of the line does not
+// separate them.
 constexpr std::size_t kCrowd = 512;
-// Objects for each cell of a line.
+// Objects per cell of a line.
 constexpr std::size_t kInCell = 4;
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kLinesPerStretch = 512;
-// Lines of a level that are looked up in a table: one for two objects, and so many.
+// A level has a table of lines if it has at most one line for two objects, plus this many.
 constexpr std::size_t kMoreLines = 16;
-// Rows behind those of the last level, and of each, up to the next whole block.
+// Padding behind the rows of each level and of the last level, up to the next whole block.
 constexpr std::size_t kMostHoles = (kMostLevels + 1) * kBlockRows;
 
-// One colour for each level, beside those of other things: from Okabe and Ito, as these, and darker
-// from the sixth level on.
+// A colour for each level that is distinct from other debug colours: from the palette of Okabe and
+// Ito, as they are, and darker from the sixth level on.
 Colour level_colour(std::size_t level) noexcept {
   constexpr std::array<Colour, 5> kHues{{kCellColour,
                                          {230, 159, 0, 255},
@@ -47,13 +50,13 @@ Colour level_colour(std::size_t level) noexcept {
   return {darker(hue.r), darker(hue.g), darker(hue.b), hue.a};
 }
 
-/// Steps of the fast axis, both ends included.
+/// Range of steps on the fast axis, inclusive.
 struct StepRange {
   std::uint32_t first;
   std::uint32_t last;
 };
 
-// Those of a cell; of a line that runs backwards they are counted from the other end.
+// The steps of a cell. Lines that run backwards count from the other end.
 StepRange steps_of_cell(const GridLevel& g, const GridLine& line, bool back,
                         std::uint32_t cell) noexcept {
   const std::uint32_t first = line.first + (cell << line.shift);
@@ -61,7 +64,7 @@ StepRange steps_of_cell(const GridLevel& g, const GridLine& line, bool back,
   return back ? StepRange{g.steps - last, g.steps - first} : StepRange{first, last};
 }
 
-// Where a cell is. On an axis that is not divided it is drawn as long as what it holds.
+// The bounds of a cell. An axis that is not divided is drawn as long as the contents.
 Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, std::uint32_t cell,
               const Aabb& contents) noexcept {
   Aabb box = contents;
@@ -83,8 +86,8 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   return box;
 }
 
-/// The place nearest to x whose step lies within a range. NaN, which is near to nothing, if floats
-/// are too coarse there to say.
+/// Returns the position nearest to x whose step lies within the range, or NaN, which is near no
+/// position, if floats are too coarse there to find one.
 float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noexcept {
   constexpr int kMostTries = 4;
   const std::uint32_t step = cell_at(axis, x);
@@ -102,28 +105,28 @@ float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noe
   return std::numeric_limits<float>::quiet_NaN();
 }
 
-/// Uniform grids laid over each other, one for each range of sizes (Overmars, "Point location in
-/// fat subdivisions", Information Processing Letters 44, 1992; Ericson, "Real-Time Collision
-/// Detection", 2005, 7.2), for scenes of small and large objects, up to 1e12 : 1. Which ranges of
-/// sizes get a level of their own is worked out at each build from how many objects of which size
-/// there are: a scene of one size has one level. No parameter, no world bounds.
+/// Uniform grids for ranges of sizes (Overmars, "Point location in fat subdivisions", Information
+/// Processing Letters 44, 1992; Ericson, "Real-Time Collision Detection", 2005, 7.2), for scenes
+/// with object sizes of up to 1e12 : 1. Each build decides from the numbers of objects of each size
+/// which ranges of sizes are levels of their own; a scene with one size has one level. It needs no
+/// parameter and no world bounds.
 ///
-/// An object belongs to the one cell, of its level, of its box's lower corner. Cells lie in lines
-/// of which only those are stored that hold objects, and a line's cells reach from its first object
-/// to its last: memory follows the number of objects, whatever the size of the world. Rows are
-/// sorted by level, line and cell; 16 rows that follow each other lie close together and look for
-/// partners together, in their own level and in those of larger objects, so each pair is met once.
-/// Objects may drift from their cell by a slack, so that slow scenes keep their order for many
+/// An object belongs to one cell: on its level, the cell of its box's lower corner. Cells lie in
+/// lines. Only lines with objects are stored, and the cells of a line extend from its first object
+/// to its last, so memory depends on the number of objects, not on the size of the world. Rows are
+/// sorted by level, line and cell. Blocks of 16 consecutive rows are compact and search for
+/// partners together, in their own level and in levels of larger objects, so each pair is found
+/// once. Objects may drift from their cell by a slack, so slow scenes keep their order for many
 /// frames.
 ///
-/// Unbounded objects, those of sizes beyond 1e12 : 1, and crowds that no cell tells apart go to a
-/// block tree and are asked against the levels. Self pairs: O(n log n + n * levels + pairs) where
-/// density is even. Exact. `statistics().cells` counts the cells of all levels.
+/// Unbounded objects, objects of sizes beyond 1e12 : 1, and crowds that cells cannot separate go to
+/// a block tree and query the levels. Self pairs: O(n log n + n * levels + pairs) for even density.
+/// Exact. `statistics().cells` counts the cells of all levels.
 class HierarchicalGrid final : public CellStructure {
  public:
   explicit HierarchicalGrid(const StructureInput& input) noexcept;
 
-  /// Levels made by the last build, 0 if it made none.
+  /// The number of levels of the last build; 0 if it made none.
   [[nodiscard]] std::size_t levels() const noexcept override {
     return regular_rows() == 0 ? 0 : used_.levels;
   }
@@ -174,14 +177,14 @@ class HierarchicalGrid final : public CellStructure {
     [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(level, line, number, rank); }
 
     Column<GridLevel> level;
-    std::size_t levels = 0;  // of these that hold rows; while they are planned, so far
+    std::size_t levels = 0;  // levels that hold rows; while planning, the finished ones
     Column<GridLine> line;
     Column<std::uint32_t> number;  // of each line
-    Column<std::uint32_t> rank;    // lines below each number, level by level
+    Column<std::uint32_t> rank;    // by line number: the first stored line >= it
   };
 
-  /// Rows of a level in the order of their cells: line << step_bits | step, before the row. Where
-  /// that does not fit the upper half, only the line stands there.
+  /// The rows of a level, sorted by cell. The key line << step_bits | step is above the row in each
+  /// item. If it exceeds 32 bits (not `packed`), the key is only the line.
   struct Sorted {
     const std::uint64_t* items = nullptr;
     std::size_t count = 0;
@@ -196,7 +199,7 @@ class HierarchicalGrid final : public CellStructure {
       const std::uint64_t key = items[i] >> 32U;
       return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
     }
-    /// Where keys are packed.
+    /// Only if keys are packed.
     [[nodiscard]] std::uint32_t step(std::size_t i) const {
       return static_cast<std::uint32_t>(items[i] >> 32U & ((std::uint64_t{1} << step_bits) - 1));
     }
@@ -207,7 +210,7 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] bool make_room(Column<T>& column, std::size_t count) noexcept;
   [[nodiscard]] bool leave_spare(std::size_t objects) noexcept;
   void sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept;
-  /// What is done to a level, one after the other.
+  /// The steps of planning a level, in order.
   enum class Step : std::uint8_t { places, sort, lines };
   [[nodiscard]] bool run_step(const RowPlan& plan) noexcept;
   [[nodiscard]] std::span<const std::uint32_t> rows_of_level(const RowPlan& plan) const noexcept;
@@ -230,14 +233,15 @@ class HierarchicalGrid final : public CellStructure {
 
   Lines used_;
   Lines planned_;
-  Column<float> key_;  // by row: lower end on the fast axis, or nearest to it in the row's cell
+  Column<float> key_;  // by row: lower bound on the fast axis, or the nearest position within the
+                       // row's cell
 
-  // While planning: where the rows of each level begin, and how far the plan is.
+  // While planning: the first row of each level, and the progress of the plan.
   std::array<std::uint32_t, kMostLevels + 1> first_of_level_{};
   std::size_t all_levels_ = 0;
   std::size_t level_ = 0;
   Step step_ = Step::places;
-  bool grew_ = false;  // columns of lines and cells, since one was planned to its end
+  bool grew_ = false;  // columns of lines and cells grew since the last finished plan
   Sorted sorted_;
 };
 
@@ -257,15 +261,15 @@ LinePlace place_on(const GridLevel& g, const Structure::Place& box) noexcept {
   return {line, (line & 1U) != 0 ? g.steps - step : step};
 }
 
-// Fewer are compared with each other sooner than a digit's values are counted.
+// With fewer items a comparison sort is faster than a radix sort.
 constexpr std::size_t kFewToSort = 128;
 
-// A level's table of lines has at most half as many entries as objects, and some more.
+// A level's table of lines has at most half as many entries as objects, plus a constant.
 constexpr std::size_t most_ranks(std::size_t objects) noexcept {
   return objects / 2 + kMostLevels * (kMoreLines + 1);
 }
 
-// Every object may have a line and a cell to itself.
+// Every object may have its own line and cell.
 bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
   const std::size_t objects = room.objects;
   return reserve_cells(room, objects, objects + kMostHoles) &&
@@ -279,7 +283,7 @@ bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
 
 Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return begin_plan(plan);
-  // As many steps of levels as go over all rows once.
+  // Runs as many steps of levels as one pass over all rows.
   for (std::size_t rows = 0; level_ < all_levels_ && 2 * rows < plan.objects;) {
     rows += rows_of_level(plan).size();
     if (!run_step(plan)) return Planned::out_of_memory;
@@ -293,7 +297,7 @@ Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   return Planned::done;
 }
 
-// Room for so many elements, of which it is noted if memory was asked for it.
+// Makes room for `count` elements, and notes if this allocated memory.
 template <typename T>
 bool HierarchicalGrid::make_room(Column<T>& column, std::size_t count) noexcept {
   if (count <= column.capacity()) return true;
@@ -301,8 +305,7 @@ bool HierarchicalGrid::make_room(Column<T>& column, std::size_t count) noexcept 
   return column.grow(count);
 }
 
-// Room for the lines and cells that later builds may have more: a scene in motion now has more of
-// them, now fewer.
+// Reserves room for more lines and cells in later builds: their number varies in a moving scene.
 bool HierarchicalGrid::leave_spare(std::size_t objects) noexcept {
   if (!std::exchange(grew_, false)) return true;
   const auto leave = [](auto& column, std::size_t most) {
@@ -317,8 +320,8 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   const std::size_t rows = plan.rows;
   planned_.clear();
   planned_start_.clear();
-  // A first build meets no more rows than objects; of a scene in motion builds meet now more, now
-  // fewer, and this is enough for mostly all.
+  // The first build has no more rows than objects. Later builds of a moving scene have a varying
+  // number; this is enough for nearly all of them.
   const std::size_t first = plan.objects + kMostHoles;
   const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
   if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
@@ -331,7 +334,7 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
     leave_all(plan);
     return Planned::done;
   }
-  // By objects, not rows, so that a later build of as many asks for no more.
+  // Sized by objects, not rows, so that a later build of as many objects does not allocate.
   const std::size_t count = classes.objects();
   const std::size_t room = count + kMostHoles;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
@@ -344,9 +347,8 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   return Planned::goes_on;
 }
 
-// Puts the rows of each level together. They lie at the end of the items, of which sorting a level
-// needs two for each of its rows from the front, and for those of further levels leaves half of
-// one.
+// Groups the rows by level, at the end of `items`. Sorting a level overwrites at most the rows of
+// this level and of earlier levels.
 void HierarchicalGrid::sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept {
   all_levels_ = classes.levels();
   planned_.level.set_size(all_levels_);
@@ -375,13 +377,13 @@ std::span<const std::uint32_t> HierarchicalGrid::rows_of_level(const RowPlan& pl
   return {by_level + begin, first_of_level_[level_ + 1] - begin};
 }
 
-// False if memory is refused.
+// Returns false if an allocation fails.
 bool HierarchicalGrid::run_step(const RowPlan& plan) noexcept {
   switch (step_) {
     case Step::places:
       find_places(plan);
       step_ = Step::sort;
-      // What sorting has to look up again must not have moved.
+      // Sorting with unpacked keys reads positions again, so it must run before any object moves.
       if (!sorted_.packed) sort_places(plan);
       return sorted_.packed || lay_lines(plan);
     case Step::sort:
@@ -394,7 +396,7 @@ bool HierarchicalGrid::run_step(const RowPlan& plan) noexcept {
   return false;
 }
 
-// Calls visit(i, where) for each row i of the level whose object is in row `where` by now.
+// Calls visit(i, where) for each row i of the level whose object was moved to row `where`.
 template <typename Visit>
 void HierarchicalGrid::visit_moved(const RowPlan& plan, Visit&& visit) const {
   const std::span<const std::uint32_t> rows = rows_of_level(plan);
@@ -431,7 +433,7 @@ void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
   find_places_of_moved(plan);
 }
 
-// Of a row that has become empty the place is that of the object that left it.
+// A row that has become empty gets the place of the object that left it.
 void HierarchicalGrid::find_places_of_moved(const RowPlan& plan) noexcept {
   const std::span<const std::uint32_t> rows = rows_of_level(plan);
   visit_moved(plan, [&](std::size_t i, std::size_t row) {
@@ -494,7 +496,7 @@ bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
   return rank_lines(level);
 }
 
-// Cuts a line into cells of a few objects each, were they spread evenly.
+// Divides a line into cells that would have kInCell objects each if they were spread evenly.
 bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPlan& plan) {
   const std::size_t most = (end - begin + kInCell - 1) / kInCell;
   Column<std::uint32_t>& starts = planned_start_;
@@ -518,14 +520,14 @@ bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPla
   return planned_.line.push_back(line) && planned_.number.push_back(sorted_.line(begin));
 }
 
-// Appends the rows of a line, which lie in the order of cells, and writes where these begin: no
-// branch, since where one ends cannot be foreseen.
+// Appends the rows of a line, which are in the order of cells, and writes the first row of each
+// cell, without branches because the ends of cells are unpredictable.
 void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine& line,
                                   std::size_t begin, std::size_t end,
                                   const RowPlan& plan) noexcept {
   std::ranges::fill(start, ~0U);
   const auto first = static_cast<std::uint32_t>(plan.regular.size());
-  // Of copies: the originals might be what is written to.
+  // A copy: writes to `start` could alias the member.
   const Sorted sorted = sorted_;
   const auto note = [start, first, begin, end, line](auto&& step_at) {
     for (std::size_t i = end; i-- > begin;) {
@@ -546,14 +548,14 @@ void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine
     most = std::max(most, next - start[cell]);
     next = start[cell];
   }
-  // Room for all was made.
+  // Room for all rows was reserved.
   std::uint32_t* const rows = plan.regular.data() + first;
   for (std::size_t i = begin; i < end; ++i) rows[i - begin] = sorted.row(i);
   plan.regular.set_size(behind);
   if (most > kCrowd) leave_crowds(start, plan);
 }
 
-// Gives the tree those cells of a line, the last rows, that are too full.
+// Moves overfull cells of a line, whose rows are the last ones, to the rest.
 void HierarchicalGrid::leave_crowds(std::span<std::uint32_t> start, const RowPlan& plan) noexcept {
   std::uint32_t* const rows = plan.regular.data();
   const auto behind = static_cast<std::uint32_t>(plan.regular.size());
@@ -573,7 +575,7 @@ void HierarchicalGrid::leave_crowds(std::span<std::uint32_t> start, const RowPla
   plan.regular.set_size(to);
 }
 
-// A table of all lines where they are not many more than the objects.
+// Builds a table of all lines if they are not many more than the objects.
 bool HierarchicalGrid::rank_lines(GridLevel& level) {
   const std::size_t lines =
       std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
@@ -607,8 +609,8 @@ void HierarchicalGrid::finish_build(const RowPlan&, bool moved) noexcept {
       });
 }
 
-// Objects have moved since they were given their cells: a key that has left its cell becomes the
-// nearest one within it, so that who is near to its key is near to its cell.
+// Objects may have moved since they were assigned to cells. A key outside its cell becomes the
+// nearest position within the cell, so that an object near its key is near its cell.
 void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept {
   const GridLevel* level = used_.level.data();
   for (std::uint32_t l = begin; l < end; ++l) {
@@ -617,7 +619,7 @@ void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) n
     const bool back = (used_.number[l] & 1U) != 0;
     for (std::uint32_t cell = 0; cell <= line.last_cell; ++cell) {
       const StepRange own = steps_of_cell(*level, line, back, cell);
-      // Between two levels are rows without objects.
+      // Rows between two levels hold no objects.
       const std::uint32_t end_row = std::min(start_[line.cell + cell + 1], level->end_row);
       for (std::uint32_t row = start_[line.cell + cell]; row < end_row; ++row) {
         key_[row] = nearest_within(level->fast, own, key_[row]);
@@ -626,7 +628,7 @@ void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) n
   }
 }
 
-// The stored line that holds a row of the level, whose object is at a place.
+// Returns the stored line that holds a row of the level, whose object is at `place`.
 std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const Place& place,
                                         std::size_t row) const noexcept {
   const Column<GridLine>& lines = used_.line;
@@ -635,7 +637,7 @@ std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const Place& place,
            row < start_[lines[line].cell + lines[line].last_cell + 1];
   };
   if (g.ranked) {
-    // Mostly the box's own corner still lies in the line that holds the row.
+    // Usually the box's lower corner still lies in the line that holds the row.
     const std::uint32_t line = used_.rank[g.first_rank + place_on(g, place).line];
     if (line < g.end_line && holds(line)) return line;
   }
@@ -693,7 +695,7 @@ void HierarchicalGrid::draw(DebugDraw& draw) const {
         for (std::uint32_t row = start_[lines[i].cell + cell]; row < end; ++row) {
           contents.merge(stored_box(row_view().column, row));
         }
-        if (!contents.is_valid()) continue;  // nothing, or holes only
+        if (!contents.is_valid()) continue;  // empty, or only holes
         draw.box(cell_box(g, lines[i], used_.number[i], cell, contents), level_colour(l));
         draw.box(contents, kContentsColour);
       }

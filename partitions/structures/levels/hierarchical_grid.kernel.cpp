@@ -1,3 +1,6 @@
+// Kernels of HierarchicalGrid: self pairs, batch queries and the search for misfits in lines of
+// cells.
+
 #include "partitions/structures/levels/hierarchical_grid.kernel.h"
 #include "partitions/structures/cells/cells.wide.h"
 
@@ -5,7 +8,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Stored lines with a number below `number`.
+/// Returns the index of the first stored line whose number is not below `number`.
 std::uint32_t lines_below(const LevelsView& grid, const GridLevel& g, std::uint32_t number) {
   std::uint32_t at = g.first_line;
   std::uint32_t left = g.end_line - at;
@@ -17,8 +20,8 @@ std::uint32_t lines_below(const LevelsView& grid, const GridLevel& g, std::uint3
   return at;
 }
 
-/// Calls visit(begin, end) with runs of rows, ascending, among which are all whose boxes may
-/// overlap [low, high]. Stops when it says false.
+/// Calls visit(begin, end) with ascending ranges of rows that contain all rows whose boxes may
+/// overlap [low, high]. Stops and returns false if visit returns false.
 template <typename Visit>
 [[gnu::always_inline]] inline bool visit_level(const LevelsView& grid, const GridLevel& g,
                                                const float* low, const float* high, Visit&& visit) {
@@ -35,7 +38,7 @@ template <typename Visit>
     std::uint32_t line = g.ranked ? rank[a] : lines_below(grid, g, a);
     const std::uint32_t end = g.ranked ? rank[b] : lines_below(grid, g, b);
     if (line == end && !g.ranked) {
-      // Objects far apart: on to where the next line is.
+      // The lines are sparse: continues at the next stored line.
       if (line == g.end_line) break;
       const std::uint32_t next = grid.number[line] / g.mids;
       slow = next > slow ? next - 1 : slow;
@@ -63,14 +66,14 @@ template <typename Visit>
   return true;
 }
 
-/// The rows that may stay in one cell of an axis.
+/// Tests which rows may stay in one cell of an axis.
 class Keeping {
  public:
   Keeping(const RowView& rows, const LevelAxis& axis, std::uint32_t cell)
       : low_(rows.column[axis.axis]),
         high_(rows.column[3 + axis.axis]),
         axis_(axis),
-        // The first and the last cell have no end.
+        // The first and the last cell are unbounded.
         from_(cell == 0 ? -__builtin_inff() : static_cast<float>(cell)),
         to_(static_cast<float>(cell) == axis.last ? __builtin_inff()
                                                   : static_cast<float>(cell + 1)) {}

@@ -7,57 +7,58 @@
 
 namespace winnow {
 
-/// One axis of a level's cells. Cells are found by a formula alone, so an axis may have millions of
-/// them; each step of it is monotone in x as floats round, and nothing else is needed for the cells
-/// of a range of x to hold whatever lies in it. Objects keep their cell while they drift by up to
+/// One axis of a level's cells. A formula gives the cell of x, so an axis may have millions of
+/// cells. The formula is monotonic in x with float rounding; this suffices for the cells of a range
+/// of x to contain every object in the range. Objects keep their cell while they drift by up to
 /// `slack`.
 struct LevelAxis {
   std::uint32_t axis = 0;  ///< 0, 1, 2 for x, y, z
   float origin = 0.0F;
   float inverse = 0.0F;  ///< cells per unit length; 0 if the axis is not divided
-  float last = 0.0F;     ///< number of the last cell, exact in a float
-  float limit = 0.0F;    ///< longest edge of the level, as floats subtract
+  float last = 0.0F;     ///< number of the last cell, exact in float
+  float limit = 0.0F;    ///< longest edge of the level, computed in float
   float slack = 0.0F;
-  float pad = 0.0F;  ///< at least the longest edge and the slack
+  float pad = 0.0F;  ///< at least the longest edge plus the slack
 };
 
 static inline std::uint32_t cell_at(const LevelAxis& a, float x) {
   const float t = (x - a.origin) * a.inverse;
   return static_cast<std::uint32_t>(t > 0.0F ? (t < a.last ? t : a.last) : 0.0F);
 }
-/// The first cell that may hold an object that reaches up to x.
+/// Returns the first cell that may hold an object that extends to x or beyond.
 static inline std::uint32_t first_cell(const LevelAxis& a, float x) {
   return cell_at(a, x - a.pad);
 }
-/// The last cell that may hold an object with its lower end at or below x.
+/// Returns the last cell that may hold an object with a lower bound <= x.
 static inline std::uint32_t last_cell(const LevelAxis& a, float x) {
   return cell_at(a, x + a.slack);
 }
 
-/// Cells that follow each other along the fast axis: those between the line's first and last
-/// object, 2^shift steps of the axis each. Every second line runs backwards, and steps are counted
-/// from its other end.
+/// Consecutive cells along the fast axis, from the line's first object to its last; each cell is
+/// 2^shift steps long. Odd lines run backwards: their steps are counted from the other end of the
+/// axis.
 struct GridLine {
-  std::uint32_t first = 0;      ///< step of the axis at which cell 0 begins
+  std::uint32_t first = 0;      ///< step at which cell 0 begins
   std::uint32_t last_cell = 0;  ///< number of the last cell
   std::uint32_t shift = 0;
   std::uint32_t cell = 0;  ///< index of cell 0 in `start`
 };
 
-/// One size of cells. Lines lie on the middle and the slow axis and are numbered like a snake: each
-/// lies beside the one before it. Only those that hold objects are stored, by ascending number.
+/// The cells of one level. Lines lie on the middle and the slow axis and are numbered in
+/// alternating directions, so that successive lines are neighbours. Only lines with objects are
+/// stored, by ascending number.
 struct GridLevel {
   LevelAxis fast;
   LevelAxis mid;
   LevelAxis slow;
   std::uint32_t mids = 1;       ///< lines along the middle axis
-  std::uint32_t steps = 0;      ///< of the fast axis, less one: a power of two less one
+  std::uint32_t steps = 0;      ///< the last step of the fast axis: a power of two minus one
   std::uint32_t first_row = 0;  ///< a multiple of 16
   std::uint32_t end_row = 0;
   std::uint32_t first_line = 0;
   std::uint32_t end_line = 0;
   std::uint32_t first_rank = 0;
-  bool ranked = false;  ///< whether `rank` knows the lines; they are searched for otherwise
+  bool ranked = false;  ///< true: `rank` has the lines; false: binary search
 };
 
 /// Levels from the smallest objects to the largest. Rows are sorted by level, line and cell.
@@ -67,16 +68,16 @@ struct LevelsView {
   std::uint32_t levels = 0;
   const GridLine* line = nullptr;
   const std::uint32_t* number = nullptr;  ///< of each line
-  const std::uint32_t* rank = nullptr;    ///< by number: how many stored lines have a lower one
+  const std::uint32_t* rank = nullptr;    ///< by line number: the first stored line >= it
   const std::uint32_t* start = nullptr;   ///< first row of each cell
-  const float* key = nullptr;             ///< by row: lower end on the fast axis at the build
+  const float* key = nullptr;             ///< by row: lower bound on the fast axis at the build
 };
 
 static inline std::uint32_t line_number(const GridLevel& g, std::uint32_t mid, std::uint32_t slow) {
   return slow * g.mids + ((slow & 1U) != 0 ? g.mids - 1 - mid : mid);
 }
 
-/// Where a line of this number lies.
+/// The cells of a line on the middle and the slow axis.
 struct LineCells {
   std::uint32_t mid;
   std::uint32_t slow;
@@ -87,7 +88,7 @@ static inline LineCells cells_of_line(const GridLevel& g, std::uint32_t number) 
   return {(slow & 1U) != 0 ? g.mids - 1 - mid : mid, slow};
 }
 
-/// Places are stored lines, of all levels one after another; units are blocks of 16 rows.
+/// Places are stored lines, of all levels consecutively; units are blocks of 16 rows.
 using HierarchicalGridKernels = CellKernels<LevelsView>;
 
 WINNOW_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels);

@@ -1,3 +1,5 @@
+// Lays out the cells of one level of HierarchicalGrid from a sample of its rows.
+
 #include "partitions/structures/levels/level_layout.h"
 
 #include "core/sort/end_values.h"
@@ -12,17 +14,17 @@
 namespace winnow {
 namespace {
 
-// How far objects of a level may drift, in cells, beside kSlackOfEdge.
+// How far objects of a level may drift, as a share of a cell, in addition to kSlackOfEdge.
 constexpr double kSlackOfCell = 0.1;
-// How wide lines are, in edges of a cube that holds a block of rows.
+// The width of lines in edges of a cube that holds a block of rows.
 constexpr double kLineWidth = 0.95;
 constexpr double kLeastWidth = 0.25;      // in longest edges
 constexpr double kMostLines = 1U << 15U;  // along an axis
 constexpr unsigned kMostStepBits = 20;
 constexpr double kStepsInCell = 8.0;
 
-// The i-th of a sample of one in `step`. Rows lie in the order of earlier cells: even strides would
-// be in step with that.
+// Index of the i-th sample of one row in `step`, at a hashed offset: rows are in the order of
+// earlier cells, and a regular stride could alias with it.
 std::size_t sampled(std::size_t i, std::size_t step) noexcept {
   const std::uint64_t hash = (i + 1) * 0x9E3779B97F4A7C15ULL;
   return i * step + static_cast<std::size_t>((hash >> 32U) % step);
@@ -34,7 +36,7 @@ struct Range {
   [[nodiscard]] double length() const { return high - low; }
 };
 
-// Where the lower ends of rows lie on an axis, from a sample. Outliers must not stretch cells.
+// The range of lower bounds on an axis, from a sample. Outliers must not stretch cells.
 template <typename RowOf>
 Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowOf&& row_of) {
   constexpr std::size_t kLeast = 64;
@@ -56,8 +58,8 @@ Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowO
   return {std::max(first, range.low), std::min(last, range.high)};
 }
 
-// How many objects an object finds in its own cube of a raster, itself included, from a sample:
-// crowds count by how many are in them.
+// Estimates the mean number of objects in the cube of a raster that contains an object, including
+// itself. The mean is over objects, so crowded cubes weigh more.
 double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
                const std::array<Range, 3>& range, double edge) {
   constexpr std::size_t kSlots = 16384;
@@ -105,7 +107,7 @@ std::array<float, 3> longest_edges(const BoundsPool& pool, std::span<const std::
 
 void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest, double width) {
   const double inverse = cells / range.length();
-  // What hardly differs needs no cells.
+  // An axis with little extent is not divided.
   if (!(cells > 1.0) || !(inverse < FLT_MAX)) {
     axis.origin = axis.inverse = axis.last = 0.0F;
     axis.limit = std::numeric_limits<float>::infinity();
@@ -115,7 +117,7 @@ void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest,
   axis.origin = static_cast<float>(range.low);
   axis.inverse = static_cast<float>(inverse);
   axis.last = static_cast<float>(cells - 1.0);
-  // A little more than there is now, for edges that differ by rounding.
+  // A margin for edges that differ by rounding.
   axis.limit = static_cast<float>(1.001 * longest);
   axis.slack = static_cast<float>(kSlackOfEdge * longest + kSlackOfCell * width);
   const double pad = static_cast<double>(axis.limit) + static_cast<double>(axis.slack);
@@ -136,7 +138,7 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
     length[a] = range[a].length();
   }
   double width = edge_for(kRowsOfBlock, static_cast<double>(rows.size()), length);
-  // Where objects crowd the cells they find there count, not those of an even spread.
+  // In crowded scenes, narrows the cells until an object's cube holds about one block of rows.
   for (int i = 0; i < 6 && width > 0.0; ++i) {
     const double found = company(pool, rows, range, width);
     if (found < 1.6 * kRowsOfBlock) break;
@@ -152,7 +154,7 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
   level.slow.axis = by_length[2];
   for (LevelAxis* const axis : {&level.mid, &level.slow}) {
     const std::size_t a = axis->axis;
-    // Cells much smaller than the objects would tell nothing more apart.
+    // Cells much smaller than the objects would not prune more.
     const double edge = static_cast<double>(longest[a]);
     const double wide = std::max(width, kLeastWidth * edge);
     lay_axis(*axis, range[a], std::min(kMostLines, std::floor(length[a] / wide)), edge, wide);

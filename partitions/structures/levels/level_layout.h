@@ -11,9 +11,10 @@
 
 namespace winnow {
 
-/// Lays out the cells of a level for its rows: axes, how wide cells are, how far objects may drift.
-/// Some of its rows may be empty: what stood there has edges up to `least_longest`, on each axis.
-/// The rows' part of `level` is left alone.
+/// Computes the cells of a level for its rows: the order of axes, the widths of cells, and the
+/// slack within which objects may drift. Rows that have become empty are skipped; `least_longest`
+/// is a lower limit of the longest edges per axis, for objects that left such rows. The row range
+/// of `level` is not changed.
 void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
                const std::array<float, 3>& least_longest, const Execution& execution,
                GridLevel& level) noexcept;

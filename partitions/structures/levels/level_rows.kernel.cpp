@@ -1,3 +1,6 @@
+// Kernels that compute the octaves, longest edges and places of rows when HierarchicalGrid plans a
+// build.
+
 #include "partitions/structures/levels/level_rows.kernel.h"
 #include "simd/lanes/truncated.h"
 
@@ -7,7 +10,7 @@ namespace {
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
 
-/// Numbers of a column that rows[0, 16) have; mostly the rows follow each other.
+/// Loads values of a column for rows[0, 16); the rows are usually consecutive.
 class RowGather {
  public:
   RowGather(const std::uint32_t* rows, std::size_t left) : rows_(rows), left_(left) {
@@ -39,7 +42,7 @@ void octaves(const float* const* boxes, std::size_t begin, std::size_t end, std:
     alignas(64) float lane_edge[kLanes];
     edge.store(lane_edge);
     __builtin_memcpy(octave + row, lane_edge, sizeof lane_edge);
-    // Without the sign: an edge may be -0.
+    // Drops the sign, because an edge may be -0.
     for (std::size_t r = row; r < row + kStep; ++r) octave[r] = octave[r] >> 23U & 0xFFU;
     for (Mask16 left = ~(bounded & live) & kAllRows; left != 0; left &= left - 1) {
       octave[row + first(left)] = kNoOctave;
@@ -57,7 +60,7 @@ void longest(const float* const* boxes, const std::uint32_t* rows, std::size_t b
   for (int a = 0; a < 3; ++a) result[a] = reduce_max(edge[a]);
 }
 
-/// As cell_at says for each lane.
+/// Computes cell_at for each lane.
 void write_cells(const LevelAxis& axis, const Floats& x, std::uint32_t* cell) {
   if (axis.inverse == 0.0F) {
     for (int lane = 0; lane < kLanes; ++lane) cell[lane] = 0;
@@ -81,7 +84,7 @@ void places(const GridLevel& level, const float* const* boxes, const std::uint32
     write_cells(level.mid, own.of(boxes[level.mid.axis]), mid);
     write_cells(level.slow, own.of(boxes[level.slow.axis]), slow);
     write_cells(level.fast, own.of(boxes[level.fast.axis]), step);
-    // No branch: lines and steps of every second line run backwards.
+    // Without a branch: odd lines, and the steps of odd lines, run backwards.
     for (std::size_t k = 0; k < kStep; ++k) {
       const std::uint32_t odd_row = 0U - (slow[k] & 1U);
       const std::uint32_t line = slow[k] * mids + ((mid[k] ^ odd_row) + (mids & odd_row));

@@ -7,24 +7,24 @@
 
 namespace winnow {
 
-/// Octaves of a longest edge: its power of two; 0 if it has next to no length.
+/// Octaves of a longest edge: its power of two; 0 for edges near zero.
 inline constexpr std::uint32_t kOctaves = 256;
-/// Of rows that are empty, or have an edge of `kUnboundedEdge` and more.
+/// The octave of empty rows and of rows with an edge of at least `kUnboundedEdge`.
 inline constexpr std::uint32_t kNoOctave = kOctaves - 1;
 inline constexpr float kUnboundedEdge = 1e30F;
 
-/// How rows are sorted into levels, and those of a level into its cells. Columns of boxes are
-/// readable to the next multiple of 16 after the last row.
+/// Kernels that sort rows into levels and into the cells of a level. Columns of boxes are readable
+/// to the next multiple of 16 after the last row.
 struct LevelRowsKernels {
-  /// Writes the octave of each row of [begin, end), of which `begin` is a multiple of 16; there is
-  /// room to the next one after `end`.
+  /// Writes the octave of each row of [begin, end). `begin` is a multiple of 16; `octave` is
+  /// writable to the next multiple of 16 after `end`.
   void (*octaves)(const float* const* boxes, std::size_t begin, std::size_t end,
                   std::uint32_t* octave);
-  /// Makes `longest` the longest edges, on each axis, of the boxes of rows[begin, end).
+  /// Sets `longest` to the longest edge, on each axis, of the boxes of rows[begin, end).
   void (*longest)(const float* const* boxes, const std::uint32_t* rows, std::size_t begin,
                   std::size_t end, float* longest);
-  /// Writes for rows[begin, end) the line above the lowest `step_bits` and the step of the line in
-  /// those, above 32 bits of the row. The line is left out if `step_only`.
+  /// Writes one item per row of rows[begin, end): the row in the low 32 bits, above it the step in
+  /// `step_bits` bits, and above that the line. The line is 0 if `step_only`.
   void (*places)(const GridLevel&, const float* const* boxes, const std::uint32_t* rows,
                  std::size_t begin, std::size_t end, unsigned step_bits, bool step_only,
                  std::uint64_t* items);

@@ -1,3 +1,6 @@
+// Decides which sizes of objects share a level of HierarchicalGrid: starts with one level per
+// octave and joins neighbouring levels while this lowers the estimated cost of all pairs.
+
 #include "partitions/structures/levels/size_classes.h"
 
 #include "core/sort/stretches.h"
@@ -11,14 +14,14 @@
 namespace winnow {
 namespace {
 
-// What a line and a level cost, in tests of 16.
+// Cost of a line and of a level, in tests of 16 volumes.
 constexpr double kPerLine = 0.7;
 constexpr double kPerLevel = 7.0;
-// One object in so many, but so many at least and at most, tells where those of a class lie.
+// One object in kSampled, within the limits below, is sampled for the positions of a class.
 constexpr std::size_t kSampled = 8;
 constexpr std::size_t kLeastSampled = 256;
 constexpr std::size_t kMostSampled = 4096;
-// Into how many stretches rows are cut at most, which threads go through.
+// The maximum number of ranges of rows, which threads process.
 constexpr std::size_t kMostSizeStretches = 16;
 
 std::size_t stretch_of(std::size_t rows) noexcept {
@@ -26,8 +29,8 @@ std::size_t stretch_of(std::size_t rows) noexcept {
   return even_stretch(rows, kLeastRows, kMostSizeStretches);
 }
 
-// How long the ranges are over which n objects with these sums of places and of their squares would
-// be spread evenly.
+// The lengths of ranges over which n evenly spread objects have these sums of positions and of
+// their squares.
 std::array<double, 3> spread_of(const std::array<double, 3>& sum,
                                 const std::array<double, 3>& square, double n) {
   std::array<double, 3> range{};
@@ -53,7 +56,7 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
   return 0.0;
 }
 
-/// Some objects of a class: sums of what a class has.
+/// Sums over sampled objects of a class.
 struct SizeClasses::Sample {
   std::size_t count;
   std::array<double, 3> edge;
@@ -79,7 +82,7 @@ struct SizeClasses::Sample {
   }
 };
 
-/// Neighbouring classes that share a level.
+/// Adjacent classes that share a level.
 struct SizeClasses::Group {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -92,9 +95,9 @@ struct SizeClasses::Group {
 
 SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave,
                          const Execution& execution) noexcept {
-  // Of every fourth row, which need not wait for each other.
+  // A histogram for each row number modulo 4, so that successive increments are independent.
   using Quarters = std::array<std::array<std::uint32_t, kOctaves>, 4>;
-  // Only those of stretches that there are get values.
+  // Only entries of existing ranges of rows are initialized.
   std::array<Quarters, kMostSizeStretches> part;
   const std::size_t length = stretch_of(octave.size());
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
@@ -118,7 +121,8 @@ SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> 
   join();
 }
 
-// Takes from every class about as many objects, the same on any number of threads.
+// Samples about equally many objects of every class. The result does not depend on the number of
+// threads.
 void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t> octave,
                           const Execution& execution) noexcept {
   std::array<std::uint8_t, kOctaves> class_at{};
@@ -128,7 +132,7 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
     const std::size_t count = class_[c].count;
     step[c] = 1 + count / std::clamp(count / kSampled, kLeastSampled, kMostSampled);
   }
-  // Where all objects are of one class, that.
+  // The only class, if all objects are of one class.
   const auto holds = [](const Class& c) { return c.count != 0; };
   const auto only = static_cast<std::size_t>(std::ranges::find_if(class_, holds) - class_.begin());
   const bool one_class = std::ranges::count_if(class_, holds) == 1;
@@ -137,7 +141,7 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     part[begin / length] = {};
     if (one_class) {
-      // The same as below, but that no row waits for the one before.
+      // As the loop below, without a dependency between successive rows.
       std::size_t wait = 0;
       for (std::size_t row = begin; row < end; ++row) {
         if (class_at[octave[row]] != only || wait-- != 0) continue;
@@ -170,7 +174,7 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   }
 }
 
-// Where sizes span more octaves than there are classes, those that hold the most objects count.
+// If sizes span more octaves than there are classes, chooses the octaves with the most objects.
 void SizeClasses::choose_octaves(const Counts& count) noexcept {
   std::size_t inside = 0;
   std::size_t most = 0;
@@ -207,7 +211,7 @@ SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) co
       group.mean[a] += count * class_[c].edge[a];
       place[a] += class_[c].place[a];
       square[a] += class_[c].square[a];
-      // An octave's largest is about 1.4 times its mean.
+      // The longest edge in an octave is about 1.4 times the mean.
       group.longest[a] = std::max(group.longest[a], 1.4 * class_[c].edge[a]);
     }
   }
@@ -218,7 +222,8 @@ SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) co
   return group;
 }
 
-// What blocks of `fine` are expected to cost to look for partners in `coarse`, in tests of 16.
+// Estimates the cost of searching partners for blocks of `fine` in `coarse`, in tests of 16
+// volumes.
 double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
   std::array<double, 3> ask{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -252,7 +257,7 @@ double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept 
   return fine.count / kRowsOfBlock * (rows + blocks + kPerLine * lines + kPerLevel);
 }
 
-// Begins with a level for every class and joins neighbours while that makes it cheaper.
+// Starts with one level per class and joins neighbouring levels while this lowers the cost.
 void SizeClasses::join() noexcept {
   std::array<Group, kClasses> group;
   std::size_t count = 0;

@@ -12,37 +12,37 @@
 namespace winnow {
 
 inline constexpr double kRowsOfBlock = 16.0;
-/// How far objects of a level may drift, in the longest edges there.
+/// How far objects of a level may drift, as a share of the longest edge of the level.
 inline constexpr double kSlackOfEdge = 0.2;
 
 inline constexpr std::size_t kMostLevels = 16;
 
-/// Sizes of a scene's objects in octaves, counted down from the largest, and how these are joined
-/// into levels.
+/// Counts objects by octaves of size, descending from the largest, and joins octaves into levels.
 class SizeClasses {
  public:
-  /// Sizes of 1 : 1e12. Where there are more, those that hold the most objects have classes. What
-  /// has no size at all is in the last.
+  /// Octaves for sizes of up to 1e12 : 1. If sizes span more, the octaves with the most objects are
+  /// classes. Objects of size 0 are in the last class.
   static constexpr std::size_t kClasses = 41;
 
-  /// Counts the rows of a pool, of which the octaves are known; where the objects of a class lie
-  /// it takes from a sample. O(n).
+  /// Counts the rows of a pool by their octaves; estimates the positions of a class's objects from
+  /// a sample. O(n).
   SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> octave,
               const Execution& execution) noexcept;
 
-  /// Objects that have a class.
+  /// The number of objects that have a class.
   [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
   [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
-  /// The level for an object of an octave; `levels()` if it has no class. Level 0 has the smallest.
+  /// Returns the level of an octave, or `levels()` if it has no class. Level 0 has the smallest
+  /// objects.
   [[nodiscard]] std::size_t level_of(std::uint32_t octave) const noexcept;
 
  private:
   struct Class {
     std::size_t count = 0;
-    std::array<double, 3> edge{};    // sum, later mean
-    std::array<double, 3> place{};   // sum of lower ends
-    std::array<double, 3> square{};  // sum of their squares
-    std::array<double, 3> range{};   // over which they are spread
+    std::array<double, 3> edge{};    // sum, then mean
+    std::array<double, 3> place{};   // sum of lower bounds
+    std::array<double, 3> square{};  // sum of squared lower bounds
+    std::array<double, 3> range{};   // range over which the objects are spread
   };
   struct Sample;
   struct Group;
@@ -62,8 +62,8 @@ class SizeClasses {
   std::size_t top_octave_ = 0;
 };
 
-/// Edge of the cube that holds `wanted` of `count` objects spread evenly over ranges. Axes along
-/// which they are spread over less than that edge do not count.
+/// Returns the edge of a cube that holds `wanted` objects if `count` objects are spread evenly over
+/// the ranges. Ignores axes whose range is shorter than that edge.
 [[nodiscard]] double edge_for(double wanted, double count,
                               const std::array<double, 3>& range) noexcept;
 

@@ -6,19 +6,19 @@
 
 namespace winnow {
 
-/// The Hilbert curve in N dimensions, one level per step: which of the 2^N cells of a cube comes as
-/// which, and how the curve lies within it. A state is where the curve enters a cube and along
-/// which axis it leaves (Hamilton, "Compact Hilbert Indices", Dalhousie University CS-2006-07,
-/// 2006, section 2).
+/// The Hilbert curve in N dimensions, one level per step: the order in which the curve visits the
+/// 2^N cells of a cube, and its orientation within each cell. A state is the corner at which the
+/// curve enters a cube and the axis along which it leaves (Hamilton, "Compact Hilbert Indices",
+/// Dalhousie University CS-2006-07, 2006, section 2).
 template <unsigned N>
 struct HilbertCurve {
   static constexpr unsigned kCells = 1U << N;
   static constexpr unsigned kStates = N * kCells;
 
-  /// By state and cell (bit a of a cell is its half of axis a): place on the curve, and the state
-  /// within, as next << N | place.
+  /// By state and cell (bit a of a cell selects its half on axis a): the place on the curve and the
+  /// state within the cell, as next << N | place.
   std::array<std::uint8_t, kStates * kCells> step{};
-  /// By state and place: the cell, and the state within, as next << N | cell.
+  /// By state and place: the cell and the state within it, as next << N | cell.
   std::array<std::uint8_t, kStates * kCells> back{};
 
   constexpr HilbertCurve() noexcept {
@@ -36,8 +36,8 @@ struct HilbertCurve {
     }
   }
 
-  /// The Morton code, bit 0 of axis 0 its lowest, of the cell that comes at a place of the curve
-  /// through a cube halved so many times.
+  /// Returns the Morton code (axis 0 in the lowest bit) of the cell at a place of the curve through
+  /// a cube that is halved `levels` times.
   [[nodiscard]] constexpr std::uint32_t morton_code(std::uint32_t place,
                                                     unsigned levels) const noexcept {
     std::uint32_t code = 0;
@@ -64,26 +64,26 @@ struct HilbertCurve {
     for (; value != 0; value >>= 1U) result ^= value;
     return result;
   }
-  /// The corner at which the curve enters the cell of this place.
+  /// The corner at which the curve enters the cell at this place.
   static constexpr unsigned entry_of(unsigned place) noexcept {
     return place == 0 ? 0 : gray((place - 1) & ~1U);
   }
-  /// The axis along which it crosses the cell of this place.
+  /// The axis along which the curve crosses the cell at this place.
   static constexpr unsigned axis_of(unsigned place) noexcept {
     if (place == 0) return 0;
     return static_cast<unsigned>(std::countr_one(place % 2 == 0 ? place - 1 : place)) % N;
   }
 };
 
-/// The same curve, `Levels` levels per step.
+/// As HilbertCurve, with `Levels` levels per step.
 template <unsigned N, unsigned Levels>
 struct HilbertSteps {
   static constexpr unsigned kAxes = N;
   static constexpr unsigned kBits = N * Levels;  // of a cell, and of a place on the curve
   static constexpr unsigned kPlaceMask = (1U << kBits) - 1U;
 
-  /// By state and cell, whose number on axis a stands above `Levels` * a bits: place on the curve,
-  /// and the state within, as next << kBits | place.
+  /// By state and cell (its coordinate on axis a is shifted by `Levels` * a bits): the place on the
+  /// curve and the state within the cell, as next << kBits | place.
   std::array<std::uint16_t, std::size_t{HilbertCurve<N>::kStates} << kBits> step{};
 
   constexpr HilbertSteps() noexcept {
@@ -103,7 +103,7 @@ struct HilbertSteps {
   }
 
  private:
-  /// Which halves, one bit per axis, hold the cell on one level.
+  /// The halves that contain the cell on one level, one bit per axis.
   static constexpr unsigned half_at(unsigned cell, unsigned bit) noexcept {
     unsigned half = 0;
     for (unsigned a = 0; a < N; ++a) half |= (cell >> (Levels * a + bit) & 1U) << a;

@@ -1,3 +1,6 @@
+// LooseOctree and LooseQuadtree: plan the order of rows by keys (loose_octree_cells.h) and the
+// nodes over them. Queries run on the block tree over the regular rows (tree/block_tree.h).
+
 #include <winnow/partitions/debug_colours.h>
 #include "core/sort/radix_sort.h"
 #include "core/sort/stretches.h"
@@ -14,13 +17,13 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
 constexpr std::size_t kFewestNodes = 64;
-// A key takes about twice as long as what other passes do with a row.
+// Computing the keys takes about as long as two other passes over the rows.
 constexpr unsigned kKeyStages = 2;
-constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // of a node of the tree over the rows
-// Longer runs of objects whose places cannot be told apart are sorted better by the tree.
+constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // in a node of the tree over the rows
+// The tree sorts longer ranges of objects with equal keys better.
 constexpr std::size_t kLongRun = 48;
 
-// Rows of a scene in motion that mostly all of its builds meet at most.
+// An upper bound of the rows in most builds of a moving scene.
 constexpr std::size_t mostly_all(std::size_t objects) {
   return objects + objects / 8 + 256;
 }
@@ -29,24 +32,25 @@ constexpr std::uint32_t key_in(std::uint64_t item) {
   return static_cast<std::uint32_t>(item >> 32U);
 }
 
-/// Loose octree (Ulrich, "Loose Octrees", Game Programming Gems, 2000) without pointers: an object
-/// lives in the one node of its size's level whose cell holds its centre. Nodes are runs of rows in
-/// flat arrays, sorted by level, large objects first, and along Hilbert's curve within a level
-/// (which leaves blocks of rows a third less surface than Morton's); each has its linear code. A
-/// node's cell is loose, so objects may move by a good part of it, and the node stays as it is.
+/// Loose octree (Ulrich, "Loose Octrees", Game Programming Gems, 2000) without pointers. An object
+/// belongs to one node: on the level of its size, the cell that contains its centre. Nodes are
+/// ranges of rows, sorted by level, large objects first, and within a level along the Hilbert curve
+/// (blocks of rows then have a third less surface than with Morton codes). Each node has its linear
+/// code. The cells of nodes are loose, so objects may move by a good part of a cell without
+/// changing their node.
 ///
-/// Nodes overlap their neighbours by design and may be nearly empty, so they are not what is
-/// tested: every 16 rows in node order have a tight box, and 16 of these at once are pruned as in a
-/// block tree. Objects larger than the root, outside of it or without end, and those that have left
-/// their loose cells, are kept in a block tree beside it. In a world two cells thick it divides two
-/// axes only. Seldom the fastest and never far from it, whatever the sizes. Self pairs: O(n log n +
-/// pairs) for boxes of bounded overlap. Exact.
+/// Nodes overlap their neighbours by design and may be nearly empty, so queries do not test them.
+/// Instead every 16 rows in node order have a tight box, and 16 such boxes at a time are tested as
+/// in a block tree. A block tree beside it holds objects that are larger than the root, outside of
+/// it or unbounded, and objects that left their loose cells. If the world is at most two cells
+/// thick, only two axes are divided. Self pairs: O(n log n + pairs) for boxes of bounded overlap.
+/// Exact.
 class LooseTree : public CellStructure {
  public:
   LooseTree(const StructureInput& input, std::size_t axes) noexcept;
 
-  /// From the root to the finest nodes; 0 if there are none. Statistics counts the nodes that hold
-  /// objects as cells.
+  /// Levels from the root to the finest nodes; 0 if there are none. Statistics report non-empty
+  /// nodes as cells.
   [[nodiscard]] std::size_t levels() const noexcept override {
     return regular_rows() == 0 ? 0 : used_.cells.levels();
   }
@@ -99,18 +103,18 @@ class LooseTree : public CellStructure {
   const float loose_;
   Nodes used_;
   Nodes planned_;
-  const std::uint64_t* sorted_ = nullptr;  // while planning: the items by their keys
+  const std::uint64_t* sorted_ = nullptr;  // while planning: the items sorted by key
 };
 
 LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
     : CellStructure(input),
       axes_(axes),
-      // Written so that NaN becomes the least.
+      // The order of arguments turns NaN into the minimum.
       loose_(std::min(8.0F, std::max(1.125F, input.parameter))),
       used_(input.memory),
       planned_(input.memory) {}
 
-// Every object may have a node to itself.
+// Every object may have its own node.
 bool LooseTree::reserve(const BuildRoom& room) noexcept {
   const std::size_t nodes = room.objects + kFewestNodes;
   const std::size_t rows = mostly_all(room.objects);
@@ -191,7 +195,7 @@ bool LooseTree::lay_nodes(const RowPlan& plan) noexcept {
   return planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
 }
 
-// The node of the rows that had keys of one cell, but for those that too many have the same key of.
+// Adds the node of rows whose keys are in one cell. Long ranges of equal keys go to the rest.
 bool LooseTree::lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept {
   const auto begin = static_cast<std::uint32_t>(plan.regular.size());
   const auto append = [&](Column<std::uint32_t>& rows, std::size_t from, std::size_t to) {
@@ -254,7 +258,7 @@ void LooseTree::draw(DebugDraw& draw) const {
     for (std::uint32_t row = start_[node]; row < start_[node + 1]; ++row) {
       contents.merge(stored_box(rows.column, row));
     }
-    if (!contents.is_valid()) continue;  // holes only
+    if (!contents.is_valid()) continue;  // only holes
     const LooseOctreeCells::Bounds bounds = used_.cells.cell_bounds(used_.node[node]);
     Aabb cell = contents;
     for (std::size_t k = 0; k < used_.cells.axes(); ++k) {
@@ -287,15 +291,15 @@ class LooseOctree final : public LooseTree {
   explicit LooseOctree(const StructureInput& input) noexcept : LooseTree(input, 3) {}
 };
 
-/// In two dimensions: the two axes with the most room are divided, and edges along the third put no
-/// object on a coarser level. Suits flat worlds.
+/// The loose octree in two dimensions: it divides the two axes with the most room, and edges along
+/// the third axis do not affect the level. Suits flat worlds.
 class LooseQuadtree final : public LooseTree {
  public:
   explicit LooseQuadtree(const StructureInput& input) noexcept : LooseTree(input, 2) {}
 };
 
-// Never chosen automatically: no scene, flat worlds included, is cheaper by them than by the best
-// of the others.
+// Without costs, so that the automatic choice never takes them: in no measured scene, flat worlds
+// included, were they the cheapest structure.
 constexpr StructureInfo kOctree = structure_info<LooseOctree>("LooseOctree");
 constexpr StructureInfo kQuadtree = structure_info<LooseQuadtree>("LooseQuadtree");
 

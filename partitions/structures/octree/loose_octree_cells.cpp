@@ -1,3 +1,6 @@
+// The geometry of loose octrees: places the root, and computes sort keys, codes and bounds of
+// cells. loose_octree.cpp calls it.
+
 #include "partitions/structures/octree/loose_octree_cells.h"
 
 #include "partitions/structures/octree/hilbert_curve.h"
@@ -10,12 +13,12 @@ namespace winnow {
 namespace {
 
 constexpr double kObjectsInCell = 16;  // on average, on the finest level
-constexpr double kThinWorld = 2;       // an axis of so few of its cells is not worth dividing
+constexpr double kThinWorld = 2;       // an axis with at most this many cells is not divided
 constexpr unsigned kLevelShift = 28;   // in keys and codes
 constexpr std::uint32_t kCodeMask = (1U << kLevelShift) - 1U;
 
-/// The edge of cells that hold `objects` on average. Axes on which all lies within one such cell
-/// count for nothing.
+/// The edge of cells that hold `objects` objects on average. Ignores axes whose range is within one
+/// such cell.
 double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objects) {
   for (;; --axes) {
     std::array<double, 4> factor{1.0 / objects};
@@ -31,12 +34,12 @@ double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objec
   }
 }
 
-/// Bits of a place by axis, of cubes and of squares.
+/// Bits of a place per axis, for three and for two divided axes.
 constexpr unsigned kBits3 = 9;
 constexpr unsigned kBits2 = 14;
 
-/// Moves groups of `Levels` bits so far apart that those of N numbers fit between them: of up to
-/// 10 bits, in twos of three numbers, or 16, in fours of two.
+/// Spreads groups of `Levels` bits so that the groups of N numbers interleave: three numbers of up
+/// to 10 bits in groups of two, or two numbers of up to 16 bits in groups of four.
 template <unsigned N, unsigned Levels>
 constexpr std::uint32_t spread(std::uint32_t x) noexcept {
   static_assert((N == 3 && Levels == 2) || (N == 2 && Levels == 4));
@@ -49,20 +52,20 @@ constexpr std::uint32_t spread(std::uint32_t x) noexcept {
   return (x | x << 4U) & 0x0F0F0F0FU;
 }
 
-/// Hilbert's curve through places of `Bits` bits on each of N axes, found `Levels` levels at a
+/// The Hilbert curve through places of `Bits` bits on each of N axes, computed `Levels` levels at a
 /// time.
 template <unsigned N, unsigned Levels, unsigned Bits>
 struct Curve {
   using Steps = HilbertSteps<N, Levels>;
   static constexpr unsigned kSteps = (Bits + Levels - 1) / Levels;
-  // Bits below the last: a place within the finest cell, which changes nothing above.
+  // Bits below the last level: a place within the finest cell, which does not affect higher bits.
   static constexpr unsigned kBelow = kSteps * Levels - Bits;
 
-  /// What a place on an axis contributes to the cells of all steps.
+  /// Interleaved bits that a place on an axis contributes to the cells of all steps.
   static constexpr std::uint32_t cells_of(std::uint32_t place, unsigned axis) noexcept {
     return spread<N, Levels>(place << kBelow) << (Levels * axis);
   }
-  /// Where the cells come.
+  /// Returns the place on the curve of the interleaved cells.
   static std::uint32_t place_of(std::uint32_t cells) noexcept {
     static constexpr Steps kCurve;
     std::uint64_t code = 0;
@@ -92,7 +95,7 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
   const double cells = static_cast<double>(sample.objects) / kObjectsInCell;
   std::array<double, 3> range{};
   for (std::size_t a = 0; a < 3; ++a) range[a] = sample.range(a) + sample.mean_edge[a];
-  // The axis that is not divided, if there is one.
+  // The axis that is not divided; 3 if all are.
   std::size_t whole = 3;
   const auto least = [](auto&& measure) {
     std::size_t best = 0;
@@ -118,13 +121,13 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
   bits_ = axes_ == 3 ? kBits3 : kBits2;
   reach_ = 0.5 * (static_cast<double>(loose) - 1.0);
   const double edge = edge_of_cells(range, axes_, cells);
-  // So that every place has a finite scale, whatever the axis.
+  // Ensures that every place has a finite scale.
   if (!(edge > longest * 1e-9) || !(longest > 1e-30) || !(longest < 1e30)) return false;
   finest_ = 0;
   double doubled = edge;
   for (; finest_ < bits_ && doubled < longest; ++finest_) doubled *= 2.0;
   edge_ = std::max(longest, doubled);
-  // A box by its centre reaches out by half of its edge.
+  // A box reaches from its centre by half of its edge.
   double limit = 2.0 * reach_ * edge_;
   for (std::uint32_t level = 0; level <= finest_; ++level, limit *= 0.5) longest_[level] = limit;
   scale_ = static_cast<double>(1U << bits_) / edge_;
@@ -135,14 +138,14 @@ bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float
 }
 
 std::uint32_t LooseOctreeCells::level_of(float longest) const noexcept {
-  // Most are on the finest.
+  // Most objects are on the finest level.
   for (std::uint32_t level = finest_ + 1; level-- > 0;) {
     if (static_cast<double>(longest) <= longest_[level]) return level;
   }
   return kNone;
 }
 
-// Step by step for some rows at once, so that compilers do each step for several of them.
+// Processes several rows per step so that compilers vectorize each step.
 template <typename Curve>
 void LooseOctreeCells::find_some_keys(const BoxColumns& box, std::size_t first, std::size_t count,
                                       std::uint32_t* key) const noexcept {
@@ -167,7 +170,7 @@ void LooseOctreeCells::find_some_keys(const BoxColumns& box, std::size_t first, 
     }
     for (std::size_t i = 0; i < count; ++i) {
       inside[i] = at[i] >= 0.0 && at[i] < places ? inside[i] : 0.0;
-      // Written so that NaN becomes 0.
+      // The comparison turns NaN into 0.
       const double from = at[i] > 0.0 ? at[i] : 0.0;
       const double to = from < last ? from : last;
       cells[i] |= Curve::cells_of(static_cast<std::uint32_t>(static_cast<std::int32_t>(to)), k);
@@ -227,7 +230,7 @@ bool LooseOctreeCells::hold(const Bounds& bounds, const BoundsPool& pool, std::s
     const float* const high = pool.column(3 + axis_[k]);
     const float from = bounds.low[k];
     const float to = bounds.high[k];
-    // No branch: compilers test several rows at once.
+    // Without a branch, so that compilers vectorize the loop.
     for (std::size_t row = begin; row < end; ++row) {
       outside |= static_cast<unsigned>(low[row] < from) | static_cast<unsigned>(high[row] > to);
     }

@@ -8,43 +8,43 @@
 
 namespace winnow {
 
-/// The cells of a loose octree, or of a quadtree where two axes are divided: cells of level l are
-/// the root, halved l times along each divided axis. A cell is loose: boxes may reach out of it on
+/// The cells of a loose octree, or of a quadtree if two axes are divided. Cells of level l are the
+/// root halved l times along each divided axis. A cell is loose: boxes may extend beyond it on
 /// either side by half of (loose factor - 1) of its edge.
 ///
-/// A box belongs to the cell of its centre on the finest level whose loose cells are sure to hold
-/// boxes of its size, but on none finer than cells that hold 16 objects on average: what is smaller
-/// than the distance between objects needs no level of its own.
+/// A box belongs to the cell of its centre on the finest level whose loose cells hold boxes of its
+/// size. No level is finer than cells with 16 objects on average: objects smaller than their
+/// distances need no levels of their own.
 class LooseOctreeCells {
  public:
-  /// Lays the root over the bulk of a scene. Of 2 `axes` those are divided that have the most room
-  /// in units of the objects' edges; of 3 all, but for one along which the world is no thicker than
-  /// two of the finest cells. False if the objects are too few, or at one place.
+  /// Places the root over the bulk of a scene. With 2 `axes` it divides the axes with the most room
+  /// in units of the objects' edges; with 3 it divides all axes, except one along which the world
+  /// is at most two of the finest cells thick. Returns false if there are too few objects, or all
+  /// are at one place.
   [[nodiscard]] bool choose(const SceneSample& sample, std::size_t axes, float loose) noexcept;
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  /// Cells are loose by this much of their edge more, so that a box which only just fits may move.
-  /// A box that has moved so far widens the block that it is in, and wear tells what that costs: a
-  /// build for it would cost more.
+  /// Cells are loose by this additional share of their edge, so that a box that barely fits may
+  /// still move. A box that has moved this far widens its block; its wear costs less than a build.
   static constexpr double kSpare = 0.75;
-  /// Writes where each of the rows [begin, end) stands in the order: by level, coarse ones first,
-  /// and within a level along Hilbert's curve through cells much finer than its own. kNone if it is
-  /// too large, or lies outside of the root.
+  /// Writes the sort key of each row of [begin, end): the level, coarse levels first, and within a
+  /// level the place on a Hilbert curve through cells much finer than the level's. kNone if the box
+  /// is too large or outside the root.
   void find_keys(const BoundsPool& pool, std::size_t begin, std::size_t end,
                  std::uint32_t* key) const noexcept;
-  /// Keys are of one cell that differ in no more than so many of their lowest bits.
+  /// The number of low bits in which keys of one cell may differ.
   [[nodiscard]] unsigned bits_within_cell(std::uint32_t key) const noexcept;
 
   /// Level and Morton code (the linear code of Gargantini, "An effective way to represent
   /// quadtrees", CACM 25(12), 1982) of a key's cell.
   [[nodiscard]] std::uint32_t code_of(std::uint32_t key) const noexcept;
 
-  /// What the boxes of a cell keep to, by divided axis.
+  /// Bounds for the boxes of a cell, by divided axis.
   struct Bounds {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
-  /// Bounds of the cell with this level and Morton code, or of the loose cell around it.
+  /// The bounds of the cell with this level and Morton code; loose_bounds returns the loose cell.
   [[nodiscard]] Bounds cell_bounds(std::uint32_t code) const noexcept {
     return bounds_of(code, 0.0);
   }
@@ -52,21 +52,21 @@ class LooseOctreeCells {
     return bounds_of(code, reach_ + kSpare);
   }
 
-  /// True if the boxes of rows [begin, end) lie within the bounds; empty rows do everywhere.
+  /// True if the boxes of rows [begin, end) lie within the bounds. Empty rows always do.
   [[nodiscard]] bool hold(const Bounds& bounds, const BoundsPool& pool, std::size_t begin,
                           std::size_t end) const noexcept;
 
-  /// The same for one box.
+  /// As above, for one box.
   [[nodiscard]] bool holds(const Bounds& bounds, const Structure::Place& box) const noexcept;
 
-  /// Number of divided axes, and the one that bounds have at k.
+  /// The number of divided axes; axis(k) is the axis of entry k of Bounds.
   [[nodiscard]] std::size_t axes() const noexcept { return axes_; }
   [[nodiscard]] std::uint32_t axis(std::size_t k) const noexcept { return axis_[k]; }
   [[nodiscard]] std::uint32_t levels() const noexcept { return finest_ + 1; }
 
  private:
   [[nodiscard]] Bounds bounds_of(std::uint32_t code, double reach) const noexcept;
-  using BoxColumns = std::array<const float*, 6>;  // lower ends, then upper ends
+  using BoxColumns = std::array<const float*, 6>;  // lower bounds, then upper bounds
   [[nodiscard]] std::uint32_t level_of(float longest) const noexcept;
   template <typename Curve>
   void find_some_keys(const BoxColumns& box, std::size_t first, std::size_t count,
@@ -78,9 +78,9 @@ class LooseOctreeCells {
   std::array<std::uint32_t, 3> axis_{};
   std::array<double, 3> origin_{};
   double edge_ = 0.0;                          // of the root
-  double scale_ = 0.0;                         // finest places on the root's edge, by its length
-  double reach_ = 1.0;                         // out of a cell on either side, in its edges
-  std::array<double, kMostLevels> longest_{};  // edge of a box by level, at most
+  double scale_ = 0.0;                         // finest places per unit of length
+  double reach_ = 1.0;                         // beyond a cell on either side, in its edges
+  std::array<double, kMostLevels> longest_{};  // maximum edge of a box, by level
   std::size_t axes_ = 3;
   unsigned bits_ = 9;  // of a place, by axis
   std::uint32_t finest_ = 0;

@@ -1,3 +1,6 @@
+// SweepAndPrune: plans strips (cells/cell_layout.h), sorts their rows by keys, and dispatches to
+// the kernels of sweep_and_prune.kernel.cpp.
+
 #include "core/sort/counting_sort.h"
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_drawing.h"
@@ -23,12 +26,12 @@ namespace {
 
 constexpr std::size_t kPadding = 16;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Objects of a strip that begin within reach of one another.
+// An object is crowded if more than this many objects of its strip start within one window.
 constexpr std::uint32_t kCrowded = 384;
 constexpr CellDemand kDemand{
     .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
 
-/// A key of a row on the sweep axis, in the order of keys, before the row.
+/// A sort key and a row: the position on the sweep axis in the high bits, the row in the low bits.
 using SweepItem = std::uint64_t;
 
 SweepItem sweep_item(float key, std::uint32_t row) noexcept {
@@ -44,11 +47,11 @@ float key_of(SweepItem item) noexcept {
   return from_sortable(sortable_of(item));
 }
 
-// Sorts items by key and row: in bins of equal width, of which each mostly holds one.
+// Sorts items by key and row, with bins of equal width that mostly hold one item each.
 void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   constexpr std::size_t kMostKeyBins = 1024;
   constexpr std::size_t kFewInBin = 12;
-  constexpr float kLeastReach = 1e-30F;  // what is closer is at one place
+  constexpr float kLeastReach = 1e-30F;  // a smaller extent counts as one position
   const std::size_t bins = std::min(kMostKeyBins, std::bit_ceil(items.size()));
   float low = kInfinity;
   float high = -kInfinity;
@@ -56,7 +59,7 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
     low = std::min(low, key_of(item));
     high = std::max(high, key_of(item));
   }
-  // Halves: the reach of what is spread over all floats is finite.
+  // Halved values, because the extent of arbitrary floats could overflow.
   const float reach = 0.5F * high - 0.5F * low;
   const float scale = reach > kLeastReach ? 0.999F * static_cast<float>(bins) / reach : 0.0F;
   const auto bin_of = [&](SweepItem item) {
@@ -70,7 +73,7 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   std::uint32_t sum = 0;
   for (std::uint32_t& n : std::span(next).first(bins)) sum += std::exchange(n, sum);
   for (const SweepItem item : items) room[next[bin_of(item)]++] = item;
-  // What is left to do is within bins.
+  // An insertion sort within bins completes the order.
   for (std::size_t i = 0; i < items.size(); ++i) {
     std::size_t to = i;
     for (; to > 0 && items[to - 1] > room[i]; --to) items[to] = items[to - 1];
@@ -78,15 +81,14 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   }
 }
 
-/// Sorted sweep-and-prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
-/// strips: objects are bucketed on the two axes that are not swept and sorted on the third, the one
-/// with the most room in units of the objects' own edges. Sixteen rows that follow each other in a
-/// strip sweep together, forward in it and in the four neighbouring strips after it: one box around
-/// them picks the candidates, 16 at a time. An axis that prunes nothing is not divided, so one bad
-/// axis ruins nothing. A row may drift from its sort key by a bound that the sweep allows for: slow
-/// motion, or rest, costs no sorting. Objects wider than strips go to a block tree, and where they
-/// are many it holds the whole scene. Self pairs: O(n log n + n * objects met in a sweep + pairs).
-/// Exact.
+/// Sorted sweep and prune (Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992) in
+/// strips: objects are bucketed on two axes and sorted on the third, the sweep axis, which has the
+/// most room in units of the objects' edges. Blocks of sixteen successive rows of a strip sweep
+/// together through the rest of their strip and through four neighbouring strips: the box around a
+/// block selects candidates, 16 at a time. An axis that prunes nothing is not divided, so it does
+/// no harm. A row may drift from its sort key by a bound that the sweep includes, so slow motion or
+/// rest costs no sorting. Objects wider than strips go to a block tree; if they are many, the tree
+/// holds the whole scene. Self pairs: O(n log n + n * objects in a sweep + pairs). Exact.
 class SweepAndPrune final : public CellStructure {
  public:
   explicit SweepAndPrune(const StructureInput& input) noexcept;
@@ -119,8 +121,8 @@ class SweepAndPrune final : public CellStructure {
 
   CellLayout layout_;
   CellLayout planned_;
-  Column<float> key_;     // by row: lower end on the sweep axis when it was sorted
-  bool crowded_ = false;  // while planning: whether some strip is
+  Column<float> key_;     // by row: lower bound on the sweep axis when it was sorted
+  bool crowded_ = false;  // while planning: some strip is crowded
 };
 
 SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
@@ -152,7 +154,7 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
   }
 }
 
-// Leaves the strip of each row in the list.
+// Leaves the strip of each row in `plan.list`.
 Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
@@ -183,8 +185,8 @@ Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
   return Planned::goes_on;
 }
 
-// Sorts the rows of each strip of [first, last) by their keys, which it leaves in the items and, as
-// they sort, in the list; true if some strip is crowded.
+// Sorts the rows of strips [first, last) by their keys. The keys are left in `plan.items`, and in
+// sortable form in `plan.list`. Returns true if some strip is crowded.
 bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::size_t last) noexcept {
   const float* const low = pool().column(planned_.axis(0).axis);
   const float window = crowd_window();
@@ -199,7 +201,8 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
       SweepItem* const items = plan.items.data() + begin;
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t row = plan.regular[begin + i];
-        // An object that was moved since has its key where it is now, one that is gone has none.
+        // An object that was moved to the end is sorted by its current position. A removed object
+        // has no key.
         items[i] = sweep_item(std::min(low[row_now(plan, row)], FLT_MAX), row);
       }
       sort_by_keys({items, count}, items + plan.rows);
@@ -216,8 +219,8 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
   return crowded.load();
 }
 
-// Where many objects begin within one reach of each other on the sweep axis, as when half of a
-// scene is tiny, a sweep would look at all of them: the tree prunes these better.
+// Moves crowded objects to the rest. If many objects start within one window on the sweep axis, as
+// when half of a scene is tiny, a sweep would test all of them; the tree prunes these better.
 void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
   const float window = crowd_window();
   const SweepItem* const items = plan.items.data();
@@ -245,7 +248,7 @@ void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
   plan.regular.set_size(kept);
 }
 
-// Objects are crowded with those that begin so near to them.
+// Distance on the sweep axis within which neighbours count for crowding.
 float SweepAndPrune::crowd_window() const noexcept {
   return planned_.axis(0).reach + 2.0F * planned_.drift();
 }
@@ -256,7 +259,7 @@ void SweepAndPrune::finish_build(const RowPlan& plan, bool) noexcept {
   if (regular_rows() == 0) return;
   key_.set_size(regular_rows() + kPadding);
   for (std::size_t row = 0; row < regular_rows(); ++row) key_[row] = from_sortable(plan.list[row]);
-  // Kernels load sixteen keys at once from any row.
+  // Kernels load sixteen keys from any row.
   std::fill_n(key_.data() + regular_rows(), kPadding, kInfinity);
 }
 

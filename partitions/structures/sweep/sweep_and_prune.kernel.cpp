@@ -1,3 +1,5 @@
+// Kernels of SweepAndPrune: self pairs, batch queries and the search for misfits in strips.
+
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 #include "partitions/structures/cells/cells.wide.h"
 
@@ -5,8 +7,9 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Lines of cells (or strips) lie on two axes, line = slow * mids + mid. Those after a line whose
-/// objects can touch its own: each pair of neighbours is met from one side only.
+/// Lines of cells (or strips) lie on two axes: line = slow * mids + mid. Holds the lines after line
+/// `own` whose objects can touch objects of `own`, so that each pair of neighbouring lines is
+/// visited from one side only.
 struct NeighbourLines {
   std::uint32_t line[4];
   int count = 0;
@@ -22,7 +25,7 @@ struct NeighbourLines {
   }
 };
 
-/// A sweep goes on until a key shows that nothing further can touch the box.
+/// A sweep ends when a key shows that no further row can overlap the box.
 struct KeyStop {
   const StripView& strips;
   bool operator()(const QueryBox& q, std::uint32_t at) const {
@@ -30,8 +33,8 @@ struct KeyStop {
   }
 };
 
-/// Moves `at` to the first row of [at, end) that may reach up to x; keys ascend. Sixteen keys per
-/// step: mostly one step is enough, and then it costs no branch.
+/// Returns the first row of [at, end) that may extend to x or beyond. Keys ascend; each step
+/// compares sixteen, and one step is usually enough, without an unpredictable branch.
 inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::uint32_t end,
                                 float x) {
   const Floats bound = Floats(x);
@@ -45,16 +48,16 @@ inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::
   return at;
 }
 
-/// The end of the run from `at` on that may begin at or below x; keys ascend. It may be up to
-/// fifteen rows late.
+/// Returns the end of the rows from `at` on that may start at or below x, up to fifteen rows late.
+/// Keys ascend.
 inline std::uint32_t run_end(const StripView& strips, std::uint32_t at, std::uint32_t end,
                              float x) {
   while (at < end && strips.key[at] - strips.drift <= x) at += kLanes;
   return at < end ? at : end;
 }
 
-/// The first row of [at, end) that may reach up to x on the sweep axis. Halving without a branch:
-/// the number of steps depends on the length alone.
+/// Returns the first row of [at, end) that may extend to x or beyond on the sweep axis, by a
+/// branchless binary search whose number of steps depends only on the length.
 std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uint32_t end,
                              float x) {
   std::uint32_t left = end - at;
@@ -66,8 +69,8 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
   return at;
 }
 
-/// The strips behind one whose objects can touch its own, and the rows of each that blocks of the
-/// strip may yet reach. Blocks follow each other by their keys, so these only move forward.
+/// The neighbouring strips after one strip, and for each the first row that the strip's next blocks
+/// may reach. Blocks of a strip ascend by key, so these rows only advance.
 struct Sweeps {
   const StripView& strips;
   const NeighbourLines others;
@@ -78,15 +81,14 @@ struct Sweeps {
     for (int k = 0; k < others.count; ++k) from[k] = strips.start[others.line[k]];
   }
 
-  /// Adds the partners of a block that begins with row r and ends before `behind`, its strip before
-  /// `last`.
+  /// Adds the candidates of a block of rows [r, behind) in a strip that ends at `last`.
   template <typename Pairs>
   bool add_runs(std::uint32_t r, std::uint32_t behind, std::uint32_t last, Pairs& pairs) {
     const std::uint32_t axis = strips.axis[0].axis;
     const float low = pairs.low()[axis] - strips.axis[0].reach;
     const float high = pairs.high()[axis];
     if (!pairs.add_run(behind, run_end(strips, behind, last, high))) return false;
-    // Boxes may have drifted either way from their keys.
+    // Boxes may have drifted in either direction from their keys.
     const float passed = strips.key[r] - strips.drift - strips.axis[0].reach;
     for (int k = 0; k < others.count; ++k) {
       const std::uint32_t end = strips.start[others.line[k] + 1];

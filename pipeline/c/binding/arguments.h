@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads and checks the arguments of C functions, and converts results. Used by all files of the
+// binding.
 #include <winnow/c/core.h>
 #include <winnow/c/partition.h>
 #include <winnow/core/execution.h>
@@ -15,7 +17,7 @@
 
 namespace winnow::c {
 
-/// In both languages the numbers are the same.
+/// C and C++ use the same numbers.
 [[nodiscard]] inline winnow_status answer(Status status) noexcept {
   return static_cast<winnow_status>(status);
 }
@@ -25,13 +27,13 @@ template <typename... Pointers>
   return ((pointers != nullptr) && ...);
 }
 
-/// An array that may be null if it is empty.
+/// True for a valid array; it may be null if it is empty.
 template <typename T>
 [[nodiscard]] bool is_array(const T* first, std::size_t count) noexcept {
   return first != nullptr || count == 0;
 }
 
-/// One of the values of an enumeration that ends with `last`.
+/// Reads an enumerator, whose number may be at most `last`. Returns false if it is out of range.
 template <typename Choice>
 [[nodiscard]] bool read_choice(std::int64_t given, Choice last, Choice& choice) noexcept {
   if (given < 0 || given > static_cast<std::int64_t>(last)) return false;
@@ -39,21 +41,21 @@ template <typename Choice>
   return true;
 }
 
-/// No struct of the interface is larger than this, in whatever version.
+/// Upper bound on the size of any struct of the interface, in all versions.
 inline constexpr std::size_t kLargestStruct = 4096;
 
-/// The size that a struct had in the first version of the interface: one that grows keeps it here.
+/// Size of a struct in the first version of the interface. Specialize it when a struct grows.
 template <typename T>
 inline constexpr std::size_t kFirstSize = sizeof(T);
 
-/// Whether a struct that may grow is of any version, earlier or later.
+/// True if `size` is plausible for this struct in any version, earlier or later.
 template <typename T>
 [[nodiscard]] bool is_sized(const T* given) noexcept {
   return given != nullptr && given->size >= kFirstSize<T> && given->size <= kLargestStruct;
 }
 
-/// Reads a struct that may grow; null leaves `own`, all zeros, which stand for the defaults. What
-/// a later version has behind the end must be zero, which is what it is without it.
+/// Reads a struct that may grow. Null leaves `own` all zero, which means the defaults. Members of a
+/// later version, behind the end of `T`, must be zero: this means the behaviour without them.
 template <typename T>
 [[nodiscard]] bool read_sized(const T* given, T& own) noexcept {
   if (given == nullptr) return true;
@@ -67,7 +69,8 @@ template <typename T>
   return true;
 }
 
-/// Writes to one that `is_sized` as much as it has; what a later version has behind it is zero.
+/// Writes as much of the struct as the caller's `size` has room for (see `is_sized`). Bytes behind
+/// the end of `T` become zero.
 template <typename T>
 void write_sized(T own, T& out) noexcept {
   own.size = out.size;
@@ -80,7 +83,7 @@ void write_sized(T own, T& out) noexcept {
   return {bytes.used, bytes.reserved};
 }
 
-/// The footprint of a handle: that of what it holds, the handle itself, and its scratch.
+/// Writes the footprint of a handle: its content, the handle itself, and its scratch memory.
 template <typename Made>
 [[nodiscard]] winnow_status write_footprint(const Made* made, Footprint footprint,
                                             const Bytes& scratch, winnow_footprint* out) noexcept {
@@ -94,13 +97,13 @@ template <typename Made>
   return WINNOW_OK;
 }
 
-/// As much as a call lasts: the predicate leads to `given`.
+/// The returned filter refers to `given` and is valid only during the call.
 [[nodiscard]] Filter filter_of(const winnow_filter* given) noexcept;
 
-/// WINNOW_EXECUTION_DEFAULT leaves `execution` as it is.
+/// WINNOW_EXECUTION_DEFAULT leaves `execution` unchanged.
 [[nodiscard]] bool read_execution(const winnow_execution& given, Execution& execution) noexcept;
 
-/// Null is `execution` as it is.
+/// Null leaves `execution` unchanged.
 [[nodiscard]] inline bool read_execution(const winnow_execution* given,
                                          Execution& execution) noexcept {
   return given == nullptr || read_execution(*given, execution);

@@ -1,4 +1,4 @@
-// The caller's buffers of what partitions answer.
+// C binding of the result buffers of partitions (buffer functions of partition.h).
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"

@@ -10,13 +10,14 @@
 
 namespace winnow::c {
 
-/// A caller's functions as a memory resource; without any, the default memory.
+/// Memory resource that calls the functions of a winnow_memory; without functions, the default
+/// memory.
 class CallersMemory final : public std::pmr::memory_resource {
  public:
   explicit CallersMemory(const winnow_memory* given) noexcept {
     if (given != nullptr) functions_ = *given;
   }
-  /// Null, or both functions.
+  /// True for null and for a struct with both functions.
   [[nodiscard]] static bool is_good(const winnow_memory* given) noexcept {
     return given == nullptr || (given->allocate != nullptr && given->deallocate != nullptr);
   }
@@ -32,8 +33,8 @@ class CallersMemory final : public std::pmr::memory_resource {
   std::pmr::memory_resource* otherwise_ = default_memory();
 };
 
-/// What every pointer of the C interface leads to begins with: its own copy of the memory that it
-/// lies in and that all it holds comes from.
+/// Base of all handles of the C interface: a copy of the memory from which the handle and all its
+/// content are allocated.
 struct Handle {
   explicit Handle(const CallersMemory& given) noexcept : memory(given) {}
   Handle(const Handle&) = delete;
@@ -42,14 +43,14 @@ struct Handle {
   CallersMemory memory;
 };
 
-/// Options of what is to lie in that memory.
+/// Returns the options with their memory set.
 template <typename Options>
 [[nodiscard]] Options in(Options options, CallersMemory* memory) noexcept {
   options.memory = memory;
   return options;
 }
 
-/// Makes what `out` is to lead to.
+/// Allocates a handle and writes it to `out`.
 template <typename Made, typename... Arguments>
 [[nodiscard]] winnow_status create(const winnow_memory* memory, Made** out,
                                    Arguments&&... arguments) noexcept {

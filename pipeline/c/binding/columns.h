@@ -6,13 +6,13 @@
 
 namespace winnow::c {
 
-/// Null where there is nothing.
+/// Returns null for an empty column.
 template <typename T>
 [[nodiscard]] const T* column(std::span<const T> values) noexcept {
   return values.empty() ? nullptr : values.data();
 }
 
-/// Contact points where they lie.
+/// Sets the columns of contact points, without a copy.
 template <typename Shown>
 void show_points(const ContactColumns& points, Shown& shown) noexcept {
   if (points.size() == 0) return;

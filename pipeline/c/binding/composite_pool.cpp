@@ -1,4 +1,4 @@
-// Shapes made of many: meshes, height fields, compounds.
+// C binding of CompositePool: meshes, height fields, compounds (shapes.h).
 
 #include <winnow/c/shapes.h>
 
@@ -33,7 +33,7 @@ namespace {
   return true;
 }
 
-/// Gives the id of what was added, if it was.
+/// Writes the id of an added shape unless the call failed.
 [[nodiscard]] winnow_status added(Status status, ShapeId id, winnow_shape_id* out) noexcept {
   if (status == Status::ok) *out = id.bits;
   return answer(status);

@@ -1,4 +1,4 @@
-// Contacts in groups.
+// C binding of islands and colours (contact_groups.h).
 
 #include <winnow/c/contact_groups.h>
 

@@ -1,4 +1,4 @@
-// What a scene finds, as columns, and the room for it.
+// C binding of Contacts: columns, events and reserved memory (scene.h).
 
 #include <winnow/c/scene.h>
 

@@ -1,4 +1,4 @@
-// Status, version, instruction sets, and what all calls read alike.
+// C binding of status, version and instruction sets (core.h), and arguments shared by all calls.
 
 #include <winnow/c/core.h>
 

@@ -7,7 +7,7 @@
 
 namespace winnow::c {
 
-/// Draws with a caller's functions.
+/// Draws with the callbacks of a winnow_debug_draw.
 class Drawing final : public DebugDraw {
  public:
   explicit Drawing(const winnow_debug_draw& draw) noexcept;

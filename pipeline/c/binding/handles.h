@@ -1,6 +1,6 @@
 #pragma once
 
-// What the pointers of the C interface lead to.
+// Definitions of the handles of the C interface.
 
 #include "pipeline/c/binding/callers_memory.h"
 
@@ -33,7 +33,7 @@
 struct winnow_pair_buffer : winnow::c::Handle {
   using Handle::Handle;
   winnow::PairBuffer value{&memory};
-  winnow::Column<float> room{&memory};  ///< boxes of double that it was asked about
+  winnow::Column<float> room{&memory};  ///< input boxes, converted from double
 };
 
 struct winnow_pair_events : winnow::c::Handle {
@@ -54,8 +54,8 @@ struct winnow_overlap_buffer : winnow::c::Handle {
   winnow::OverlapBuffer value{&memory};
 };
 
-/// A partition of its own, or a view of one of a scene, whose own names no structure and refuses
-/// every change.
+/// Owns a partition, or is a view of a partition of a scene. In a view, `value` has no structure
+/// and therefore refuses every change; `asked` points to the scene's partition.
 struct winnow_partition : winnow::c::Handle {
   explicit winnow_partition(const winnow::c::CallersMemory& given) noexcept : Handle(given) {}
   winnow_partition(const winnow::c::CallersMemory& given, winnow::StructureKind structure,
@@ -64,13 +64,13 @@ struct winnow_partition : winnow::c::Handle {
 
   winnow::Partition value{winnow::StructureKind{}};
   const winnow::Partition* asked = &value;
-  winnow::Column<float> room{&memory};  ///< boxes of double that come or move
+  winnow::Column<float> room{&memory};  ///< input boxes, converted from double
 };
 
 struct winnow_shape_pool : winnow::c::Handle {
   using Handle::Handle;
   winnow::ShapePool value{&memory};
-  winnow::Column<double> room{&memory};  ///< points of hulls
+  winnow::Column<double> room{&memory};  ///< input points of hulls
 };
 
 struct winnow_composite_pool : winnow::c::Handle {
@@ -100,13 +100,14 @@ struct winnow_impact_result : winnow::c::Handle {
 struct winnow_contacts : winnow::c::Handle {
   using Handle::Handle;
   winnow::Contacts value{&memory};
-  /// What the library looks up, as columns: client data of a and of b, and the part of what has
-  /// none for every manifold.
+  /// Columns that the library computes on access: client data of a and of b, and a column of
+  /// kWholeShape for each manifold, used if the contacts have no column of parts.
   winnow::Column<winnow::ClientData> data[2]{winnow::Column<winnow::ClientData>(&memory),
                                              winnow::Column<winnow::ClientData>(&memory)};
   winnow::Column<std::uint32_t> whole{&memory};
 
-  /// To be called when `value` was filled. Empty, and out_of_memory, if memory is refused.
+  /// Fills these columns; call it whenever `value` was filled. If memory is refused, clears
+  /// everything and returns out_of_memory.
   [[nodiscard]] winnow::Status look_up() noexcept;
 };
 
@@ -124,7 +125,7 @@ struct winnow_scene : winnow::c::Handle {
 
   winnow::Scene value;
   winnow::Column<winnow::Pose> room{&memory};
-  winnow_partition sets[winnow::kMotions];  ///< views
+  winnow_partition sets[winnow::kMotions];  ///< views of the partitions
 };
 
 struct winnow_scene_queries : winnow::c::Handle {
@@ -132,7 +133,7 @@ struct winnow_scene_queries : winnow::c::Handle {
       : Handle(given), value(scene, &memory) {}
 
   winnow::SceneQueries value;
-  winnow::Column<winnow::ShapeRay> room{&memory};  ///< rays of float
+  winnow::Column<winnow::ShapeRay> room{&memory};  ///< input rays, converted from float
 };
 
 struct winnow_scene_sweep : winnow::c::Handle {

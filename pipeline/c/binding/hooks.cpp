@@ -1,4 +1,4 @@
-// Hooks of C behind those of C++, whose types are others.
+// Forwards the C++ hooks to the hooks set in C, whose argument types differ.
 
 #include <winnow/c/hooks.h>
 #include <winnow/core/hooks.h>
@@ -14,7 +14,7 @@ namespace {
 std::atomic<winnow_stage_hook> stage_hook{nullptr};
 std::atomic<winnow_log_hook> log_hook{nullptr};
 
-/// Hooks of the stages of a thread that are under way: each ends with the one that it began with.
+/// Hooks of the stages that a thread is in: each stage ends with the hook that it began with.
 struct StagesUnderWay {
   static constexpr std::size_t kMost = 32;
   winnow_stage_hook hook[kMost];

@@ -1,4 +1,4 @@
-// Pairs of convex shapes.
+// C binding of NarrowPhase and its results (narrow_phase.h).
 
 #include <winnow/c/narrow_phase.h>
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Options of C as C++ has them. Each of these is given the defaults of C++, which stay if C gives
-// zeros or null. False for a struct of a wrong size and for choices that are none.
+// Conversion of C options to C++ options. Each function is passed options with the C++ defaults,
+// which stay if the C struct is null or its members are zero. Returns false for a wrong `size` or
+// an invalid choice.
 
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
@@ -22,7 +23,7 @@
 
 namespace winnow::c {
 
-/// The memory is null for that of C++.
+/// Sets `memory` to null for the default memory of C++.
 [[nodiscard]] bool read_options(const winnow_scene_options* given, const winnow_memory*& memory,
                                 SceneOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_partition_options* given, const winnow_memory*& memory,
@@ -32,14 +33,14 @@ namespace winnow::c {
                                 NarrowOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_impact_options* given,
                                 ImpactOptions& options) noexcept;
-/// `count` bodies move.
+/// `count` is the number of moving bodies.
 [[nodiscard]] bool read_options(const winnow_sweep_options* given, std::size_t count,
                                 SweepOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_mesh_options* given, MeshOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_debug_draw_options* given,
                                 DebugDrawOptions& options) noexcept;
 
-/// Takes a number that is given; 0 leaves the default.
+/// Sets `number` unless `given` is 0, which means the default.
 template <typename Number>
 void take_given(Number given, Number& number) noexcept {
   if (given != Number{}) number = given;

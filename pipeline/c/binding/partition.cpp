@@ -1,4 +1,4 @@
-// A partition: what it is made with, its objects, and how it stands.
+// C binding of Partition: options, objects and state. Queries are in partition_questions.cpp.
 
 #include <winnow/c/partition.h>
 
@@ -73,7 +73,7 @@ namespace {
                                 : Entries::listed({given.numbers, given.count});
 }
 
-/// K-DOPs of the K that is asked for, if there is one: calls `use` with an array of them.
+/// Calls `use` with the array as K-DOPs of compile-time K, if `k` is a valid one.
 template <typename Use>
 [[nodiscard]] Status with_kdops(std::uint32_t k, const float* kdops, std::size_t count,
                                 Use&& use) noexcept {

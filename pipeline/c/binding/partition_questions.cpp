@@ -1,4 +1,4 @@
-// What a partition is asked: pairs, casts, regions, neighbours, a drawing.
+// C binding of the queries of Partition: pairs, casts, regions, nearest objects, debug drawing.
 
 #include <winnow/c/partition.h>
 
@@ -77,7 +77,7 @@ namespace {
   }
 }
 
-/// Columns that rays are answered in.
+/// Converts the columns that receive hits.
 [[nodiscard]] HitColumns columns_of(const winnow_hit_columns& given) noexcept {
   return {twin(given.key), given.data, given.t};
 }

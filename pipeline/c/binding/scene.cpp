@@ -1,4 +1,4 @@
-// A scene: its bodies, and how it stands.
+// C binding of Scene: options, bodies and state. Contacts are in contacts.cpp.
 
 #include <winnow/c/scene.h>
 
@@ -44,7 +44,7 @@ winnow_status winnow_scene_create(const winnow_shape_pool* shapes,
   winnow_scene* made = nullptr;
   const winnow_status status = create(memory, &made, shapes->value, read);
   if (status != WINNOW_OK) return status;
-  // What a scene was made of it tells when the first body comes.
+  // A Scene reports invalid options or refused memory only in `add`: test with an empty one.
   const winnow::Status stands = made->value.add({}, std::span<winnow::Key>());
   if (stands == winnow::Status::ok) {
     *scene = made;

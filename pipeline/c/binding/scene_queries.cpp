@@ -1,4 +1,4 @@
-// Questions to the exact shapes of a scene.
+// C binding of SceneQueries (scene_queries.h).
 
 #include <winnow/c/scene_queries.h>
 
@@ -19,7 +19,7 @@ namespace {
           {given.point[0], given.point[1], given.point[2]}};
 }
 
-/// Asks with a span, which is shown if there is an answer.
+/// Runs a query that fills a span, and returns the span to C if it succeeds.
 template <typename OfCpp, typename OfC, typename Ask>
 [[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count, Ask&& ask) noexcept {
   std::span<const OfCpp> found;
@@ -28,7 +28,7 @@ template <typename OfCpp, typename OfC, typename Ask>
   return answer(status);
 }
 
-/// Asks with a batch of rays, if they can be read.
+/// Runs a query with a batch of rays, if the batch is valid.
 template <typename Ask>
 [[nodiscard]] winnow_status ask_rays(winnow_scene_queries* queries,
                                      const winnow_shape_ray_batch* rays, Ask&& ask) noexcept {

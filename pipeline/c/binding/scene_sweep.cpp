@@ -1,4 +1,4 @@
-// Impacts of bodies of a scene that move.
+// C binding of SceneSweep (scene_sweep.h).
 
 #include <winnow/c/scene_sweep.h>
 

@@ -1,4 +1,4 @@
-// Sensors of a scene.
+// C binding of Sensors (sensors.h).
 
 #include <winnow/c/sensors.h>
 

@@ -1,4 +1,4 @@
-// Convex shapes.
+// C binding of ShapePool: convex shapes and rays against them (shapes.h).
 
 #include <winnow/c/shapes.h>
 
@@ -77,7 +77,7 @@ namespace {
   }
 }
 
-/// The members of a shape of C, which are those of C++ in the same order.
+/// Copies the members of a C++ shape to the C struct, which has them in the same order.
 template <typename Shape, typename Member>
 void write(const Shape& shape, Member& member) noexcept {
   static_assert(sizeof(Shape) == sizeof(Member));

@@ -1,4 +1,4 @@
-// What is saved as bytes and loaded again.
+// C binding of saving and loading (snapshots.h).
 
 #include <winnow/c/snapshots.h>
 
@@ -14,7 +14,7 @@ struct winnow_snapshot : winnow::c::Handle {
 namespace winnow::c {
 namespace {
 
-/// Takes what save(column) appends, if it can be had.
+/// Replaces the snapshot by the bytes that `save(column)` appends, if it succeeds.
 template <typename Save>
 [[nodiscard]] winnow_status save_into(winnow_snapshot& snapshot, Save&& save) noexcept {
   Column<std::byte> fresh(snapshot.value.memory());
@@ -23,7 +23,7 @@ template <typename Save>
   return answer(status);
 }
 
-/// Calls load(bytes) with an array that is one.
+/// Calls `load(bytes)` if the array is valid.
 template <typename Load>
 [[nodiscard]] winnow_status load_from(const std::uint8_t* bytes, std::size_t count,
                                       Load&& load) noexcept {

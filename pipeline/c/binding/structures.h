@@ -5,9 +5,9 @@
 
 namespace winnow::c {
 
-/// One that names no structure for what is none.
+/// Returns a kind without a structure if `given` is invalid.
 [[nodiscard]] StructureKind structure_of(winnow_structure_kind given) noexcept;
-/// A structure of -1 for one that names none.
+/// Returns structure -1 for a kind without a structure.
 [[nodiscard]] winnow_structure_kind structure_of(StructureKind kind) noexcept;
 
 }  // namespace winnow::c

@@ -1,4 +1,4 @@
-// Threads of oneTBB in a number that the caller chooses, as a job system.
+// C binding of winnow_threads: a oneTBB arena with a given number of threads, as a job system.
 
 #include <winnow/c/core.h>
 

@@ -1,4 +1,4 @@
-// Motions, and when what they move meets.
+// C binding of rigid motions and times of impact (time_of_impact.h).
 
 #include <winnow/c/time_of_impact.h>
 

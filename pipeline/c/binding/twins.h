@@ -1,6 +1,7 @@
 #pragma once
 
-// Structs of C that have the bytes of those of C++, so that arrays pass without a copy.
+// C structs whose layout equals the layout of a C++ struct, so that arrays pass without a copy. The
+// macros check the layouts at compile time.
 
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
@@ -39,7 +40,7 @@
 
 namespace winnow::c {
 
-/// Whether a struct of C and one of C++ have the same bytes.
+/// True if a C struct and a C++ struct have the same layout.
 template <typename OfC, typename OfCpp>
 inline constexpr bool kAreTwins = std::is_same_v<OfC, OfCpp>;
 
@@ -144,13 +145,13 @@ WINNOW_TWIN_MEMBERS(winnow_rigid_motion, RigidMotion, turn);
 #undef WINNOW_ARE_TWINS
 #undef WINNOW_TWIN_MEMBERS
 
-/// In C an id is its number.
+/// In C, an id is a plain number.
 static_assert(sizeof(winnow_shape_id) == sizeof(ShapeId));
 [[nodiscard]] inline const ShapeId* shape_ids(const winnow_shape_id* ids) noexcept {
   return reinterpret_cast<const ShapeId*>(ids);
 }
 
-/// In C the axes are one after another, in C++ the columns of a matrix.
+/// In C the axes are consecutive rows; in C++ they are the columns of a matrix.
 [[nodiscard]] inline OrientedBox oriented_box_of(const winnow_oriented_box& given) noexcept {
   OrientedBox box;
   box.center = Vec3f(given.center);
@@ -159,13 +160,13 @@ static_assert(sizeof(winnow_shape_id) == sizeof(ShapeId));
   return box;
 }
 
-/// An array of C as C++ takes it.
+/// Returns a C array as a span of the C++ struct.
 template <typename T>
 [[nodiscard]] auto twins(T* first, std::size_t count) noexcept {
   return std::span(twin(first), count);
 }
 
-/// An array of C++ as C is shown it.
+/// Returns a C++ array as an array of the C struct.
 template <typename T, typename OfC>
 void show(std::span<const T> values, const OfC** first, std::size_t* count) noexcept {
   static_assert(kAreTwins<OfC, T>);

@@ -1,3 +1,5 @@
+// Conversion of the caller's columns to views of the engine; see views.h.
+
 #include "pipeline/c/binding/views.h"
 
 #include <winnow/core/rounding.h>
@@ -40,8 +42,8 @@ template <typename Number, std::size_t kColumns>
                                  : to_double(*reinterpret_cast<const float*>(at));
 }
 
-/// Calls `read(i)` for each entry of `count` that is meant. Numbers that are none are left to who
-/// refuses them.
+/// Calls `read(i)` for each of the selected entries below `count`. Skips indices that are out of
+/// range: the partition refuses them later.
 template <typename Read>
 void for_entries(const Entries* entries, std::size_t count, Read&& read) noexcept {
   if (entries == nullptr) {
@@ -58,7 +60,7 @@ void for_entries(const Entries* entries, std::size_t count, Read&& read) noexcep
   }
 }
 
-/// Whether poses lie one after another as those of C++ do.
+/// True if the poses are contiguous in the layout of the C++ struct.
 [[nodiscard]] bool are_packed(const winnow_pose_view& given) noexcept {
   if (given.position_number != WINNOW_DOUBLE || given.orientation_number != WINNOW_DOUBLE ||
       given.position_stride != sizeof(Pose) || given.orientation_stride != sizeof(Pose)) {

@@ -15,21 +15,21 @@
 
 namespace winnow::c {
 
-// Columns of a caller as the engine reads them: where they lie, if they are of the numbers that it
-// keeps, and else from `room`, which they are brought into. `invalid_argument` for columns that are
-// missing, `out_of_memory`.
+// Conversion of the caller's columns to views of the engine. Columns that have the number type of
+// the engine are used without a copy; others are converted into `room`. `invalid_argument` if a
+// column is missing; `out_of_memory`.
 
-/// Boxes of double are rounded outward; of some entries alone, the others are not read.
+/// Boxes in double are rounded outward. If `entries` is not null, only those entries are read.
 [[nodiscard]] Status read_boxes(const winnow_box_view* given, const Entries* entries,
                                 Column<float>& room, BoxView& boxes) noexcept;
 [[nodiscard]] Status read_poses(const winnow_pose_view* given, Column<Pose>& room,
                                 PoseView& poses) noexcept;
-/// The same one after another.
+/// Returns the poses as a contiguous array.
 [[nodiscard]] Status read_poses(const winnow_pose_view* given, Column<Pose>& room,
                                 std::span<const Pose>& poses) noexcept;
-/// Float and double are both read where they lie.
+/// Float and double are both used without a copy.
 [[nodiscard]] Status read_points(const winnow_point_view* given, PointView& points) noexcept;
-/// One after another, in double.
+/// Returns the points as a contiguous array of double.
 [[nodiscard]] Status read_points(const winnow_point_view* given, Column<double>& room,
                                  std::span<const Eigen::Vector3d>& points) noexcept;
 [[nodiscard]] Status read_triangles(const winnow_index_view* given, IndexView& triangles) noexcept;

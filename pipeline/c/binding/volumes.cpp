@@ -1,4 +1,4 @@
-// Volumes that are made of what is in double, or of a camera; and what draws.
+// C binding of float volumes made from double or from a camera, and of debug drawing.
 
 #include <winnow/c/volumes.h>
 

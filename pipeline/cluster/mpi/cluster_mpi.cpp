@@ -1,3 +1,6 @@
+// Transport over MPI (make_mpi_transport in cluster_mpi.h). Each collective step begins with an
+// exchange of headers, by which the ranks compare what they do; every wait has a time limit.
+
 #include <winnow/pipeline/cluster_mpi.h>
 
 #include "core/memory/guarded.h"
@@ -20,16 +23,16 @@ namespace winnow {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// What ranks do in a step; the same on all.
+/// The step that a rank takes; must be the same on all ranks.
 enum class Step : std::uint64_t { exchange, reduce, arrive, cut };
-/// What a rank tells another one at the beginning of a step.
+/// Message from each rank to each other rank at the beginning of a step.
 struct Header {
-  std::uint64_t step = 0;                // and of which call
+  std::uint64_t step = 0;                // call and step
   std::array<std::uint64_t, 4> sizes{};  // bytes of a parcel's columns
 };
 constexpr int kHeaderWords = sizeof(Header) / sizeof(std::uint64_t);
 
-/// What a thread of its own works on, which outlives the call that gave it.
+/// Task of the thread that calls Zoltan. It may outlive the call that started it.
 struct CutTask {
   std::vector<Aabb> boxes;
   std::vector<std::uint32_t> works;
@@ -44,8 +47,7 @@ struct CutTask {
   }
 };
 
-/// The columns of a parcel where they lie, as MPI describes them: in pieces whose bytes an int can
-/// count.
+/// MPI datatype of the columns of a parcel, without a copy: pieces whose sizes fit in an int.
 class ColumnsType {
  public:
   void add(const void* column, std::uint64_t bytes) {
@@ -57,7 +59,7 @@ class ColumnsType {
       lengths_.push_back(static_cast<int>(std::min(kPiece, bytes - done)));
     }
   }
-  /// To be freed by MPI_Type_free.
+  /// The caller frees the type with MPI_Type_free.
   [[nodiscard]] MPI_Datatype make() const {
     MPI_Datatype type = MPI_DATATYPE_NULL;
     MPI_Type_create_hindexed(static_cast<int>(places_.size()), lengths_.data(), places_.data(),
@@ -75,7 +77,7 @@ class ColumnsType {
   return std::accumulate(header.sizes.begin(), header.sizes.end(), std::uint64_t{0});
 }
 
-/// Words of 8 bytes that a column takes where it is received.
+/// Number of 8-byte words that a received column occupies.
 [[nodiscard]] std::uint64_t words_of(std::uint64_t bytes) noexcept {
   return (bytes + 7) / 8;
 }
@@ -116,18 +118,18 @@ class MpiTransport final : public Transport {
   Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override;
 
  private:
-  /// Waits for the first `count` of the requests that were made; fails once they take too long.
+  /// Waits for the first `count` requests; fails after the time limit.
   [[nodiscard]] Status wait_for(std::size_t count);
-  /// Waits for all of them.
+  /// Waits for all requests.
   [[nodiscard]] Status finish();
-  /// Begins a step: tells the other ranks what they will receive.
+  /// Begins a step: sends headers with the sizes of the parcels.
   void start(Step step, std::span<const Parcel> sent = {});
-  /// Waits for what they tell, the first request; fails unless all take the same step.
+  /// Waits for the headers, the first request; fails unless all ranks take the same step.
   [[nodiscard]] Status meet();
-  /// A whole step in which nothing is sent.
+  /// A whole step in which no parcels are sent.
   [[nodiscard]] Status meet(Step step);
   [[nodiscard]] Status cut_in_time(const CutWork& work, std::span<RegionCut> cuts);
-  /// MPI may still write to what a step that failed was to receive.
+  /// After a failed step MPI may still write to the receive buffers: leaks them.
   void leave_buffers() noexcept;
   void start_receiving();
   void start_sending(const Parcel& parcel);
@@ -141,12 +143,12 @@ class MpiTransport final : public Transport {
   std::uint32_t rank_ = 0;
   std::uint32_t ranks_ = 1;
   bool failed_ = false;
-  bool has_threads_ = false;  // other threads than the main one may call MPI
+  bool has_threads_ = false;  // MPI allows calls from other threads than the main one
   std::uint32_t call_ = 0;
   std::vector<MPI_Request> requests_;
   std::vector<Header> out_;           // by rank
   std::vector<Header> in_;            // by rank
-  std::vector<std::uint64_t> words_;  // what is received or summed
+  std::vector<std::uint64_t> words_;  // received columns, or sums
   std::vector<Parcel> parcels_;
 };
 
@@ -157,7 +159,7 @@ Status MpiTransport::wait_for(std::size_t count) {
     if (done != 0) break;
     const auto waited = Clock::now() - start;
     failed_ = failed_ || waited > limit_;
-    // Where there are more ranks than cores, those that wait must not keep others from computing.
+    // If there are more ranks than cores, a waiting rank must not use up the time of others.
     if (waited < std::chrono::milliseconds(1)) {
       std::this_thread::yield();
     } else {
@@ -256,7 +258,7 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
     }
   }
   meanwhile();
-  // What was sent may wait for a rank that is still to ask for it.
+  // The sends may not complete before the receiver has posted its receives.
   const Status status = meet();
   if (status != Status::ok) return status;
   start_receiving();
@@ -286,8 +288,8 @@ Status MpiTransport::reduce(std::span<std::uint64_t> sums, std::span<std::uint64
   return Status::ok;
 }
 
-// Zoltan waits for others as long as it takes. After the second step each rank has seen that all
-// have arrived: a rank that comes too late, or does something else, is seen before.
+// Zoltan has no time limit. After the second step each rank has seen that all ranks have arrived,
+// so a rank that is late or makes another call is detected before.
 Status MpiTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
   if (failed_) return Status::communication_failed;
   for (const Step step : {Step::arrive, Step::cut}) {
@@ -300,7 +302,7 @@ Status MpiTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cut
   return status;
 }
 
-// On a thread that is left behind if it takes too long.
+// Calls Zoltan on a thread, which is abandoned if it takes too long.
 Status MpiTransport::cut_in_time(const CutWork& work, std::span<RegionCut> cuts) {
   const auto task = std::make_shared<CutTask>();
   task->boxes.assign(work.boxes.begin(), work.boxes.end());

@@ -1,6 +1,6 @@
 #pragma once
 
-// MPI's interface for C alone.
+// Include only the C interface of MPI.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>

@@ -1,3 +1,5 @@
+// Cuts of space by Zoltan: see zoltan_cuts.h. Called by cluster_mpi.cpp.
+
 #include "pipeline/cluster/mpi/zoltan_cuts.h"
 
 #include "pipeline/cluster/regions.h"
@@ -14,7 +16,7 @@
 namespace winnow {
 namespace {
 
-/// What Zoltan asks for: scaled centres, and works.
+/// Data for Zoltan's callbacks: scaled centres, and works.
 struct Asked {
   const CutWork& work;
   std::array<double, 3> scale;
@@ -54,7 +56,7 @@ void places_of(void* data, int, int, int count, ZOLTAN_ID_PTR, ZOLTAN_ID_PTR loc
   *error = ZOLTAN_OK;
 }
 
-/// One over the mean extent on each axis; 1 where there is none.
+/// Computes 1 / mean extent on each axis; 1 if that is zero or not finite.
 Status measure_scale(MPI_Comm communicator, const CutWork& work, std::array<double, 3>& scale) {
   double sums[4] = {0.0, 0.0, 0.0, 0.0};
   for (const Aabb& box : work.boxes) {
@@ -74,7 +76,7 @@ Status measure_scale(MPI_Comm communicator, const CutWork& work, std::array<doub
   return Status::ok;
 }
 
-/// The boxes that Zoltan gave ranks, put back into the tree that they come from.
+/// Reconstructs the tree of cuts from the boxes that Zoltan returns for the ranks.
 class TreeOfBoxes {
  public:
   struct Box {
@@ -85,7 +87,7 @@ class TreeOfBoxes {
   TreeOfBoxes(std::vector<Box> boxes, const std::array<double, 3>& scale, std::span<RegionCut> cuts)
       : boxes_(std::move(boxes)), scale_(scale), cuts_(cuts) {}
 
-  /// Cuts some ranks apart; false where no plane does.
+  /// Separates some ranks by cuts; returns false if no plane separates them.
   bool cut(std::span<std::uint32_t> ranks, std::int32_t& side) {
     if (ranks.size() == 1) {
       side = ~static_cast<std::int32_t>(ranks.front());
@@ -105,7 +107,8 @@ class TreeOfBoxes {
   }
 
  private:
-  /// Sorts ranks along an axis; how many lie below the first plane between them, 0 without one.
+  /// Sorts ranks along an axis. Returns how many are below the first plane that separates them, or
+  /// 0 if there is none.
   std::size_t first_below(std::span<std::uint32_t> ranks, std::uint32_t axis,
                           RegionCut& cut) const {
     std::sort(ranks.begin(), ranks.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -131,7 +134,7 @@ class TreeOfBoxes {
   std::size_t made_ = 0;
 };
 
-/// Zoltan's own state, which ends with this.
+/// Owns Zoltan's state.
 class Zoltan {
  public:
   explicit Zoltan(MPI_Comm communicator) : state_(Zoltan_Create(communicator)) {}

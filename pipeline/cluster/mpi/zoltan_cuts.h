@@ -8,9 +8,9 @@
 
 namespace winnow {
 
-/// Cuts by Zoltan's recursive coordinate bisection, as a tree whose leaves are ranks. On each axis
-/// centres are measured in mean extents of boxes, so that space is cut where few boxes are cut in
-/// two.
+/// Cuts space by Zoltan's recursive coordinate bisection, and returns the cuts as a tree whose
+/// leaves are ranks. On each axis, centres are scaled by the mean extent of the boxes, so that cuts
+/// intersect few boxes.
 [[nodiscard]] Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work,
                                    std::span<RegionCut> cuts);
 

@@ -1,7 +1,7 @@
-// Cylinders, cones, ellipsoids and tapered capsules against everything but spheres and half-spaces,
-// and a program's own convex sets against everything but half-spaces.
-// The code is one for all kinds of pairs, which a job tells: a branch that goes the same way for
-// all of its pairs.
+// The kernels of cylinders, cones, ellipsoids and tapered capsules with everything except spheres
+// and half-spaces, and of user shapes with everything except half-spaces. All pair kinds share one
+// code, which branches by the kinds of the job's shapes; the branch is the same for all pairs of a
+// job.
 
 #include "pipeline/kernels/curved/curved_answers.wide.h"
 

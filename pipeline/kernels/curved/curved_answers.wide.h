@@ -1,7 +1,8 @@
 #pragma once
 
-// Jobs of the curved kernels: pairs are placed, searched in lanes of double and finished one by
-// one.
+// Runs the jobs of the curved kernels: pairs are placed, searched by GJK in lanes of double
+// (curved_search.wide.h), and finished one at a time (curved_depth, parallel_depth, curved_patch).
+// Level boolean first tries the faster overlap tests of hull/one_verdict.wide.h.
 
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
@@ -13,8 +14,9 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// Finds the closest points of a pair once more in the triangle that the search ended in, and what
-/// bounds their distance from below; for pairs that rounding has kept the search from ending with.
+/// Recomputes the closest points of a pair in the triangle that the search ended in, and a lower
+/// bound of their distance. For pairs for which rounding has kept the bounds of the search from
+/// closing.
 static inline void end_in_triangle(CurvedPair& pair) {
   double weight[3];
   if (pair.count != 3 || !weigh_thin_triangle(pair.difference, weight)) return;
@@ -41,7 +43,7 @@ class CurvedAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
-      // Float is sure about most.
+      // Float decides most pairs.
       return hull::answer_in_doubt<CurvedAnswers>(job, verdicts(job));
     } else {
       CurvedAnswers answers(job);
@@ -55,11 +57,11 @@ class CurvedAnswers {
 
  private:
   static constexpr std::uint32_t kChunk = 64;
-  /// Beyond all distances that occur, scaled.
+  /// Scaled; larger than any distance that occurs.
   static constexpr double kFarthest = 1e10;
-  /// What bounds of a distance may differ by, over it, before they are looked at again.
+  /// If the bounds of a distance differ by more than this fraction of it, they are recomputed.
   static constexpr double kLoose = 1e-10;
-  /// The widest bound of an answer, over the sizes, and that of a program's own sets.
+  /// The largest error bound of an answer, relative to the sizes, and the same for user shapes.
   static constexpr double kCertified = 1e-9;
   static constexpr double kCertifiedOwn = 4e-7;
 
@@ -68,7 +70,7 @@ class CurvedAnswers {
 
   explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
 
-  /// Answers what is left; returns how many are uncertified in all.
+  /// Answers the remaining pairs; returns the total number of uncertified pairs.
   std::uint32_t finish_taken() {
     answer_taken();
     return uncertified_;
@@ -91,8 +93,8 @@ class CurvedAnswers {
     taken_ = 0;
   }
 
-  /// Rounding, and points of a program's own set that contradict each other, may exchange bounds:
-  /// by how much says how far either is wrong.
+  /// Rounding, and user shapes whose points contradict each other, may make the lower bound exceed
+  /// the upper one. The size of the difference bounds the error in both cases.
   static double doubt_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
@@ -132,7 +134,7 @@ class CurvedAnswers {
     if (pair.upper - pair.lower > kLoose * pair.upper) end_in_triangle(pair);
     const double error =
         doubt_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding);
-    // An error of the length is one of the direction: this keeps it below 0.01 degrees.
+    // An error of the length implies an error of the direction: this keeps it below 0.01 degrees.
     if (!(error <= 1e-8 * pair.upper)) return false;
     double normal[3];
     for (int k = 0; k < 3; ++k) normal[k] = -pair.gap[k] / pair.upper;
@@ -174,11 +176,11 @@ class CurvedAnswers {
                    const double* point) {
     const double error = doubt_between(depth.lower(), depth.upper()) +
                          2.0 * kRoundingError * (pair.size + pair.rounding);
-    // The cores' sign is that of the polytope.
+    // The cores overlap if the depth is certainly positive.
     return error < depth.upper() && write(pair, -depth.upper(), error, normal, point);
   }
 
-  /// From the distance of the cores, all scaled.
+  /// Writes an answer from the distance of the cores; all lengths are scaled.
   bool write(const CurvedPair& pair, double apart, double error, const double* normal,
              const double* point) {
     const double distance = apart - pair.rounding;
@@ -212,8 +214,8 @@ class CurvedAnswers {
     }
   }
 
-  /// The point on the surface of body a: on the first, or where swapped on the second, `distance`
-  /// farther.
+  /// The point on the surface of body a: the point on the first, or, if swapped, the point on the
+  /// second, `distance` farther.
   static void place_point(const CurvedPair& pair, const double* normal, const double* core,
                           double distance, double* place) {
     const double reach = pair.first.rounding + (pair.swapped ? distance : 0.0);
@@ -249,7 +251,7 @@ class CurvedAnswers {
   CurvedDepth depth_;
 };
 
-/// Of every kind of pair alike, which a job tells.
+/// The kernels of all pair kinds that this file serves; the job's shapes determine the kind.
 inline constexpr NarrowKernels kCurvedKernels = {
     {CurvedAnswers<0>::run, CurvedAnswers<1>::run, CurvedAnswers<2>::run}};
 

@@ -1,13 +1,15 @@
 #pragma once
 
-// Penetration depth of two cores: a polytope inside of their difference grows where it is nearest
-// to the origin (van den Bergen, "Proximity queries and penetration depth computation on 3D game
-// objects", 2001). Its nearest face bounds the depth from below, the support along the face's
-// normal from above. Where the difference is smooth these come together slowly: there local minima
-// are found that are sure for some way around, and faces near which only such directions are left
-// are closed. The search ends when no open face is nearer than the least of the minima. Of a
-// program's own sets nothing is known but their points: around a minimum that these tell of nothing
-// is sure, and the polytope grows there until it proves the depth.
+// Penetration depth of two cores by the expanding polytope algorithm: a polytope inside their
+// Minkowski difference grows at its face nearest to the origin (van den Bergen, "Proximity queries
+// and penetration depth computation on 3D game objects", 2001). The nearest face bounds the depth
+// from below, the support along its normal from above.
+//
+// If the difference is smooth, these bounds converge slowly. The search then computes local minima
+// that are certain for a range of directions around them (curved_minimum.wide.h), and closes the
+// faces that have only such directions near them. It ends when no open face is nearer than the
+// smallest minimum. User shapes provide only support points: no range around a minimum is certain
+// (curved_tangent.wide.h), and the polytope grows there until it proves the depth.
 
 #include "pipeline/kernels/curved/curved_tangent.wide.h"
 #include "simd/lanes/rows.h"
@@ -16,17 +18,17 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class CurvedDepth {
  public:
-  /// What the depth is proved to, relative to the sizes, and how far the polytope may be from that
-  /// when its room is full.
+  /// Tolerance of the depth relative to the sizes, and the largest gap that is accepted if the
+  /// polytope's storage is full.
   static constexpr double kTolerance = 4e-10;
   static constexpr double kMostDoubt = 8e-10;
-  /// Of a program's own sets, of whose curvature nothing is known: relative to what the difference
-  /// really measures, since the radius that a program gives may be far above that.
+  /// As above for user shapes, whose curvature is unknown. Relative to the measured extent of the
+  /// difference, since the radius that the user gives may be far larger.
   static constexpr double kOwnTolerance = 3.5e-7;
   static constexpr double kOwnDoubt = 3.8e-7;
 
-  /// From the four points around the origin that the search found; false if the polytope outgrows
-  /// its room or is too flat.
+  /// Starts from the four points around the origin that the search found; returns false if the
+  /// polytope outgrows its storage or is too flat.
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
     own_ = has_own(pair);
@@ -62,12 +64,13 @@ class CurvedDepth {
     }
   }
 
-  /// Of the last call that was true.
+  /// Bounds of the depth, after `find` has returned true.
   [[nodiscard]] double upper() const { return upper_; }
   [[nodiscard]] double lower() const { return lower_; }
 
   /// The unit direction of least depth, from the first to the second, and a point of the first that
-  /// is on both once the second has been moved out; false if rounding hides where that is.
+  /// is on both cores once the second has been moved out; returns false if rounding hides that
+  /// point.
   bool answer(double* direction, double* point) const {
     if (is_minimum_) {
       for (int k = 0; k < 3; ++k) {
@@ -88,42 +91,44 @@ class CurvedDepth {
 
  private:
   static constexpr std::uint32_t kWidth = Doubles::kCount;
-  /// What the bounds differ by, over the upper one, when a minimum is looked for, and by how much
-  /// less the next time.
+  /// A minimum is searched for when the gap between the bounds, relative to the upper one, is below
+  /// kFirstLook; this limit is multiplied by kNextLook each time.
   static constexpr double kFirstLook = 0.2;
   static constexpr double kNextLook = 0.2;
-  /// Tangents of the widest and the narrowest angle around a minimum within which it may be sure,
-  /// and what rounding may take from cosines of angles.
+  /// Tangents of the widest and the narrowest angle around a minimum within which it is tested to
+  /// be certain, and the rounding error of cosines.
   static constexpr double kWidest = 1.0;
   static constexpr double kNarrowest = 0x1p-6;
   static constexpr double kCosineRounding = 1e-12;
-  /// Below all cosines.
+  /// Less than any cosine.
   static constexpr double kAllAround = -2.0;
-  /// Directions of which the cosine is larger lead to the same minimum, as a rule.
+  /// Directions with a larger cosine usually lead to the same minimum.
   static constexpr double kSameMinimum = 0.9;
-  /// How far from there to the nearest face's own direction the polytope grows next, and by how
-  /// many tolerances at least.
+  /// When growing near the best minimum: the direction is this fraction of the way from that
+  /// minimum's normal to the face's normal, and the new point must be above the face by at least
+  /// this fraction of the tolerance.
   static constexpr double kNearerShare = 0.7;
   static constexpr double kNearerRise = 0.1;
   static constexpr std::uint32_t kMostMinima = 8;
   static constexpr std::uint32_t kMostPoints = 128;
   /// A polytope of p points has 2 p - 4 faces.
   static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
-  /// Faces that a point sees; of their sides more are looked at than are kept.
+  /// The largest number of visible faces. More of their sides are tested than are kept.
   static constexpr std::uint32_t kMostSeen = 30;
   static constexpr std::uint32_t kMostSides = 3 * kMostSeen + 1;
-  /// A face is seen from points above its plane and from those that are not below it by more.
+  /// A face is visible from a point above its plane, or below it by at most this.
   static constexpr double kLevel = 1e-15;
-  /// The foot of the origin is in a face if no weight of a corner is below this.
+  /// The foot of the origin counts as inside a face if no barycentric weight is below this.
   static constexpr double kInside = -1e-7;
 
-  /// What comes of a look at the nearest face.
+  /// The outcome of testing the nearest face.
   enum class Look : std::uint8_t { grows, again, proves, fails };
 
-  /// Finds what the polytope grows by there, unless the face proves the depth or is closed.
+  /// Determines the point by which the polytope grows at the nearest face, unless the face proves
+  /// the depth or becomes closed.
   Look look_at_face() {
     measure();
-    // Of faces in one plane, the one that the foot of the origin is in tells the point.
+    // If several faces are coplanar, use the one that contains the foot of the origin.
     if (upper_ - lower_ <= tolerance_) {
       turn_to_foot();
       measure();
@@ -141,7 +146,7 @@ class CurvedDepth {
     return Look::grows;
   }
 
-  /// Of the difference, and the first's point in it.
+  /// A point of the difference, and the first's point in it.
   struct Point {
     double w[3];
     double mine[3];
@@ -156,7 +161,7 @@ class CurvedDepth {
     return points_++;
   }
 
-  /// Half of how far the first four are apart: of the difference no more than both shapes reach.
+  /// Half of the largest distance of the first four points: at most the extent of the difference.
   [[nodiscard]] double reach_of_points() const {
     double square = 0.0;
     for (int i = 1; i < 4; ++i) {
@@ -173,15 +178,16 @@ class CurvedDepth {
     return normal_[0][face] * x[0] + normal_[1][face] * x[1] + normal_[2][face] * x[2];
   }
 
-  /// Sets the upper bound to that of the face, and finds its point of the difference.
+  /// Sets the upper bound to the support along the face's normal, and stores that support point.
   void measure() {
     const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     difference_point(*pair_, n, growth_.w, growth_.mine);
     upper_ = dot_normal(face_, growth_.w);
   }
 
-  /// Finds a point nearer to the best minimum than the face's own: near that the polytope needs
-  /// fewer of them. False if the face is elsewhere, or the point is not above it.
+  /// Computes a support point whose normal is nearer to the best minimum than the face's own: the
+  /// polytope then needs fewer points there. Returns false if the face is elsewhere, or the point
+  /// is not above it.
   bool measure_nearer_to_best() {
     if (!(best_height_ < __builtin_inf())) return false;
     const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
@@ -195,10 +201,11 @@ class CurvedDepth {
     return dot3(n, growth_.w) - lower_ > kNearerRise * tolerance_;
   }
 
-  /// An edge of a face: the face's number times four and the edge's.
+  /// Identifies an edge of a face: four times the face's number plus the edge's.
   static std::uint32_t edge_of(std::uint32_t face, std::uint32_t edge) { return 4 * face + edge; }
 
-  /// What a new face is made of: an edge from p to q, the edge across it, and the face's number.
+  /// The base of a new face: an edge from p to q, the edge of the face across it, and the new
+  /// face's number.
   struct Side {
     std::uint32_t p;
     std::uint32_t q;
@@ -206,8 +213,8 @@ class CurvedDepth {
     std::uint32_t face;
   };
 
-  /// The tetrahedron of the first four points: the three sides of its first face joined to the
-  /// fourth point, and that face.
+  /// Makes the tetrahedron of the first four points: one face, and its three sides joined to the
+  /// fourth point.
   bool begin() {
     double e[3][3];
     for (int i = 0; i < 3; ++i) {
@@ -215,7 +222,7 @@ class CurvedDepth {
     }
     double n[3];
     cross3(e[0], e[1], n);
-    // Counter-clockwise seen from outside if the fourth point is behind the first face.
+    // The first face is counter-clockwise seen from outside if the fourth point is behind it.
     const bool turned = dot3(n, e[2]) > 0.0;
     const std::uint32_t corner[3] = {0, turned ? 2U : 1U, turned ? 1U : 2U};
     const Side base{corner[0], corner[1], 0, add_slot()};
@@ -227,7 +234,7 @@ class CurvedDepth {
     return set_faces(side, 3, 3) && join(side, 3);
   }
 
-  /// The number of one more face.
+  /// Returns the number of a new face.
   std::uint32_t add_slot() {
     if (faces_ % kWidth == 0) {
       Doubles(__builtin_inf()).store(distance_ + faces_);
@@ -237,7 +244,8 @@ class CurvedDepth {
     return faces_++;
   }
 
-  /// Makes the faces of sides with a point; false if one has no normal or the origin is above it.
+  /// Makes the faces that join sides to a point; returns false if one has no normal or the origin
+  /// is above it.
   bool set_faces(const Side* side, std::uint32_t count, std::uint32_t to) {
     const double* w = point_[to];
     for (std::uint32_t begin = 0; begin < count; begin += kWidth) {
@@ -281,8 +289,8 @@ class CurvedDepth {
     return true;
   }
 
-  /// Makes the new faces neighbours of each other and of those across; false unless the sides are
-  /// rings: at each corner one ends and one begins.
+  /// Connects the new faces with each other and with the faces across. Returns false unless the
+  /// sides form rings, in which at each corner one side ends and one begins.
   bool join(const Side* side, std::uint32_t count) {
     std::uint64_t begins[kMostPoints / 64] = {};
     std::uint64_t ends[kMostPoints / 64] = {};
@@ -319,7 +327,8 @@ class CurvedDepth {
     return best_height_ - lower_ <= doubt ? end_in_minimum() : upper_ - lower_ <= doubt;
   }
 
-  /// True if there is a local minimum near the nearest face, which is kept.
+  /// Searches for a local minimum near the nearest face and keeps it; returns false if there is
+  /// none.
   bool look_for_minimum() {
     if (minima_ == kMostMinima) return false;
     const double* corner[3];
@@ -371,9 +380,9 @@ class CurvedDepth {
     }
   }
 
-  /// A minimum near the nearest face, less than the best so far, around which nothing is sure. Its
-  /// point takes the place of the one that the polytope was to grow by if it is above the face as
-  /// well. False if one is looked for in vain.
+  /// Searches near the nearest face for a minimum below the best so far, without a range in which
+  /// it is certain. If its point is above the face, the polytope grows by this point instead.
+  /// Returns false if no minimum is found.
   bool look_for_tangent() {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return true;
@@ -389,8 +398,9 @@ class CurvedDepth {
     return true;
   }
 
-  /// Whether all points on a face that are nearer than the least minimum are in directions in which
-  /// one of the minima is sure: they are around the face's foot.
+  /// True if all points of a face that are nearer than the smallest minimum have directions in
+  /// which one of the minima is certain. These points are around the foot of the origin in the
+  /// face.
   [[nodiscard]] bool is_closed(std::uint32_t face) const {
     const double around = distance_[face] / best_height_;
     for (std::uint32_t i = 0; i < minima_; ++i) {
@@ -402,8 +412,8 @@ class CurvedDepth {
     return false;
   }
 
-  /// Of faces that were open when they were looked at in lanes, row by row, the nearest of each
-  /// lane and the first face of its row.
+  /// Reduction over the open distances of faces, row by row in lanes: the nearest of each lane, and
+  /// the first face of its row.
   struct NearestInLanes {
     Doubles least{__builtin_inf()};
     Doubles row{0.0};
@@ -415,7 +425,7 @@ class CurvedDepth {
     }
   };
 
-  /// The first of the nearest open faces.
+  /// Returns the first of the nearest open faces.
   [[nodiscard]] std::uint32_t find_nearest() {
     NearestInLanes nearest;
     for (std::uint32_t row = 0; row < faces_; row += kWidth) {
@@ -435,16 +445,17 @@ class CurvedDepth {
       nearest_ = face < nearest_ ? face : nearest_;
     }
   }
-  /// A face that was not looked at so: what was just written would be waited for.
+  /// Offers a face that was written after the reduction; reading it back in lanes would stall on
+  /// its stores.
   [[gnu::always_inline]] void offer_nearest(double distance, std::uint32_t face) {
     const bool nearer = distance < nearest_open_ || (distance == nearest_open_ && face < nearest_);
     nearest_open_ = nearer ? distance : nearest_open_;
     nearest_ = nearer ? face : nearest_;
   }
 
-  /// Takes away the faces that the new point sees, the nearest one among them, and joins it to
-  /// their outline. What they leave is a ring of two sides more than there were faces, less two for
-  /// each point inside of it, which is level with the new one and its neighbours.
+  /// Removes the faces visible from the new point, the nearest face among them, and joins the point
+  /// to their outline. The outline has two sides more than the number of faces removed, minus two
+  /// for each point inside it; such a point is level with the new one and its neighbours.
   bool grow(std::uint32_t to) {
     const std::uint32_t count = find_seen(to);
     if (count == 0) return false;
@@ -453,7 +464,7 @@ class CurvedDepth {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t f = seen_[i];
       for (std::uint32_t e = 0; e < 3; ++e) {
-        // Without a branch, which would be mispredicted.
+        // Branchless: the branch would be mispredicted.
         side[sides] = {vertex_[f][e], vertex_[f][e == 2 ? 0 : e + 1], across_[f][e], 0};
         sides += seen_by_[across_[f][e] / 4] != to ? 1U : 0U;
       }
@@ -465,13 +476,13 @@ class CurvedDepth {
            (sides == count + 2 || is_one_ring(side, sides));
   }
 
-  /// Leaves a place without a face.
+  /// Marks a slot as unused.
   void close_slot(std::uint32_t face) {
     distance_[face] = __builtin_inf();
     open_[face] = __builtin_inf();
   }
 
-  /// Of sides that are joined.
+  /// True if the connected sides form a single ring.
   bool is_one_ring(const Side* side, std::uint32_t count) const {
     std::uint32_t face = side[0].face;
     for (std::uint32_t i = 1; i < count; ++i) {
@@ -481,8 +492,8 @@ class CurvedDepth {
     return true;
   }
 
-  /// Lists the faces that a point sees, and the nearest one; returns how many, 0 if they are too
-  /// many.
+  /// Lists the faces visible from a point, and the nearest face; returns their number, or 0 if
+  /// there are too many.
   std::uint32_t find_seen(std::uint32_t by) {
     const double* w = point_[by];
     const Vec3<double> x{w[0], w[1], w[2]};
@@ -509,8 +520,8 @@ class CurvedDepth {
     return count;
   }
 
-  /// Of the corners of a face, for the foot of the origin, none below zero; returns the smallest,
-  /// as it was before that.
+  /// Barycentric weights of the foot of the origin in a face, clamped to zero; returns the smallest
+  /// weight before clamping.
   double foot_weights(std::uint32_t face, double* weight) const {
     double total = 0.0;
     double smallest = __builtin_inf();
@@ -533,7 +544,8 @@ class CurvedDepth {
     return foot_weights(face_, weight) >= kInside;
   }
 
-  /// Goes on from the face to one as near, as far as the bounds tell, that the foot is in.
+  /// If the foot is not in the current face, replaces the face by one that is as near, up to the
+  /// gap of the bounds, and contains the foot.
   void turn_to_foot() {
     double weight[3];
     double most = foot_weights(face_, weight);
@@ -550,15 +562,15 @@ class CurvedDepth {
   }
 
   const CurvedPair* pair_ = nullptr;
-  /// Of the pair.
+  /// The pair has a user shape.
   bool own_ = false;
-  /// What the bounds differ by, over the upper one, when a minimum is looked for next.
+  /// The relative gap of the bounds below which a minimum is searched for next.
   double next_look_ = 0.0;
-  /// Whether looks for minima are worth it: where the points of own sets lead to none at first they
-  /// hardly ever do later, and it takes a dozen of them to find that out.
+  /// True while searches for minima are worthwhile. If the points of user shapes give no minimum at
+  /// first, they hardly ever do later, and each attempt takes a dozen support points.
   bool leads_ = true;
-  /// Of the minima: the least and the first's point in it, its height, a lower bound of all, and
-  /// around which directions, up to the angle of which cosine, each is sure.
+  /// The smallest minimum: its normal, the first's point in it, its height. Then a lower bound of
+  /// all minima, and for each the direction and the cosine of the angle up to which it is certain.
   double best_normal_[3];
   double best_point_[3];
   double best_height_;
@@ -567,35 +579,36 @@ class CurvedDepth {
   double sure_around_[kMostMinima][3];
   double sure_cosine_[kMostMinima];
   bool is_minimum_ = false;
-  /// How far the difference reaches, at least, and what the depth is to be proved to.
+  /// Lower bound of the extent of the difference, and the tolerance of the depth.
   double reach_ = 0.0;
   double tolerance_ = 0.0;
-  /// What the polytope grows by next.
+  /// The point by which the polytope grows next.
   Point growth_;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
-  /// The first of the nearest open faces, and how far it is.
+  /// The first of the nearest open faces, and its distance.
   std::uint32_t nearest_ = 0;
   double nearest_open_ = 0.0;
   double upper_ = 0.0;
   double lower_ = 0.0;
-  /// Padded, so that they are loaded whole.
+  /// Padded to four, so that points are loaded as rows of four.
   double point_[kMostPoints][4];
   double mine_[kMostPoints][3];
-  /// By point: the new face whose first edge begins there, and ends there.
+  /// By point: the new face whose first edge begins there, and the new face whose first edge ends
+  /// there.
   std::uint32_t from_[kMostPoints];
   std::uint32_t into_[kMostPoints];
-  /// Distances of numbers from there on are infinite, to the end of a block of one per lane.
+  /// Slots from faces_ to the end of its block of lanes have infinite distances.
   std::uint32_t faces_ = 0;
   std::uint32_t vertex_[kMostFaces][3];
-  /// Across the edge from vertex i to the next.
+  /// The edge on the other side of the edge from vertex i to the next.
   std::uint32_t across_[kMostFaces][3];
-  /// The last point that saw a face, or 0, which is none that sees faces.
+  /// The last point that saw a face; 0, which never sees a face, if there is none.
   std::uint32_t seen_by_[kMostFaces];
   std::uint32_t seen_[kMostSeen];
   alignas(64) double normal_[3][kMostFaces] = {};
   alignas(64) double distance_[kMostFaces];
-  /// The same, but infinite where a face is closed.
+  /// As distance_, but infinite for closed faces.
   alignas(64) double open_[kMostFaces];
 };
 

@@ -1,34 +1,38 @@
 #pragma once
 
-// Where the depth of two cores has a local minimum, to double's precision, and how far around it
-// nothing is less deep: a polytope that says roughly where the least depth is needs no more.
+// Computes a local minimum of the depth of two cores to double precision, and a range of directions
+// around it in which no direction is less deep. The expanding polytope of curved_depth.wide.h thus
+// has to find the least depth only roughly; curved_search.wide.h uses the same for closest points.
 //
-// Near its least depth the difference of two cores is often as simple as a point, discs (of rims),
-// ellipsoids and segments (edges, and lines of sides) added up; it contains those, so their heights
-// h bound its own from below. For n = n0 + t, t across n0 and |t| <= T, a disc of radius r whose
-// axis makes the sine s with n0 rises over its tangent by at least r (e . t)^2 / (2 (s + T)), with
-// e across both, and a segment along g, whose ends are at least p away from where it is met, by p
-// |g . t|, which is not less than p (g . t)^2 / T. Where these together are not less than h(n0)
-// |t|^2 / 2, h(n) is at least h(n0) |n|. A flat part, met at least p inside its border, rises by p
-// |t|.
+// Near its least depth, the Minkowski difference of two cores is often a simple sum: a point plus
+// discs (of rims), ellipsoids and segments (edges, or lines of curved sides). The difference
+// contains this sum, so the sum's support function h bounds the support function of the difference
+// from below. Let n = n0 + t, where t is perpendicular to n0 and |t| <= T.
 //
-// The height of an ellipsoid along n is the length of M n, its axes times its radii, as that of a
-// disc is of one whose third radius is 0. It rises by at least |P M t|^2 / (2 (|M n0| + m T)), for
-// the largest radius m and the projection P across M n0; what is taken off an ellipsoid all around
-// takes at most half of it times |t|^2.
+// - A disc of radius r whose axis makes the sine s with n0 rises above its tangent by at least
+//   r (e . t)^2 / (2 (s + T)), where e is perpendicular to both.
+// - A segment along g that touches at least p away from its ends rises by p |g . t|, which is at
+//   least p (g . t)^2 / T.
+// - A flat part that touches at least p inside its border rises by p |t|.
+// - The height of an ellipsoid along n is the length of M n, with M its axes times its radii; a
+//   disc is an ellipsoid whose third radius is 0. It rises by at least
+//   |P M t|^2 / (2 (|M n0| + m T)), with m the largest radius and P the projection perpendicular to
+//   M n0. Eroding an ellipsoid by a length costs at most half of that length times |t|^2.
 //
-// The line of a cone's side turns with the normal. Where it is met the share q of it from the tip,
-// half of q times the cone's disc and half of the distance to the nearer end are as good as a disc
-// and a segment: the cone is at least as high as its tip and its rim in any proportion. A tapered
-// capsule's side is that of the cone that its tip and the circle make along which the larger ball
-// takes over; the ball is an ellipsoid.
+// If these rises add up to at least h(n0) |t|^2 / 2, then h(n) is at least h(n0) |n|.
+//
+// The line of a cone's side turns with the normal. If it touches at the fraction q of its length
+// from the tip, then q / 2 times the cone's disc and half of the distance to the nearer end serve
+// as a disc and a segment, because the cone is at least as high as its tip and its rim in any
+// proportion. The side of a tapered capsule is the side of the cone between its tip and the circle
+// where the larger ball begins; the ball is an ellipsoid.
 
 #include "pipeline/kernels/curved/simple_sum.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// Unit directions across n and each other (Duff et al., "Building an orthonormal basis,
-/// revisited", 2017).
+/// Computes two unit vectors perpendicular to n and to each other (Duff et al., "Building an
+/// orthonormal basis, revisited", 2017).
 static inline void span_across(const double* n, double (*e)[3]) {
   const double sign = n[2] < 0.0 ? -1.0 : 1.0;
   const double a = -1.0 / (sign + n[2]);
@@ -43,9 +47,9 @@ static inline void span_across(const double* n, double (*e)[3]) {
 
 class LocalMinimum {
  public:
-  /// Finds the minimum near a unit direction: of three points of the difference around it and the
-  /// points of the first in them. Where the cores are `apart` it is below zero, and there is but
-  /// one. False if there is none.
+  /// Finds the minimum near the unit direction `near`, from three points of the difference around
+  /// it and the points of the first in these. If the cores are `apart`, heights are negative and
+  /// there is only one minimum. Returns false if there is none.
   bool find(const CurvedPair& pair, const double* const* corner, const double* const* mine,
             const double* near, bool apart = false) {
     pair_ = &pair;
@@ -64,7 +68,7 @@ class LocalMinimum {
     return add_side(1) && approach() && meet_segments();
   }
 
-  /// Whether nothing is less deep up to the angle from the minimum with this tangent.
+  /// True if no direction is less deep up to the angle with this tangent from the minimum.
   [[nodiscard]] bool holds(double tangent) const {
     if (is_flat_) return 2.0 * inside_[0] > (1.0 + kMargin) * height_ * tangent;
     double e[2][3];
@@ -94,9 +98,9 @@ class LocalMinimum {
     return q[0] > least && q[2] > least && (q[0] - least) * (q[2] - least) > q[1] * q[1];
   }
 
-  /// A lower bound of all depths where the simple part is a ball that segments move, met no deeper
-  /// than its radius: it is as deep as the ball reaches beyond the origin from the point met. Else
-  /// below zero.
+  /// Lower bound of all depths if the simple part is a ball swept along segments, and the depth is
+  /// at most the ball's radius: the radius minus the distance of the origin from the centre of the
+  /// touching ball. Negative if there is no such bound.
   [[nodiscard]] double least_of_ball() const {
     double radius = 0.0;
     if (is_flat_ || !is_moved_ball(radius)) return -1.0;
@@ -106,12 +110,12 @@ class LocalMinimum {
 
   /// Unit, from the first to the second.
   [[nodiscard]] const double* normal() const { return normal_; }
-  /// Of the simple part.
+  /// The height of the simple part along the normal.
   [[nodiscard]] double height() const { return height_; }
-  /// How far the origin's foot is from where the simple part is met.
+  /// Distance of the origin's foot from the point in which the simple part touches.
   [[nodiscard]] double miss() const { return miss_; }
 
-  /// The point of the difference that is met.
+  /// The touching point of the difference.
   void write_difference(double* x) const {
     if (is_flat_) {
       for (int k = 0; k < 3; ++k) x[k] = height_ * normal_[k];
@@ -123,7 +127,7 @@ class LocalMinimum {
     }
   }
 
-  /// The point of the first that is met.
+  /// The touching point of the first.
   void write_point(double* point) const {
     if (is_flat_) {
       for (int k = 0; k < 3; ++k) point[k] = flat_point_[k];
@@ -147,18 +151,19 @@ class LocalMinimum {
 
  private:
   static constexpr int kMostSteps = 6;
-  /// A step after which nothing is left to gain, since steps square the error; and one too wide.
+  /// Steps square the error, so after a step this short nothing is left to gain; a step longer than
+  /// kWideStep fails.
   static constexpr double kLastStep = 1e-7;
   static constexpr double kWideStep = 0.5;
-  /// Sines below which discs look flat and segments parallel; a disc may be met flat below the
-  /// second.
+  /// Below kLeastSine, discs count as flat and segments as parallel. Below kFlatSine a disc may be
+  /// touched on its flat side.
   static constexpr double kLeastSine = 1e-3;
   static constexpr double kFlatSine = 0.4;
-  /// Above this a direction across loses no digits.
+  /// Above this sine, the perpendicular component of a direction loses no digits.
   static constexpr double kSteepSine = 0.25;
-  /// Of curvatures, over the height, for what rounding takes.
+  /// Rounding error of curvatures, relative to the height.
   static constexpr double kMargin = 1e-6;
-  /// Heights that are the same but for rounding.
+  /// Heights that differ by at most this are equal up to rounding.
   static constexpr double kLevel = 1e-13;
   static constexpr double kLevelFace = 2e-15;
 
@@ -176,7 +181,7 @@ class LocalMinimum {
     side_[1].unite();
   }
 
-  // A flat part: a cap, or a face with three of the points.
+  // Flat parts: a cap, or a face that contains all three points.
 
   bool lie_flat(int side) {
     const NearPoints& points = side_[side];
@@ -220,7 +225,8 @@ class LocalMinimum {
     if (!(area > kLeastSine * __builtin_sqrt(dot3(e[0], e[0]) * dot3(e[1], e[1])))) return false;
     const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
     for (double& x : n) x *= sign / area;
-    // Cores that are apart are as far as a point of the face is, which has to be level.
+    // If the cores are apart, their distance is measured to a point of the face, so the face must
+    // be exactly level.
     for (int i = 0; i < 2 && sign_ < 0.0; ++i) {
       if (!(__builtin_fabs(dot3(n, e[i])) <= kLevelFace)) return false;
     }
@@ -237,9 +243,9 @@ class LocalMinimum {
     });
   }
 
-  /// Whether the flat part through `at` is met at least a little inside its border, as `inside`
-  /// says of a point in its plane: where the other's farthest point is, or one amid three that are
-  /// as far.
+  /// True if the flat part through `at` is touched at least slightly inside its border: by the
+  /// other core's support point, or by the mean of its three points if these are equally far.
+  /// inside(x) is the distance of a point x of the plane from the border.
   template <typename Inside>
   bool meet_flat(const double* n, int side, const double* at, Inside&& inside) {
     const SidePlace place(*pair_, side == 0);
@@ -332,7 +338,7 @@ class LocalMinimum {
     s.off = off;
   }
 
-  /// The tip, the ball, or the side between them.
+  /// Adds the tip, the ball, or the side between them.
   bool add_taper(const NearPoints& points, const SidePlace& place, int side) {
     const double more = points.form->number[0];
     const double ball[3] = {0.0, 0.0, points.form->number[1]};
@@ -380,7 +386,7 @@ class LocalMinimum {
     return true;
   }
 
-  /// From the tip, which the axis points to, to the rim.
+  /// The axis points to the tip; the segment runs from the tip to the rim.
   bool add_cone_side(double radius, double height, const double* axis, const SidePlace& place) {
     SimpleSum::Segment& s = sum_.segment[sum_.segments++];
     place.direction(axis, s.axis);
@@ -391,7 +397,8 @@ class LocalMinimum {
     return radius > 0.0 && height > 0.0;
   }
 
-  /// The sine of the angle between an axis and the normal, and the unit direction across both.
+  /// Returns the sine of the angle between an axis and the normal; `across` is the unit vector
+  /// perpendicular to both.
   double sine_of(const double* axis, double* across) const {
     cross3(axis, normal_, across);
     const double sine = __builtin_sqrt(dot3(across, across));
@@ -400,8 +407,9 @@ class LocalMinimum {
     return sine;
   }
 
-  /// Across an axis towards the normal, unit. What rounding leaves along the axis grows as both
-  /// become parallel: then it is taken off once more.
+  /// The unit vector perpendicular to an axis, on the side of the normal. The rounding error along
+  /// the axis grows as both become parallel: then the component along the axis is removed once
+  /// more.
   void out_of(const double* axis, double* out) const {
     double along = dot3(axis, normal_);
     for (int k = 0; k < 3; ++k) out[k] = normal_[k] - along * axis[k];
@@ -415,13 +423,13 @@ class LocalMinimum {
     for (int k = 0; k < 3; ++k) out[k] *= over;
   }
 
-  /// From the middle of a disc to its point farthest along the normal.
+  /// From the centre of a disc to its support point along the normal.
   void rim_of(const SimpleSum::Disc& disc, double* rim) const {
     out_of(disc.axis, rim);
     for (int k = 0; k < 3; ++k) rim[k] *= disc.radius;
   }
 
-  /// From the middle of an ellipsoid to its point farthest along the normal.
+  /// From the centre of an ellipsoid to its support point along the normal.
   void touch_of(const SimpleSum::Ellipsoid& ellipsoid, double* x) const {
     const EllipsoidHeight height(ellipsoid, normal_);
     const double over = 1.0 / largest_of(height.length, 1e-150);
@@ -432,7 +440,7 @@ class LocalMinimum {
     }
   }
 
-  /// The sum's point farthest along the normal, where its segments begin.
+  /// The sum's support point along the normal, at the start of its segments.
   void met(double* w) const {
     for (int k = 0; k < 3; ++k) w[k] = sum_.point[k];
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
@@ -447,7 +455,7 @@ class LocalMinimum {
     }
   }
 
-  /// Adds f x^T x to a form over e: its entries (0, 0), (0, 1) and (1, 1).
+  /// Adds f x x^T to a quadratic form over e, given by its entries (0, 0), (0, 1) and (1, 1).
   static void add_square(const double (*e)[3], const double* x, double f, double* q) {
     const double u = dot3(e[0], x);
     const double v = dot3(e[1], x);
@@ -456,8 +464,8 @@ class LocalMinimum {
     q[2] += f * v * v;
   }
 
-  /// Adds how an ellipsoid rises over its tangent plane, less what is taken off it: `length` is
-  /// that of what the direction is stretched to, at most.
+  /// Adds the rise of an ellipsoid over its tangent plane, less the erosion. `length` is an upper
+  /// bound of the length of the stretched direction.
   static void add_ellipsoid_rise(const double (*e)[3], const SimpleSum::Ellipsoid& ellipsoid,
                                  const EllipsoidHeight& height, double length, double* q) {
     double across[2][3];
@@ -474,13 +482,14 @@ class LocalMinimum {
     return true;
   }
 
-  /// Two of discs and segments keep the normal; a cone's side is both, and an ellipsoid enough.
+  /// True if the minimum is determined: by two of discs and segments, by a cone's side, which is
+  /// both, or by an ellipsoid.
   [[nodiscard]] bool is_stiff() const {
     const bool has_cone_side = sum_.segments > 0 && sum_.segment[0].radius > 0.0;
     return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
   }
 
-  /// Whether it is a ball that segments move, and the radius.
+  /// True if the sum is a ball swept along segments; adds to `radius` its radius.
   bool is_moved_ball(double& radius) const {
     if (sum_.discs > 0 || sum_.ellipsoids == 0) return false;
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
@@ -494,14 +503,15 @@ class LocalMinimum {
     return true;
   }
 
-  /// Out of a ball the way is short that leads away from its middle.
+  /// The shortest way out of a ball leads away from its centre.
   void leave_ball() {
     const double length = __builtin_sqrt(dot3(sum_.point, sum_.point));
     if (!(length > 0.0)) return;
     for (int k = 0; k < 3; ++k) normal_[k] = -sum_.point[k] / length;
   }
 
-  /// Newton's method over the normals that meet all segments.
+  /// Newton's method over the normals that are perpendicular to all segments (for a cone's side,
+  /// over the normals of the side).
   bool approach() {
     double radius = 0.0;
     if (sum_.segments == 0 && is_moved_ball(radius)) {
@@ -524,7 +534,7 @@ class LocalMinimum {
     return false;
   }
 
-  /// Of two edges or sides of cylinders.
+  /// True for two parallel edges or sides of cylinders.
   [[nodiscard]] bool are_parallel() const {
     const SimpleSum::Segment& s = sum_.segment[0];
     const SimpleSum::Segment& t = sum_.segment[1];
@@ -533,8 +543,8 @@ class LocalMinimum {
     return !(s.radius > 0.0) && !(t.radius > 0.0) && dot3(out, out) <= kLeastSine * kLeastSine;
   }
 
-  /// Puts a point of the second segment in its place, that which the other meets nearest to its
-  /// middle.
+  /// Replaces the second segment by one of its points: the point for which the touching point on
+  /// the first segment is nearest to its middle.
   void take_amid_second() {
     const SimpleSum::Segment& s = sum_.segment[0];
     const SimpleSum::Segment& t = sum_.segment[1];
@@ -547,7 +557,7 @@ class LocalMinimum {
     sum_.segments = 1;
   }
 
-  /// To the nearest normal that meets the first segment.
+  /// Moves to the nearest normal along which all of the first segment is equally far.
   bool move_on_circle(const double* to) {
     const SimpleSum::Segment& s = sum_.segment[0];
     const double along = dot3(s.axis, to);
@@ -560,7 +570,7 @@ class LocalMinimum {
     return true;
   }
 
-  /// To the normal that meets both segments, of the two that there are the nearer.
+  /// Moves to the normal along which both segments are level; there are two, the nearer is taken.
   bool meet_both() {
     const SimpleSum::Segment& s = sum_.segment[0];
     const SimpleSum::Segment& t = sum_.segment[1];
@@ -579,7 +589,7 @@ class LocalMinimum {
     return set_normal(n);
   }
 
-  /// False where the depth has no minimum along the step.
+  /// Returns false if the depth has no minimum along the step.
   bool next_step(double* step) const {
     double w[3];
     met(w);
@@ -588,7 +598,7 @@ class LocalMinimum {
     span_across(normal_, e);
     double q[3] = {-height, 0.0, -height};
     if (sum_.segments == 1) {
-      // Along the circle, which bends towards its own middle.
+      // Along the circle of normals, which curves towards its own centre.
       const SimpleSum::Segment& s = sum_.segment[0];
       sine_of(s.axis, e[0]);
       q[0] = -(height - s.cosine * dot3(w, s.axis)) / (s.sine * s.sine);
@@ -618,14 +628,15 @@ class LocalMinimum {
     return true;
   }
 
-  /// The line of a cone's side that is met, from the tip on.
+  /// Sets the line of a cone's side that touches, from the tip on.
   void turn_to_normal(SimpleSum::Segment& s) const {
     double out[3];
     out_of(s.axis, out);
     for (int k = 0; k < 3; ++k) s.along[k] = s.cosine * out[k] - s.sine * s.axis[k];
   }
 
-  /// Where along the segments the foot of the origin is; false if it is beyond an end.
+  /// Computes the touching point on each segment, where the foot of the origin is; returns false if
+  /// it is beyond an end.
   bool meet_segments() {
     const std::uint32_t count = sum_.segments;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -661,9 +672,9 @@ class LocalMinimum {
   double normal_[3];
   double height_;
   double miss_;
-  /// Where along each segment it is met.
+  /// The touching point's place along each segment.
   double at_[2];
-  /// How far that is from the nearer end; of a flat part the first, from its border.
+  /// Its distance from the nearer end; for a flat part, inside_[0] is the distance from the border.
   double inside_[2];
   bool is_flat_ = false;
   double flat_point_[3];

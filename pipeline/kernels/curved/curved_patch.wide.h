@@ -1,7 +1,7 @@
 #pragma once
 
-// The features of two cores that meet along a normal, as patches for contact_patch; numbered as the
-// solver numbers them.
+// Contacts of one pair with curved shapes: the supporting features of both cores along a normal, as
+// patches for contact_patch. Features are numbered as in solver/manifold.cpp.
 
 #include "pipeline/kernels/hull/farthest_points.wide.h"
 #include "pipeline/kernels/hull/hull_features.wide.h"
@@ -9,18 +9,18 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// The cosines of the angles of a rim's corners; sines are those a quarter turn before.
+/// Cosines of the angles of a rim's corners. The sine is the cosine a quarter turn earlier.
 inline constexpr double kRimCosine[kRimCorners] = {
     1.0,  0.92387953251128674,  0.70710678118654757,  0.38268343236508978,
     0.0,  -0.38268343236508978, -0.70710678118654757, -0.92387953251128674,
     -1.0, -0.92387953251128674, -0.70710678118654757, -0.38268343236508978,
     0.0,  0.38268343236508978,  0.70710678118654757,  0.92387953251128674};
-/// The corners of a box's faces, counter-clockwise seen from outside; bit i of a corner's number is
-/// set on the positive side of axis i. Face 2 i + 1 is the positive one of axis i.
+/// Corners of the faces of a box, counter-clockwise seen from outside. Bit i of a corner's number
+/// is set on the positive side of axis i. Face 2 i + 1 is the positive face of axis i.
 inline constexpr std::uint32_t kBoxFace[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-/// Edge 4 i + k of a box runs along axis i.
+/// Returns the edge between two corners of a box. Edges 4 i to 4 i + 3 are parallel to axis i.
 constexpr std::uint32_t box_edge_between(std::uint32_t p, std::uint32_t q) {
   const std::uint32_t along = p ^ q;
   const std::uint32_t low = p & q;
@@ -29,11 +29,12 @@ constexpr std::uint32_t box_edge_between(std::uint32_t p, std::uint32_t q) {
   return 8 + low;
 }
 
-/// The supporting feature of one core, in the axes of the world, relative to body a.
+/// The supporting feature of one core, in world axes, relative to body a.
 class CurvedPatch {
  public:
-  /// `normal` is in the first's frame and points from the first to the second; `at` is the point of
-  /// the core that is closest to the other or deepest in it, in the core's frame.
+  /// `normal` is in the frame of the first and points from the first to the second. `at` is the
+  /// point of the core that is closest to the other core, or deepest in it, in the frame of the
+  /// core.
   CurvedPatch(const CurvedPair& pair, bool of_first, const double* normal, const double* at)
       : pair_(pair), form_(of_first ? pair.first : pair.second), of_first_(of_first) {
     double d[3];
@@ -123,8 +124,8 @@ class CurvedPatch {
         vertex, edge_feature);
   }
 
-  /// Of a supporting edge only the faces beside it count, not those that have but one of its ends:
-  /// those with the point.
+  /// If an edge supports, only the faces beside it count, not the faces at one of its ends: faces
+  /// that contain the point `at`.
   void add_hull(const double* d, const double* at) {
     const HullShape& shape = *form_.hull;
     const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
@@ -136,7 +137,7 @@ class CurvedPatch {
     const std::uint32_t face = hull::face_across(shape, d, touched, doubt);
     if (face != hull::kNoFeature) {
       const HullFace& f = shape.faces[face];
-      // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+      // If the polygon has too many corners, take every second (third, ...) one.
       const std::uint32_t stride = (f.count + kRoom - 1) / kRoom;
       for (std::uint32_t i = 0; i < f.count; i += stride) {
         add_vertex(shape.loop[f.first + i], shape.loop_edge[f.first + i]);
@@ -184,7 +185,7 @@ class CurvedPatch {
     const bool has_side = across > kAlongAxis;
     const double out[2] = {has_side ? d[0] / across : 1.0, has_side ? d[1] / across : 0.0};
     const bool on_tip = cone && h * d[2] >= r * across - h * d[2];
-    // A cone has but the lower cap.
+    // A cone has only the lower cap.
     const double over_cap = cone ? -d[2] : __builtin_fabs(d[2]);
     if (over_cap > kCapCosine && r > 0.0) return add_cap(d[2] > 0.0 ? h : -h);
     const double top = cone ? 0.0 : r;
@@ -194,7 +195,7 @@ class CurvedPatch {
     add({out[0] * r, out[1] * r, -h}, kSideLine + 1, kSideLine);
   }
 
-  /// The line between the balls; a ball within the other has no part in it.
+  /// The line between the balls. A ball inside the other one is not part of it.
   void add_taper(const double* d) {
     const double more = form_.number[0];
     const double ball = form_.number[1];
@@ -203,8 +204,8 @@ class CurvedPatch {
     if (tip != ball) add({0.0, 0.0, tip}, tip < 0.0 ? 1 : 0, 0);
   }
 
-  /// Directions a little off, as bodies rock: corners of what is flat stay far from each other; the
-  /// points of what is round come together, and count as the one of them that is farthest out.
+  /// Uses directions that are slightly off, because bodies rock. The corners of a flat face stay
+  /// far apart; the points of a round surface are close together, and the farthest of them is kept.
   void add_samples(const double* d) {
     constexpr std::uint32_t kSamples = 8;
     double across[2][3];
@@ -230,8 +231,8 @@ class CurvedPatch {
     for (std::uint32_t i = 0; i < count; ++i) add({kept[i][0], kept[i][1], kept[i][2]}, i, i);
   }
 
-  /// Of points that are not in one plane: three that span most, and those in their plane. Returns
-  /// how many.
+  /// Keeps the points that are in the plane of the three points that span the most. Returns their
+  /// number.
   static std::uint32_t keep_level(double (*x)[3], std::uint32_t count) {
     if (count < 4) return count;
     std::uint32_t far = 1;
@@ -278,7 +279,7 @@ class CurvedPatch {
   std::uint32_t edge_feature_[kRoom];
 };
 
-/// What a single point of contact is called, at a point of the core in its frame: as in the kernels
+/// Feature number of a single contact point, at a point of the core in its frame; as in the kernels
 /// of round shapes.
 static inline std::uint32_t point_feature(const Form& form, const double* at, double size) {
   const auto side = [&](int k) {
@@ -294,13 +295,13 @@ static inline bool touches_in_a_point(const Form& form) {
   return form.kind == ShapeKind::sphere || form.kind == ShapeKind::ellipsoid;
 }
 
-/// The points of contact of a pair no farther apart than the margin. `normal` is in the first's
-/// frame; `world`, from body a to body b, and `point`, on the surface of a relative to it, in the
-/// axes of the world; `core` is the point of the first's core, `apart` the distance of the cores,
-/// both scaled. The deepest point is as deep as the distance says: if the features miss that by a
-/// little, as polygons for rims do, meet nowhere within the margin or in one point alone, it takes
-/// the place of their deepest; if they miss it by much, it is put in front of them. None is deeper,
-/// and the first is as deep.
+/// Writes the contact points of a pair within the margin, and returns their number. `normal` is in
+/// the frame of the first. `world`, from body a to body b, and `point`, on the surface of a and
+/// relative to it, are in world axes. `core` is the point on the core of the first, `apart` the
+/// distance of the cores, both scaled. The closest point replaces the deepest point of the features
+/// if they miss it by a little (as polygons for rims do), are farther than the margin, or touch in
+/// only one point. If they miss it by much, it is inserted before them. No point becomes deeper
+/// than it, and the first has its depth.
 static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,

@@ -1,16 +1,16 @@
 #pragma once
 
-// Closest points of pairs of cores in double, one pair per lane, a lane that is done taking the
-// next pair.
+// Closest points of pairs of cores in double, by GJK with one pair per lane (search_lanes.wide.h).
+// A lane that is done takes the next pair. Called by curved_answers.wide.h.
 
 #include "pipeline/kernels/curved/curved_tangent.wide.h"
 #include "pipeline/kernels/hull/search_lanes.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// Weights of the point of a triangle's plane that is nearest to the origin, in terms of its
-/// shortest side, so that thin triangles lose no digits; twice, so that little is left of rounding.
-/// False if it is not between the corners.
+/// Computes the weights of the point of a triangle's plane that is nearest to the origin. They are
+/// computed from the shortest side, so that thin triangles lose no digits, and refined once, so
+/// that little rounding error is left. Returns false if the point is not between the corners.
 static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight) {
   int shortest = 0;
   double least = __builtin_inf();
@@ -55,8 +55,8 @@ static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight
 
 class CurvedSearch {
  public:
-  /// At least one pair; all are of the same kinds. For a verdict the search stops with state inside
-  /// where roundings surely overlap.
+  /// At least one pair; all pairs have the same kinds. `for_verdict`: the search stops with state
+  /// inside as soon as the roundings certainly overlap.
   CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool for_verdict)
       : next_(pairs),
         end_(pairs + count),
@@ -91,13 +91,13 @@ class CurvedSearch {
   using Search = hull::SearchLanes<double, true>;
   static constexpr int kWidth = Search::kWidth;
   static constexpr double kDoubt = 1e-14;
-  /// The lower bound of a distance over the upper.
+  /// Ratio of the lower to the upper bound of the distance from which features are tried.
   static constexpr double kNear = 0.75;
-  /// Bounds of a distance that features end in differ by no more.
+  /// Closest features are accepted if the bounds of the distance differ by at most this.
   static constexpr double kClosed = 1e-14;
 
-  /// Of weights and of heights, lengths being about 1: the origin is farther inside than rounding
-  /// can tell then.
+  /// Limit for weights, and for heights of lengths about 1: above it the origin is farther inside
+  /// than rounding errors.
   static constexpr double kWellInside = 1e-6;
 
   static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
@@ -126,24 +126,25 @@ class CurvedSearch {
     start(lane, straight);
   }
 
-  /// Where shapes are aligned the origin may lie on an edge or a face of the simplex though the
-  /// cores overlap. From elsewhere it does not.
+  /// If shapes are aligned, the origin may be on an edge or a face of the simplex although the
+  /// cores overlap. A second search from another start avoids that.
   bool goes_again(int lane) {
     if (pair_[lane]->state != CurvedState::close || is_askew_[lane]) return false;
     is_askew_[lane] = true;
     return true;
   }
 
-  /// Polytopes that begin with what another search ends with take fewer steps to the depth.
+  /// Tests whether the origin is certainly inside. If the depth is needed this is left to the
+  /// second search, because a polytope that starts from its simplex takes fewer steps.
   void ask_around(int lane) {
     CurvedPair& pair = *pair_[lane];
     if (pair.state != CurvedState::close || !(for_verdict_ || is_askew_[lane])) return;
     if (is_surrounded(pair)) pair.state = CurvedState::inside;
   }
 
-  /// Whether the origin, which lies on the triangle that the search ended with, is surely inside
-  /// the difference: it is surrounded by points on both sides of the triangle. The one on its own
-  /// side becomes the fourth.
+  /// True if the origin, which is on the triangle that the search ended with, is certainly inside
+  /// the difference: there are points of the difference on both sides of the triangle. The one on
+  /// the origin's side becomes the fourth point.
   static bool is_surrounded(CurvedPair& pair) {
     if (pair.count != 3 || !(pair.upper <= Search::kTouching)) return false;
     double weight[3];
@@ -157,7 +158,7 @@ class CurvedSearch {
     }
     double normal[3];
     cross3(side[0], side[1], normal);
-    // To the origin's side.
+    // Towards the origin.
     const double turn = dot3(normal, pair.difference[0]) > 0.0 ? -1.0 : 1.0;
     const double over = turn / __builtin_sqrt(dot3(normal, normal));
     for (double& x : normal) x *= over;
@@ -169,7 +170,7 @@ class CurvedSearch {
     return dot3(back, behind) > kWellInside && dot3(normal, pair.difference[3]) > kWellInside;
   }
 
-  /// From a point of the difference, moved by `aside` times the sizes.
+  /// Starts a search from a point of the difference, moved by `aside` times the sizes.
   void start(int lane, const double* aside) {
     const CurvedPair& pair = *pair_[lane];
     lanes_.start(lane);
@@ -188,8 +189,8 @@ class CurvedSearch {
     lanes_.square[lane] = square;
   }
 
-  /// Takes a point of the difference that is farthest along a direction of its own: of two balls
-  /// all points that are found from one direction on are in one plane with the origin.
+  /// Adds a support point along an unrelated direction: for two balls, all points that are found
+  /// from one starting direction are in one plane with the origin.
   void begin_beside(int lane) {
     double w[3];
     double mine[3];
@@ -201,7 +202,7 @@ class CurvedSearch {
     lanes_.present[0][lane] = 1.0;
   }
 
-  /// The farthest point of the cores of one side along d.
+  /// The support point of the cores of one side along d.
   [[gnu::always_inline]] Vec3<double> support_of(int side, const Vec3<double>& d) {
     hull::CoreLanes<double> core;
     core.kind = kind_[side];
@@ -225,7 +226,7 @@ class CurvedSearch {
     return Search::load3(x);
   }
 
-  /// One step of all lanes; returns those that are done.
+  /// Advances all lanes by one step; returns the lanes that are done.
   Mask16 step() {
     const hull::SearchEnds ends =
         lanes_.step(active_, [&](int side, const Vec3<double>& d) { return support_of(side, d); });
@@ -240,22 +241,23 @@ class CurvedSearch {
     for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
   }
 
-  /// Nothing is known of a program's own set, but that it is round more often than not.
+  /// The curvature of a user shape is unknown, but it is round more often than not.
   static bool may_have_features(const CurvedPair& pair) {
     if (!has_own(pair)) return true;
     const ShapeKind kind = pair.first.kind;
     return kind == ShapeKind::sphere || kind == ShapeKind::ellipsoid || kind == ShapeKind::support;
   }
 
-  /// Whether the features that are closest are likely to be known.
+  /// True at a few steps if the bounds are near each other: the simplex then likely contains the
+  /// closest features.
   [[nodiscard]] bool is_near(int lane) const {
     const std::uint32_t steps = lanes_.steps[lane];
     if (steps != 4 && steps != 7 && steps != 12) return false;
     return lanes_.height_along[lane] > kNear * lanes_.square[lane];
   }
 
-  /// Whether the closest points are where the features that the simplex tells of are closest: where
-  /// a side is curved, steps go ever slower towards them.
+  /// Tests whether the closest points of the features in the simplex are the closest points of the
+  /// cores. On curved sides, GJK converges ever more slowly.
   bool ends_on_features(int lane) {
     CurvedPair& pair = *pair_[lane];
     const double length = __builtin_sqrt(lanes_.square[lane]);
@@ -305,7 +307,7 @@ class CurvedSearch {
     return pair.upper - pair.lower <= Search::kOwnGain * pair.upper;
   }
 
-  /// The points of the simplex and those of the first in them; returns how many.
+  /// Copies the points of the simplex and the points of the first in them; returns their number.
   std::uint32_t take_simplex(int lane, double (*point)[3], double (*mine)[3]) const {
     std::uint32_t count = 0;
     for (int s = 0; s < hull::kSlots; ++s) {

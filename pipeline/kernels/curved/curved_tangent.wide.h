@@ -1,10 +1,11 @@
 #pragma once
 
-// Where the depth of two cores has a local minimum, as their farthest points alone tell: of a
-// program's own sets nothing else is known. The farthest point of the difference along a normal is
-// then on the normal. Its way off that is the slope of the depth over the normals, whose zero
-// Newton's method finds, with slopes of slopes by differences and, from step to step, by Broyden's
-// rule ("A class of methods for solving nonlinear simultaneous equations", 1965).
+// Computes a local minimum of the depth of two cores from support points only; user shapes provide
+// nothing else. At a minimum, the support point of the difference is on the line of the normal. Its
+// offset from that line is the gradient of the depth over the normals; Newton's method finds its
+// zero. Second derivatives come from differences and are updated by Broyden's rule ("A class of
+// methods for solving nonlinear simultaneous equations", 1965). Used by curved_depth.wide.h and
+// curved_search.wide.h.
 
 #include "pipeline/kernels/curved/curved_minimum.wide.h"
 
@@ -12,8 +13,8 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class TangentMinimum {
  public:
-  /// From a unit direction, of a difference that reaches so far. Where the cores are `apart` the
-  /// depth is below zero. False if there is none near that is smooth.
+  /// Starts from the unit direction `near`; `reach` is the extent of the difference. If the cores
+  /// are `apart`, the depth is negative. Returns false if there is no smooth minimum nearby.
   bool find(const CurvedPair& pair, const double* near, double reach, bool apart = false) {
     pair_ = &pair;
     const double miss = kMiss * reach;
@@ -36,8 +37,8 @@ class TangentMinimum {
     return false;
   }
 
-  /// Unit, from the first to the second; the point of the difference that is farthest along it, how
-  /// far that is, and the first's point in it.
+  /// The unit normal from the first to the second; the support point of the difference along it,
+  /// its height, and the first's point in it.
   [[nodiscard]] const double* normal() const { return normal_; }
   [[nodiscard]] const double* difference() const { return difference_; }
   [[nodiscard]] double height() const { return height_; }
@@ -45,13 +46,15 @@ class TangentMinimum {
 
  private:
   static constexpr int kMostSteps = 12;
-  /// How far the farthest point may be off its normal, over what the difference measures.
+  /// Largest distance of the support point from the normal, relative to the extent of the
+  /// difference.
   static constexpr double kMiss = 1e-9;
-  /// Of tangents of angles: the farthest from where the search began, and the first differences.
+  /// Tangents of angles: the largest distance from the start, and the step of the first
+  /// differences.
   static constexpr double kWidest = 0.7;
   static constexpr double kAside = 0x1p-10;
 
-  /// At tangents of angles from where the search began.
+  /// Evaluates the direction at the given tangents of angles from the start.
   void look(const double* at) {
     for (int k = 0; k < 3; ++k) {
       normal_[k] = from_[k] + at[0] * across_[0][k] + at[1] * across_[1][k];
@@ -67,7 +70,7 @@ class TangentMinimum {
     }
   }
 
-  /// Of the slopes, by column.
+  /// Computes the second derivatives by differences, column by column.
   bool take_bends() {
     const double slope[2] = {slope_[0], slope_[1]};
     for (int i = 0; i < 2; ++i) {
@@ -91,7 +94,7 @@ class TangentMinimum {
     return true;
   }
 
-  /// Makes the bends tell what the step changed.
+  /// Broyden's update: makes the second derivatives match the change along the step.
   void learn(const double* step, const double* before) {
     const double square = dot2(step, step);
     if (!(square > 0.0)) return;

@@ -1,5 +1,5 @@
-// Half-spaces against a program's own convex sets: the lowest point over the plane and, for
-// contacts, the points that the set has in directions a little off.
+// Half-spaces against user shapes (support functions): the lowest point over the plane and, for
+// contacts, the support points of directions that are slightly off.
 
 #include "pipeline/kernels/hull/curved_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -9,14 +9,14 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// Points of a set over a plane, the lowest first: as bodies rock, corners of what is flat stay far
-/// from each other, and the points of what is round come together, and count as one. Names say in
-/// which direction they were found.
+/// Points of a shape over a plane, the lowest first. Directions deviate slightly from the normal,
+/// because bodies rock: the corners of a flat face stay far apart, and the points of a round
+/// surface are close together and count as one. The name of a point is the index of its direction.
 class RockingPoints {
  public:
   static constexpr std::uint32_t kMost = 4;
 
-  /// `up`: unit. Only points no higher than `limit` along it are taken, but for the lowest.
+  /// `up` is a unit vector. Except for the lowest, takes only points up to height `limit` along it.
   RockingPoints(const SupportShape& shape, const double* up, const double* lowest, double limit) {
     double across[2][3];
     curved::directions_across(up, across);
@@ -39,7 +39,7 @@ class RockingPoints {
   [[nodiscard]] std::uint32_t name(std::uint32_t i) const { return name_[i]; }
 
  private:
-  /// Tangents of angles: how far directions are off, each way.
+  /// Tangent of the deviation of the directions, on each of two axes.
   static constexpr double kTilt = 0.03;
 
   void add(const double* x, std::uint32_t name) {
@@ -50,7 +50,7 @@ class RockingPoints {
     for (int k = 0; k < 3; ++k) point_[i][k] = x[k];
   }
 
-  /// One that counts as the same.
+  /// Returns the index of a point that counts as the same as x, or `count_`.
   [[nodiscard]] std::uint32_t nearest(const double* x) const {
     std::uint32_t i = 0;
     while (i < count_ && square_between(x, point_[i]) > apart_ * apart_) ++i;
@@ -61,8 +61,9 @@ class RockingPoints {
     return dot3(d, d);
   }
 
-  /// The lowest of all, which may be anywhere on what is flat. If one of the points is hardly
-  /// higher, it stays where it is and takes its height; else the lowest takes the place of one.
+  /// Puts the lowest point first; it may be anywhere on a flat face. If another point is hardly
+  /// higher, that one keeps its place and gets the height of the lowest. Else the lowest point is
+  /// added, or replaces a point that is close to it (or the first one, if there is no room).
   void put_first(const double* up, const double* lowest) {
     std::uint32_t best = 0;
     double reach = 0.0;

@@ -1,10 +1,11 @@
 #pragma once
 
-// Penetration depth of segments, cylinders and cones that stand parallel to each other, or to an
-// edge of a box, as most do that stand on a floor. The direction of least depth is in a plane along
-// their axes, where the cores are two polygons: it is a normal of one of these. Between two axes it
-// is the plane of both. Of a box it is the plane from an axis towards the rectangle that the box is
-// from above, which whatever rises at the same slope comes out of soonest.
+// Penetration depth of segments, cylinders and cones that are parallel to each other or to an edge
+// of a box, as most are that stand on a floor. The direction of least depth is in a plane that
+// contains the axis, where the cores are two polygons: it is a normal of one of these. For two
+// axes, it is the plane of both. For a box, it is the plane from the axis towards the nearest point
+// of the box's rectangle as seen along the axis: of all directions with the same slope, the one in
+// that plane has the least depth. Called by curved_answers.wide.h.
 
 #include "pipeline/kernels/hull/curved_pair.wide.h"
 
@@ -12,7 +13,7 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class ParallelDepth {
  public:
-  /// Of cores that overlap; false if they do not stand parallel, or are others.
+  /// For cores that overlap; returns false if they are not parallel, or of other kinds.
   bool find(const CurvedPair& pair) {
     const bool is_placed = pair.first.kind == ShapeKind::box    ? stand_in_box(pair)
                            : pair.second.kind == ShapeKind::box ? stand_beside_box(pair)
@@ -29,11 +30,11 @@ class ParallelDepth {
     return true;
   }
 
-  /// Of the last call that was true.
+  /// Bounds of the depth, after `find` has returned true.
   [[nodiscard]] double upper() const { return upper_; }
   [[nodiscard]] double lower() const { return lower_; }
 
-  /// As that of CurvedDepth: the point is the middle of what touches in the plane.
+  /// As CurvedDepth::answer; the point is the middle of the range over which the polygons touch.
   void answer(double* direction, double* point) const {
     const double tangent[2] = {-normal_[1], normal_[0]};
     const double back[2] = {-normal_[0], -normal_[1]};
@@ -51,10 +52,10 @@ class ParallelDepth {
   }
 
  private:
-  /// The largest sine of the angle between axes: what it makes of a depth is below what an answer
-  /// may be wrong by.
+  /// The largest sine of the angle between parallel axes; its effect on the depth is below the
+  /// tolerance of an answer.
   static constexpr double kParallel = 1e-11;
-  /// Corners that are no more below the highest one touch, lengths being about 1.
+  /// Corners at most this much below the highest one touch; lengths are about 1.
   static constexpr double kLevel = 1e-13;
 
   struct Reach {
@@ -62,19 +63,19 @@ class ParallelDepth {
     double high;
   };
 
-  /// The polygon of a core in the plane: from where to where its lower and its upper end are, and
-  /// half of its height.
+  /// The polygon of a core in the plane: the ranges of its lower and its upper end, and half of its
+  /// height.
   struct Outline {
     double lower[2];
     double upper[2];
     double half;
 
-    /// How far it reaches along a direction.
+    /// The support along a direction.
     [[nodiscard]] double height(const double* n) const {
       const int side = n[0] > 0.0 ? 1 : 0;
       return largest_of(n[0] * upper[side] + n[1] * half, n[0] * lower[side] - n[1] * half);
     }
-    /// Where, along the tangent, it reaches that far.
+    /// The range along the tangent in which the support is attained.
     [[nodiscard]] Reach touching(const double* n, const double* tangent) const {
       const double most = height(n) - kLevel;
       Reach reach{__builtin_inf(), -__builtin_inf()};
@@ -89,7 +90,7 @@ class ParallelDepth {
     }
   };
 
-  /// The plane of two axes.
+  /// Sets the plane of two axes.
   bool stand_beside(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
     if (!set_up(axis, 2) || !set_spun(pair.first, 1.0, first_) ||
@@ -107,7 +108,7 @@ class ParallelDepth {
     return true;
   }
 
-  /// The first is a box, which has the second's axis along one of its own.
+  /// The first is a box, and the second's axis is parallel to one of its axes.
   bool stand_in_box(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
     const int along = longest(axis);
@@ -126,7 +127,7 @@ class ParallelDepth {
     return true;
   }
 
-  /// The second is a box, which has the first's axis along one of its own.
+  /// The second is a box, and the first's axis is parallel to one of its axes.
   bool stand_beside_box(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[6], pair.turn[7], pair.turn[8]};
     const int along = longest(axis);
@@ -152,13 +153,13 @@ class ParallelDepth {
     return true;
   }
 
-  /// A rectangle around the origin, and the point of its outline that is nearest to another one.
+  /// A rectangle around the origin, and the point of its outline that is nearest to another point.
   struct Rectangle {
-    /// Of the point, negative inside.
+    /// Distance of the other point, negative inside.
     double distance;
     double foot[2];
     double outward[2];
-    /// How long the rectangle is from there on, straight back.
+    /// Length of the rectangle from the foot in the direction opposite to `outward`.
     double chord;
 
     Rectangle(double half_x, double half_y, double x, double y) {
@@ -187,7 +188,7 @@ class ParallelDepth {
     static double with_sign_of(double size, double of) {
       return of < 0.0 ? -__builtin_fabs(size) : __builtin_fabs(size);
     }
-    /// Of a point inside, or on the outline: to the nearest side.
+    /// For a point inside or on the outline: takes the nearest side.
     void turn_to_side(const double* half, const double* at, const double* over) {
       const int i = over[1] > over[0] ? 1 : 0;
       distance = over[i];
@@ -202,7 +203,7 @@ class ParallelDepth {
     const int i = __builtin_fabs(v[1]) > __builtin_fabs(v[0]) ? 1 : 0;
     return __builtin_fabs(v[2]) > __builtin_fabs(v[i]) ? 2 : i;
   }
-  /// Up along an axis of the first; false if the other is askew to that.
+  /// Sets `up` to an axis of the first; returns false if the other axis is not parallel to it.
   bool set_up(const double* axis, int along) {
     const double aside[2] = {axis[(along + 1) % 3], axis[(along + 2) % 3]};
     askew_ = __builtin_sqrt(dot2(aside, aside));
@@ -210,7 +211,8 @@ class ParallelDepth {
     return askew_ <= kParallel;
   }
 
-  /// Of a core around its axis, which goes up or down; false for others.
+  /// Sets the outline of a core of revolution whose axis points up or down; returns false for other
+  /// kinds.
   static bool set_spun(const Form& form, double upright, Outline& outline) {
     const double* n = form.number;
     const bool is_cone = form.kind == ShapeKind::cone;
@@ -223,7 +225,7 @@ class ParallelDepth {
     return true;
   }
 
-  /// A direction in the plane, of length 1.
+  /// Tests a direction in the plane, of length 1.
   void look(double aside, double up) {
     const double n[2] = {aside, up};
     const double back[2] = {-aside, -up};
@@ -233,7 +235,7 @@ class ParallelDepth {
     normal_[0] = aside;
     normal_[1] = up;
   }
-  /// At right angles to the sloping sides of an outline, away from it or towards it.
+  /// Tests the normal of the sloping side of an outline, outward (sign 1) or inward (sign -1).
   void look_across(const Outline& outline, double sign) {
     const double rise = 2.0 * outline.half;
     const double slope = outline.lower[1] - outline.upper[1];
@@ -243,12 +245,12 @@ class ParallelDepth {
 
   Outline first_;
   Outline second_;
-  /// The plane in the first's frame, from the first to the second and up, and a point of it, from
-  /// which the first's outline is measured.
+  /// The plane in the first's frame: the directions from the first to the second and up, and the
+  /// point from which the first's outline is measured.
   double across_[3];
   double up_[3];
   double base_[3];
-  /// Where the second's outline is measured from in the plane, and how askew the axes are.
+  /// The origin of the second's outline in the plane, and the sine of the angle between the axes.
   double away_[2];
   double askew_;
   double normal_[2];

@@ -1,42 +1,43 @@
 #pragma once
 
-// What the difference of two cores is near its least depth, as simple as it often is there, and the
-// points of each core that tell so.
+// The shape of the Minkowski difference of two cores near its least depth, if it is simple, and the
+// support points of each core from which that shape is derived. Used by curved_minimum.wide.h.
 
 #include "pipeline/kernels/hull/farthest_points.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// A point, up to two discs, ellipsoids and segments from it, added up, in the first's frame.
+/// A point plus up to two discs, ellipsoids and segments, in the first's frame.
 struct SimpleSum {
   struct Disc {
     double radius;
     double axis[3];
   };
-  /// An edge, or a line of a side.
+  /// An edge, or a line of a curved side.
   struct Segment {
-    /// All points of it are as far along a normal whose angle with the axis has this cosine. Of an
-    /// edge or a cylinder's side the axis is its direction, and the cosine 0.
+    /// All points of the segment are equally far along a normal whose angle with the axis has this
+    /// cosine. For an edge or a cylinder's side, the axis is its direction and the cosine is 0.
     double axis[3];
     double cosine;
     double sine;
     double length;
-    /// Of a cone's disc, else 0.
+    /// The radius of a cone's disc, else 0.
     double radius;
-    /// Unit; of a cone's side it turns with the normal.
+    /// Unit direction of the segment; on a cone's side it turns with the normal.
     double along[3];
   };
 
   struct Ellipsoid {
     double radius[3];
-    /// Unit, those of the radii.
+    /// The unit axes of the radii.
     double axis[3][3];
-    /// What is taken off all around.
+    /// Length by which the ellipsoid is eroded.
     double off;
   };
 
   double point[3];
-  /// What of it is the first's.
+  /// The first's part of `point`. Likewise, the own_ counts below are the first's parts, which come
+  /// first.
   double mine[3];
   std::uint32_t discs;
   std::uint32_t segments;
@@ -49,10 +50,9 @@ struct SimpleSum {
   Ellipsoid ellipsoid[2];
 };
 
-/// An ellipsoid's height along a unit direction, in parts: that of its core is the length of
-/// `stretched` less `off`.
+/// An ellipsoid's height along a unit direction; the height of its core is `length` less `off`.
 struct EllipsoidHeight {
-  /// The direction's parts along the axes, times the radii.
+  /// The components of the direction along the axes, times the radii.
   double stretched[3];
   double length;
 
@@ -61,7 +61,7 @@ struct EllipsoidHeight {
     length = __builtin_sqrt(dot3(stretched, stretched));
   }
 
-  /// How `stretched` turns where the direction moves along e.
+  /// The part of the change of `stretched` perpendicular to it, if the direction moves along e.
   void turn(const SimpleSum::Ellipsoid& ellipsoid, const double* e, double* across) const {
     for (int k = 0; k < 3; ++k) across[k] = ellipsoid.radius[k] * dot3(ellipsoid.axis[k], e);
     const double along = dot3(across, stretched) / (length * length);
@@ -73,7 +73,7 @@ static inline bool are_same(const double* a, const double* b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/// Three points of one core, in its frame, that were farthest along directions near each other.
+/// Three support points of one core, in its frame, for directions near each other.
 struct NearPoints {
   const Form* form;
   double at[3][3];
@@ -85,14 +85,14 @@ struct NearPoints {
     return form->kind == ShapeKind::ellipsoid || is_tapered();
   }
   [[nodiscard]] bool is_tapered() const { return form->kind == ShapeKind::tapered_capsule; }
-  /// Of a cylinder or cone: how many are at the upper end.
+  /// Cylinder or cone: the number of points at the upper end.
   [[nodiscard]] int high() const {
     int count = 0;
     for (const double(&x)[3] : at) count += x[2] > 0.0 ? 1 : 0;
     return count;
   }
-  /// Of a tapered capsule: how many are its tip. All others are farther from it than where the ball
-  /// takes over.
+  /// Tapered capsule: the number of points at the tip. All other points are farther from the tip
+  /// than the circle where the larger ball begins.
   [[nodiscard]] int tips() const {
     const double length = form->number[2] - form->number[1];
     if (length == 0.0) return 3;
@@ -104,7 +104,7 @@ struct NearPoints {
     }
     return count;
   }
-  /// Points of polytopes that are the same but for rounding become so.
+  /// Makes points of polytopes that are equal up to rounding exactly equal.
   void unite() {
     if (is_round() || is_smooth()) return;
     for (int i = 1; i < 3; ++i) {
@@ -120,8 +120,8 @@ struct NearPoints {
   }
 };
 
-/// Brings points of one core to the first's frame, those of the second with their signs turned, so
-/// that both add up to the difference.
+/// Moves points of one core to the first's frame. Points of the second are negated, so that a point
+/// of each core adds up to a point of the difference.
 class SidePlace {
  public:
   SidePlace(const CurvedPair& pair, bool second) : pair_(pair), second_(second) {}

@@ -1,3 +1,7 @@
+// The kernels of box-box: level boolean by SAT; levels distance and manifold by the best of the
+// fifteen axes (box_pair.wide.h), closest points, and contacts from the faces across the normal
+// (flat.wide.h).
+
 #include "pipeline/kernels/flat/box_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 
@@ -5,7 +9,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::flat {
 namespace {
 
-/// Where the numbers of a staged pair begin.
+/// Rows of the values of a staged pair.
 enum BoxPlace {
   kAxesA = 0,
   kAxesB = 9,
@@ -18,7 +22,8 @@ enum BoxPlace {
   kCount
 };
 
-// A loop: unrolled it would be most of a kernel for narrow lanes.
+// Called for both sides in a loop: with narrow lanes, unrolled code would make up most of the
+// kernel.
 [[gnu::noinline]] void see_boxes(const Stage<double, kCount>& rows, SeenPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
@@ -33,7 +38,7 @@ enum BoxPlace {
   }
 }
 
-// Where a pair stands, and its normal, in memory.
+// The placement of the pairs and their normals, in memory.
 template <typename T>
 struct BoxStage {
   Stage<T, kCount> stage;
@@ -71,8 +76,8 @@ struct BoxStage {
   }
 };
 
-// Distances of boxes that are apart. Below the true one is what the better of two directions
-// separates, above it the way between two points.
+// Distances of boxes that are apart. The better of two axes gives a lower bound, the distance of
+// the two points an upper bound.
 template <typename T>
 [[gnu::always_inline]] inline void measure_apart(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                  const BoxPoints<T>& points, Lanes<T> (&normal)[3],
@@ -88,8 +93,9 @@ template <typename T>
   gap = abs(distance - select(better, lower, axis.separation));
 }
 
-// The point of a that touches b when it has been moved out; `off` gets the lanes in which it is not
-// on a's face, or that of b not on b's, because more than a vertex is as deep.
+// The point of a that touches b once b has been moved out along the axis. `off` receives the lanes
+// in which that point is not on a, or its counterpart not on b: the deepest feature is then an edge
+// or a face, not a vertex.
 template <typename T>
 [[gnu::always_inline]] inline void touching_point(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                   const BoxReach<T>& reach, Lanes<T> (&point)[3],
@@ -117,15 +123,15 @@ WINNOW_SHARED_BY_LEVELS BoxPair<T> box_pair(const NarrowJob& job, const PairBloc
   return BoxPair<T>(job, block);
 }
 
-// Answers about the cores of a block, with points if level distance asks for them. Lanes that are
-// apart get their distance if it is `wanted`, else the separation.
+// Computes the distance of the cores of a block, with points if `with_points`. Lanes that are apart
+// get their distance if `wanted`, else a lower bound from the best axis.
 template <typename T>
 WINNOW_SHARED_BY_LEVELS CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                               const LaneMask<T>& wanted, bool with_points) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
-  // What is not measured is a lower bound.
+  // Lower bound for the lanes that are not measured.
   answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
   Lanes<T> gap = abs(axis.most - axis.separation);
   Lanes<T> normal[3] = {axis.normal[0], axis.normal[1], axis.normal[2]};
@@ -198,8 +204,8 @@ struct BoxBox {
     return ~certified;
   }
 
-  // The lanes of boxes that overlap although edges are parallel, whose products have no sign. Out
-  // of line: boxes that are turned any way do not come here.
+  // Returns the lanes of boxes that overlap although some edges are parallel; the cross products of
+  // these have no reliable sign. Out of line: only boxes with nearly parallel edges come here.
   template <typename T>
   [[gnu::noinline]] static Mask16 overlap_of_parallel(const BoxPair<T>& pair, const Lanes<T>& face,
                                                       const Lanes<T>& slack) {
@@ -208,8 +214,8 @@ struct BoxBox {
     return bits(s + left_out < -slack);
   }
 
-  // The lanes that what is measured tells apart or together, and those of boxes that overlap: for
-  // the few blocks with boxes that hardly touch or hardly miss each other.
+  // Decides by measuring. Returns the lanes that are decided; `over` receives the lanes that
+  // overlap. For the few blocks with boxes that hardly touch or hardly miss each other.
   template <typename T>
   [[gnu::noinline, gnu::cold]] static Mask16 settle(const BoxPair<T>& pair, Mask16& over) {
     CoreAnswer<T> core = measure(pair, best_axis(pair), pair.scale == pair.scale, false);

@@ -1,11 +1,12 @@
 #pragma once
 
-// Two boxes in the frame of a, and their separation along the fifteen axes of Gottschalk (1996):
-// 0 to 2 the faces of a, 3 to 5 those of b, 6 + 3 i + j the product of axis i of a and axis j of b.
+// Two boxes in the frame of a, and their separation along the fifteen SAT axes (Gottschalk 1996): 0
+// to 2 are the faces of a, 3 to 5 the faces of b, 6 + 3 i + j is the cross product of axis i of a
+// and axis j of b.
 //
-// Closest and deepest points of two boxes. Where a vertex meets a face, or two edges cross, the
-// best of the fifteen axes is the normal; what else there is has a vertex on one side, so that the
-// closest of sixteen vertices to the other box is the answer.
+// Closest and deepest points of two boxes: if a vertex touches a face, or two edges cross, the best
+// of the fifteen axes is the normal. In all other cases one of the points is a vertex, and the
+// vertex of the sixteen that is closest to the other box is the answer. Used by box_box.kernel.cpp.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/shared_by_levels.wide.h"
@@ -16,9 +17,9 @@ template <typename T>
 struct BoxPair {
   Lanes<T> half_a[3];
   Lanes<T> half_b[3];
-  /// Axis j of b is the column turn[0..2][j].
+  /// The rotation from b's axes to a's: axis j of b is the column turn[0..2][j].
   Lanes<T> turn[3][3];
-  /// Center of b, along the axes of a and along those of b.
+  /// Center of b, in a's axes and in b's.
   Lanes<T> center[3];
   Lanes<T> center_b[3];
   Lanes<T> rounding_a;
@@ -57,7 +58,7 @@ struct BoxPair {
     rounding_b = b.rounding;
     scale = abs(c.x) + abs(c.y) + abs(c.z) + half_a[0] + half_a[1] + half_a[2] + half_b[0] +
             half_b[1] + half_b[2] + rounding_a + rounding_b;
-    // Not a number for a bad orientation of b either.
+    // NaN for an invalid orientation of b, too.
     scale += turn[0][0] * Lanes<T>(T(0));
   }
 
@@ -71,7 +72,7 @@ struct BoxPair {
            (abs(turn[0][j]) * half_a[0] + abs(turn[1][j]) * half_a[1] +
             abs(turn[2][j]) * half_a[2]);
   }
-  /// Along the product of two axes, which is shorter than 1.
+  /// Separation times the length of the axis, which is a cross product and at most 1 long.
   [[gnu::always_inline]] Lanes<T> edges(int i, int j) const {
     const int k = (i + 1) % 3;
     const int l = (i + 2) % 3;
@@ -82,17 +83,17 @@ struct BoxPair {
     const Lanes<T> reach_b = half_b[m] * abs(turn[i][n]) + half_b[n] * abs(turn[i][m]);
     return apart - (reach_a + reach_b);
   }
-  /// Square of the length of the product of two axes.
+  /// Square of the length of the cross product.
   [[gnu::always_inline]] Lanes<T> sine_square(int i, int j) const {
     const Lanes<T>& k = turn[(i + 1) % 3][j];
     const Lanes<T>& l = turn[(i + 2) % 3][j];
     return k * k + l * l;
   }
-  /// How far edge j of b reaches across axis i of a.
+  /// Extent of edge j of b perpendicular to axis i of a.
   [[gnu::always_inline]] Lanes<T> reach_across(int i, int j) const {
     return half_b[j] * (abs(turn[(i + 1) % 3][j]) + abs(turn[(i + 2) % 3][j]));
   }
-  /// Along any unit vector from a to b, in the frame of a.
+  /// Separation along any unit vector from a to b, in the frame of a.
   [[gnu::always_inline]] Lanes<T> along(const Lanes<T> (&n)[3]) const {
     Lanes<T> reach = abs(n[0]) * half_a[0] + abs(n[1]) * half_a[1] + abs(n[2]) * half_a[2];
     for (int j = 0; j < 3; ++j) {
@@ -105,21 +106,22 @@ struct BoxPair {
   }
 };
 
-/// The axis of the largest separation.
+/// The axis with the largest separation.
 template <typename T>
 struct BoxAxis {
   /// Unit, from a to b, in the frame of a.
   Lanes<T> normal[3];
   Lanes<T> separation;
-  /// No unit vector separates more.
+  /// Upper bound of the separations along all fifteen axes; if the cores overlap, along any unit
+  /// vector.
   Lanes<T> most;
   Lanes<T> index;
-  /// Square of the length of a product of edges.
+  /// Square of the length of the axis before it was normalized; 1 for faces.
   Lanes<T> length2;
 };
 
-/// The largest separation along the fifteen axes, unscaled: enough for a verdict where no edges
-/// are parallel.
+/// The largest separation along face normals and along cross products; the latter are not
+/// normalized, which is enough for its sign if no edges are parallel.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest_face_separation(const BoxPair<T>& pair) {
   Lanes<T> s = max(pair.face_a(0), pair.face_b(0));
@@ -133,8 +135,8 @@ template <typename T>
   return s;
 }
 
-/// The same without the products of parallel edges, whose sign tells nothing; `left_out` is as
-/// `offer_edges` returns it.
+/// As above without the cross products of parallel edges, whose signs are unreliable; `left_out` is
+/// as returned by `offer_edges`.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest_crossed_separation(const BoxPair<T>& pair,
                                                                   Lanes<T>& left_out) {
@@ -150,7 +152,7 @@ template <typename T>
   return s;
 }
 
-/// The axis of a number, of any sign.
+/// The axis with the given number, with either sign.
 template <typename T>
 [[gnu::always_inline]] inline void axis_of(const BoxPair<T>& pair, const Lanes<T>& index,
                                            Lanes<T> (&axis)[3]) {
@@ -159,7 +161,7 @@ template <typename T>
   const LaneMask<T> face_of_a = index < Lanes<T>(T(2.5));
   const LaneMask<T> product = index > Lanes<T>(T(5.5));
   const Lanes<T> k = select(product, index - Lanes<T>(T(6)), index);
-  // Row i of a product, or the face of a; column j.
+  // Row i is the axis of a, j the axis of b; for a face of a, j is its axis.
   const LaneMask<T> past_two = k > Lanes<T>(T(2.5));
   const LaneMask<T> past_five = k > Lanes<T>(T(5.5));
   const Lanes<T> three = select(past_five, Lanes<T>(T(6)), select(past_two, Lanes<T>(T(3)), zero));
@@ -170,7 +172,7 @@ template <typename T>
   for (int r = 0; r < 3; ++r) {
     b[r] = select(j2, pair.turn[r][2], select(j1, pair.turn[r][1], pair.turn[r][0]));
   }
-  // Axis i of a times b: two of b's numbers, one of them negated.
+  // The cross product of axis i of a and b: two components of b, one of them negated.
   const LaneMask<T> i0 = !past_two;
   const LaneMask<T> i2 = past_five;
   const Lanes<T> cross[3] = {select(i0, zero, select(i2, -b[1], b[2])),
@@ -183,10 +185,11 @@ template <typename T>
   }
 }
 
-/// Offers the nine products; those of parallel edges are left out. A separation along one of them
-/// is at most the largest of the others and the shorter edge's reach along it: seen along the
-/// edges, the boxes are a rectangle and a parallelogram but for that, and the sides' normals are
-/// among the axes. Returns the largest reach left out.
+/// Offers the nine cross products except for pairs of parallel edges. Seen along two nearly
+/// parallel edges, the boxes are a rectangle and a parallelogram whose side normals are among the
+/// other axes, except that the edges are not quite points: they extend sideways by at most the
+/// extent of the shorter edge. A separation along a left-out axis thus exceeds the largest of the
+/// others by at most that extent. Returns the largest of these extents.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> offer_edges(const BoxPair<T>& pair, const Lanes<T>& slack,
                                                    BestAxis<T>& best) {
@@ -273,8 +276,8 @@ template <typename T>
   }
 }
 
-/// Where the boxes come closest along an axis: the vertices that reach farthest, or the points of
-/// two edges. In a's frame the point of a, in b's axes that of b.
+/// The points in which the boxes are closest along an axis: the farthest vertices, or points of two
+/// edges. `a` is in a's frame, `b` in b's axes.
 template <typename T>
 struct BoxReach {
   Lanes<T> a[3];
@@ -294,7 +297,8 @@ template <typename T>
   return r;
 }
 
-/// Replaces the vertices by the closest points of the edges through them, for products of edges.
+/// If the axis is a cross product: replaces the vertices by the closest points of the edges through
+/// them.
 template <typename T>
 [[gnu::always_inline]] inline void move_along_edges(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                     BoxReach<T>& reach) {
@@ -312,7 +316,7 @@ template <typename T>
     reach.a[r] = select(is_i[r], zero, reach.a[r]);
     reach.b[r] = select(is_j[r], zero, reach.b[r]);
   }
-  // From the middle of a's edge to that of b's, along either edge.
+  // From the middle of a's edge to the middle of b's, along each edge.
   Lanes<T> b[3];
   from_b(pair, reach.b, b);
   const Lanes<T> w[3] = {b[0] - reach.a[0], b[1] - reach.a[1], b[2] - reach.a[2]};
@@ -331,7 +335,7 @@ template <typename T>
   }
 }
 
-/// The vertex center +- arm[0] +- arm[1] +- arm[2] that is closest to a box about the origin.
+/// The vertex center +- arm[0] +- arm[1] +- arm[2] that is closest to a box centered at the origin.
 template <typename T>
 struct NearestVertex {
   Lanes<T> square;
@@ -391,7 +395,7 @@ WINNOW_SHARED_BY_LEVELS BoxPoints<T> closest_points(const BoxPair<T>& pair, cons
   const LaneMask<T> by_edges = product & (square_of(between) <= nearest);
   const LaneMask<T> vertex_of_b = of_b.square <= of_a.square;
 
-  // A vertex of a and the point of b next to it, then one of b and the point of a.
+  // Either a vertex of a and the nearest point of b, or a vertex of b and the nearest point of a.
   Lanes<T> vertex_a[3];
   Lanes<T> next_to_a[3];
   for (int r = 0; r < 3; ++r) vertex_a[r] = of_a.sign[r] * pair.half_a[r];

@@ -1,10 +1,10 @@
-// A box and a triangle in the frame of the box, and what separates them (Akenine-Moller, "Fast 3D
-// triangle-box overlap testing", 2001): axes 0 to 2 the faces of the box, 3 the triangle's normal,
-// 4 + 3 i + j the product of axis i of the box and edge j of the triangle.
+// The kernels of box-triangle, in the frame of the box. SAT axes (Akenine-Moller, "Fast 3D
+// triangle-box overlap testing", 2001): 0 to 2 are the faces of the box, 3 is the triangle's
+// normal, 4 + 3 i + j is the cross product of axis i of the box and edge j of the triangle.
 //
-// Closest and deepest points of a box and a triangle: those that the best axis tells, or a vertex
-// of the triangle and the point of the box next to it, or a vertex of the box and a point of an
-// edge.
+// Closest and deepest points: the points given by the best axis, a vertex of the triangle and the
+// nearest point of the box, or a vertex of the box and the nearest point of an edge. The steps that
+// all pairs of flat shapes share are in flat.wide.h.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -13,7 +13,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::flat {
 namespace {
 
-/// The numbers of a vector in a loop.
+/// The components of a vector by index.
 template <typename T>
 struct BoxTriangleNumbers {
   Lanes<T> at[3];
@@ -26,7 +26,7 @@ struct BoxTrianglePair {
   Vec3<T> half;
   PlacedTriangle<T> b;
   Rotation<T> frame;
-  /// In the axes of the world.
+  /// In world axes.
   Vec3<T> offset;
   Lanes<T> box_rounding;
   Lanes<T> scale;
@@ -47,7 +47,7 @@ struct BoxTrianglePair {
   [[gnu::always_inline]] Lanes<T> rounding_a() const { return box_rounding; }
   [[gnu::always_inline]] Lanes<T> rounding_b() const { return b.rounding; }
   [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const { return frame.to_world(v); }
-  /// How far the box reaches along a vector.
+  /// Half extent of the box along a vector.
   [[gnu::always_inline]] Lanes<T> reach(const Vec3<T>& n) const {
     return abs(n.x) * half.x + abs(n.y) * half.y + abs(n.z) * half.z;
   }
@@ -71,9 +71,10 @@ struct BoxTrianglePair {
   }
 };
 
-/// Calls body(i, j, length2, separation) for the nine products: the separation along an axis whose
-/// length has the square length2 and is at most that of edge j. Two vertices are on the edge, the
-/// third is off it by a number of the normal.
+/// Calls body(i, j, length2, separation) for the nine cross products: the separation times the
+/// length of the axis, and the square of that length, which is at most the length of edge j. Two
+/// vertices of the triangle have the same height along the axis; the third differs by a component
+/// of the triangle's normal.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_products(const BoxTrianglePair<T>& pair, Body&& body) {
   const Lanes<T> zero(T(0));
@@ -95,17 +96,17 @@ template <typename T, typename Body>
   }
 }
 
-/// The axis of the largest separation.
+/// The axis with the largest separation.
 template <typename T>
 struct BoxTriangleAxis {
   /// Unit, from the box to the triangle.
   Vec3<T> normal;
   Lanes<T> separation;
-  /// No unit vector separates more.
+  /// Upper bound of the separations along all axes; if the cores overlap, along any unit vector.
   Lanes<T> most;
   Lanes<T> index;
-  /// Square of the length of the axis; for products the axis of the box, and the edge and where it
-  /// begins.
+  /// Square of the length of the axis before it was normalized. For cross products also the axis of
+  /// the box, the edge of the triangle and its start.
   Lanes<T> length2;
   Vec3<T> axis;
   Vec3<T> edge;
@@ -174,8 +175,9 @@ template <typename T>
   return {clamp_to(v.x, half.x), clamp_to(v.y, half.y), clamp_to(v.z, half.z)};
 }
 
-/// The closest of the vertices: i for vertex i of the triangle and the box, 3 + 8 j + v for vertex
-/// v of the box (a bit for each positive coordinate) and edge j.
+/// Returns the index of the closest pair of a vertex and the other shape: i for vertex i of the
+/// triangle and the box, 3 + 8 j + v for vertex v of the box (one bit per positive coordinate) and
+/// edge j.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex(const BoxTrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
@@ -255,7 +257,7 @@ template <typename T>
   const LaneMask<T> on_box = taxicab(foot - clamp_to(foot, pair.half)) <= near;
   const LaneMask<T> on_triangle = pair.b.is_over(corner, select(apart, zero, near));
 
-  // The edge of the box along its axis, through the corner.
+  // The edge of the box parallel to its axis, through the corner.
   const Vec3<T>& e = axis.axis;
   const Vec3<T>& f = axis.edge;
   const Vec3<T> middle{corner.x - corner.x * e.x, corner.y - corner.y * e.y,
@@ -277,7 +279,7 @@ template <typename T>
   return p;
 }
 
-/// Where the numbers of a staged pair begin.
+/// Rows of the values of a staged pair.
 enum BoxTrianglePlace {
   kAxes = 0,
   kHalf = 9,
@@ -300,7 +302,7 @@ enum BoxTrianglePlace {
            1);
 }
 
-// Where a pair stands, and its normal, in memory.
+// The placement of the pairs and their normals, in memory.
 template <typename T>
 struct BoxTriangleStage {
   Stage<T, kCount> stage;
@@ -347,9 +349,9 @@ struct BoxTriangle {
     }
   }
 
-  // Shapes that overlap although edges are parallel, whose products have no sign: what these could
-  // separate more than the other axes is as in `offer_product`. Out of line: where no edges are
-  // parallel it is not called.
+  // Returns the lanes of shapes that overlap although some edges are parallel; the cross products
+  // of these have no reliable sign, and may separate more than the other axes by as much as
+  // `offer_product` states. Out of line: only nearly parallel edges need it.
   template <typename T>
   [[gnu::noinline]] static LaneMask<T> overlap_of_parallel(const BoxTrianglePair<T>& pair,
                                                            const Lanes<T>& slack) {

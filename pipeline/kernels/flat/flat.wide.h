@@ -1,15 +1,16 @@
 #pragma once
 
-// What the kernels of boxes and triangles share: the search for the best of many separating axes,
-// triangles as they stand, and the way from the best axis of a pair of cores to certified answers
-// and contacts.
+// Shared by the kernels of boxes and triangles: the search for the best of many separating axes,
+// triangles in world axes, and the steps from the best axis of a pair of cores to certified
+// distances and contacts.
 //
-// The separation of two convex cores along a unit vector n is how far b's lowest point along n is
-// above a's highest. Its maximum over all n is the distance, or minus the penetration depth, and is
-// found at one of few axes (Gottschalk, 1996), but for distances between vertices and edges.
+// The separation of two convex cores along a unit vector n is the height of b's lowest point along
+// n above a's highest. Its maximum over all n is the distance, or minus the penetration depth. One
+// of the SAT axes (Gottschalk 1996) attains it, except if the closest features are a vertex and a
+// vertex or a vertex and an edge.
 //
-// A kind of pair has scale, offset, along, to_world and its roundings, and the functions best_axis,
-// axis_points and closest_by_vertices; a Staged holds its lanes in memory.
+// A pair type provides scale, offset, along, to_world and its roundings, and the functions
+// best_axis, axis_points and closest_by_vertices; a Staged type holds its lanes in memory.
 
 #include "pipeline/kernels/flat/seen_faces.wide.h"
 #include "pipeline/kernels/one_pair.wide.h"
@@ -17,25 +18,26 @@
 
 namespace winnow::WINNOW_ISA_NAME::flat {
 
-/// Separations along an axis of length 1 at most are so often the unit roundoff of the pair's scale
-/// (all lengths in it) wrong, or less: 10 for an entry of a rotation, 38 for one of the product of
-/// two, 82 for the offset along a product of axes.
+/// Error bound of separations along axes of length at most 1, relative to the pair's scale (the sum
+/// of all its lengths). In units of roundoff of the scale: 10 for an entry of a rotation, 38 for an
+/// entry of the product of two rotations, 82 for the offset along a cross product.
 template <typename T>
 inline constexpr T kFlatSlack = T(48) * kEpsilon<T>;
 
-/// Bounds are at most this share of the scale, or the pair goes to the solver.
+/// If an error bound is larger than this, relative to the scale, the pair goes to the solver.
 inline constexpr double kWidestBound = 1e-12;
 
-/// Edges whose sine has a smaller square are parallel: a separation along their product would be
-/// wrong by the slack over the sine, leaving it out is wrong by the shorter edge times the sine.
+/// Edges count as parallel if the square of the sine of their angle is smaller. The separation
+/// along their cross product would have an error of slack / sine; leaving it out costs at most the
+/// shorter edge times the sine.
 template <typename T>
 inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-6F);
 
-/// More than the square of any distance, for the search of the least.
+/// Larger than the square of any distance.
 inline constexpr double kBeyondSquares = 1e300;
 
-/// The axis of the largest separation so far, compared without roots: by s|s| over the square of
-/// the axis' length.
+/// The axis with the largest separation so far. Compared without square roots: by s|s| over the
+/// square of the axis' length.
 template <typename T>
 struct BestAxis {
   Lanes<T> square;
@@ -55,7 +57,7 @@ struct BestAxis {
   }
 };
 
-/// The largest of separations along unit vectors, and which.
+/// The largest separation along unit vectors, and its axis.
 template <typename T>
 struct BestFace {
   Lanes<T> separation;
@@ -71,9 +73,9 @@ struct BestFace {
   }
 };
 
-/// Offers a product of vectors, of which `size` is at least the factors' lengths multiplied. Left
-/// out if they are parallel; what that costs is no more than the product over the longer factor:
-/// seen along it, the other is as short as that.
+/// Offers a cross product; `size` is at least the product of the factors' lengths. It is left out
+/// if the factors are parallel. The separation lost by that is at most its length over the longer
+/// factor: seen along the longer factor, the other one is that short.
 template <typename T>
 [[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Lanes<T>& left_out,
                                                  const Lanes<T>& length2,
@@ -89,13 +91,14 @@ template <typename T>
   const Lanes<T> one(T(1));
   const Lanes<T> lost = select(longer > zero, Lanes<T>(T(2)) * sqrt(length2) / longer, zero);
   left_out += select(crossed, zero, lost);
-  // Worse than anything.
+  // Less than any separation.
   const Lanes<T> worst = slack * Lanes<T>(T(-3) / kFlatSlack<T>);
   best.offer(select(crossed, separation + size * slack, worst), select(crossed, length2, one),
              index);
 }
 
-/// Whether bodies at one position are to be turned: by their shapes, then by their orientations.
+/// True if bodies at the same position are to be swapped; decided by their shapes, then by their
+/// orientations.
 inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
   const std::uint32_t shape_a = job.shapes[pair.a].bits;
   const std::uint32_t shape_b = job.shapes[pair.b].bits;
@@ -107,12 +110,12 @@ inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
   return b[i] < a[i];
 }
 
-/// Pairs of one kind in an order that does not depend on which is called a: the first component of
-/// the offset that is not zero is positive. Answers are turned back.
+/// Orders each pair in a way that does not depend on which body is called a: the first nonzero
+/// component of the offset is positive. turned_back() swaps the results back.
 template <typename T>
 struct OrderedBlock {
   BodyPair pairs[Lanes<T>::kCount];
-  /// -1 for pairs that were turned, else 1.
+  /// -1 for pairs that were swapped, else 1.
   alignas(64) T sign[Lanes<T>::kCount];
   PairBlock<T> block;
 
@@ -132,15 +135,15 @@ struct OrderedBlock {
   OrderedBlock(const OrderedBlock&) = delete;
 };
 
-/// Lanes whose axes are compared without loss: BestAxis multiplies up to ten lengths, and where the
-/// answer depends on it none is less than 1e-14 of the scale, nor a sine less than
-/// kParallelSquare says.
+/// The lanes in which axes are compared without overflow or underflow: BestAxis multiplies up to
+/// ten lengths. If the result depends on a length, it is at least 1e-14 of the scale, and a squared
+/// sine at least kParallelSquare.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_axis_range(const Lanes<T>& scale) {
   return (scale > Lanes<T>(T(1e-11))) & (scale < Lanes<T>(T(1e28)));
 }
 
-/// What a kernel has found out about the cores, in the axes of the world.
+/// Results about the cores, in world axes.
 template <typename T>
 struct CoreAnswer {
   Lanes<T> distance;
@@ -150,7 +153,8 @@ struct CoreAnswer {
   Vec3<T> point;
 };
 
-/// The answer about the shapes from that about their cores; returns the lanes that are certified.
+/// Turns results about the cores into results about the rounded shapes; returns the certified
+/// lanes.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 with_rounding(CoreAnswer<T>& answer,
                                                    const Lanes<T>& rounding_a,
@@ -162,7 +166,7 @@ template <typename T>
   return bits(in_axis_range(scale) & narrow & (abs(answer.distance) > answer.error_bound));
 }
 
-/// Turns answers back to the caller's order. `offset` is from a to b as the kernel had them.
+/// Swaps results back to the caller's order. `offset` is from a to b in the kernel's order.
 template <typename T>
 [[gnu::always_inline]] inline AnswerLanes<T> turned_back(const CoreAnswer<T>& answer,
                                                          const Vec3<T>& offset,
@@ -172,27 +176,27 @@ template <typename T>
           select(sign < Lanes<T>(T(0)), on_b, answer.point)};
 }
 
-/// Of three vectors the one whose mask holds, the last if none.
+/// Selects v[0] if is_0, else v[1] if is_1, else v[2].
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> pick(const LaneMask<T>& is_0, const LaneMask<T>& is_1,
                                            const Vec3<T> (&v)[3]) {
   return select(is_0, v[0], select(is_1, v[1], v[2]));
 }
 
-/// In the axes of the world, relative to the position of a.
+/// A triangle in the axes of the kernel, relative to the position of a.
 template <typename T>
 struct PlacedTriangle {
   Vec3<T> vertex[3];
-  /// From vertex i to the next, turned from the shape's own numbers, so that it does not carry the
-  /// rounding of vertices far from the origin.
+  /// From vertex i to the next. Computed from the shape's own numbers and then rotated, so that it
+  /// does not carry the rounding error of vertices far from the origin.
   Vec3<T> edge[3];
-  /// Not less than the edges' lengths.
+  /// Upper bounds of the edges' lengths.
   Lanes<T> length[3];
-  /// The product of the two shorter edges, and that of their lengths.
+  /// The cross product of the two shorter edges, and the product of their lengths.
   Vec3<T> normal;
   Lanes<T> area;
   Lanes<T> rounding;
-  /// The sum of all numbers.
+  /// The sum of the absolute values of all numbers.
   Lanes<T> scale;
 
   [[gnu::always_inline]] void place(const TriangleLanes<T>& shape, const Rotation<T>& turn) {
@@ -219,7 +223,7 @@ struct PlacedTriangle {
   [[gnu::always_inline]] void move(const Vec3<T>& offset) {
     for (Vec3<T>& v : vertex) v = v + offset;
   }
-  /// Smallest and largest along a vector.
+  /// The smallest and largest coordinate along a vector.
   [[gnu::always_inline]] void span(const Vec3<T>& n, Lanes<T>& low, Lanes<T>& high) const {
     const Lanes<T> d[3] = {dot(n, vertex[0]), dot(n, vertex[1]), dot(n, vertex[2])};
     low = min(d[0], min(d[1], d[2]));
@@ -230,7 +234,8 @@ struct PlacedTriangle {
     const Lanes<T> d[3] = {dot(n, vertex[0]), dot(n, vertex[1]), dot(n, vertex[2])};
     return pick((d[0] <= d[1]) & (d[0] <= d[2]), d[1] <= d[2], vertex);
   }
-  /// Whether a point projects into the triangle, or beside it by no more than a share of its edge.
+  /// True if a point projects into the triangle, or outside an edge by at most about slack * area /
+  /// |normal|.
   [[gnu::always_inline]] LaneMask<T> is_over(const Vec3<T>& p, const Lanes<T>& slack) const {
     LaneMask<T> in = slack == slack;
     for (int i = 0; i < 3; ++i) {
@@ -240,9 +245,9 @@ struct PlacedTriangle {
   }
 };
 
-/// Contacts of the lanes of `touching` by `meet(lane, points)`, in the caller's order; runs for all
-/// lanes of the block. `offset` of a lane is from a to b as the kernel had them, `sign` -1 where
-/// the caller has them the other way round.
+/// Writes the contacts of the `touching` lanes, computed by `meet(lane, points)`, in the caller's
+/// order; writes empty ranges for all other lanes of the block. `offset` of a lane is from a to b
+/// in the kernel's order; `sign` is -1 if the caller's order is the opposite.
 template <typename Meet>
 inline void write_patch_contacts(NarrowJob& job, const PairBlock<double>& block, Mask16 touching,
                                  const double (*offset)[Doubles::kCount], const double* sign,
@@ -269,7 +274,7 @@ inline void write_patch_contacts(NarrowJob& job, const PairBlock<double>& block,
   }
 }
 
-/// A point of each, relative to the position of a.
+/// A point of each shape, relative to the position of a.
 template <typename T>
 struct PointPair {
   Vec3<T> a;
@@ -281,7 +286,8 @@ struct PointPair {
   }
 };
 
-/// How far the deepest contact may be from the depth of the pair, as a share of the scale.
+/// The largest difference between the deepest contact and the depth of the pair, relative to the
+/// scale.
 inline constexpr double kDeepest = 1e-6;
 
 template <typename T>
@@ -289,13 +295,13 @@ template <typename T>
   return max(min(t, Lanes<T>(T(1))), Lanes<T>(T(0)));
 }
 
-/// 1 / v; 0 for 0.
+/// 1 / v, or 0 if v is 0.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> inverse(const Lanes<T>& v) {
   return select(v > Lanes<T>(T(0)), Lanes<T>(T(1)) / v, Lanes<T>(T(0)));
 }
 
-// Steps of a search by axes, each of a kind of pair's own.
+// The steps of the search, as types that select the overload for a pair type.
 struct ToBestAxis {
   template <typename Pair>
   [[gnu::always_inline]] static auto of(const Pair& pair) {
@@ -320,8 +326,8 @@ template <typename Step, typename... From>
   return Step::of(from...);
 }
 
-/// A step by a function that all levels share where a wide type is four registers: little would
-/// stay in them, and compilers take half the time.
+/// Runs a step. If a wide type takes four registers, it is called as a function that all levels
+/// share: values would not stay in registers anyway, and compiling is faster.
 template <typename Step, typename T, typename... From>
 [[gnu::always_inline]] inline auto step(const From&... from) {
   if constexpr (kPartsOf<T> == 4) {
@@ -331,25 +337,27 @@ template <typename Step, typename T, typename... From>
   }
 }
 
-/// What the best axis says: a vertex and its foot on a face, or a point of each of two edges.
+/// The points given by the best axis: a vertex and its foot on a face, or a point of each of two
+/// edges.
 template <typename T>
 struct AxisPoints {
   PointPair<T> points;
-  /// The foot is inside of the face, or little outside where the triangles overlap; the edges
+  /// The foot is inside the face (or slightly outside if the triangles overlap), or the edges
   /// cross.
   LaneMask<T> meets;
-  /// How far off the foot may be, as a multiple of the slack.
+  /// Error of the foot, as a multiple of the slack.
   Lanes<T> doubt;
 };
 
-/// Lanes whose cores may be apart, as far as rounding can tell. Axes that all but fail to part the
-/// cores say nothing of the distance: those of two triangles in one plane are all its normal.
+/// The lanes whose cores may be apart, up to rounding. If even the best axis barely fails to
+/// separate the cores, the axes do not determine the distance: for two coplanar triangles all of
+/// them are the normal of the plane.
 template <typename Axis, typename T>
 [[gnu::always_inline]] inline LaneMask<T> may_be_apart(const Axis& axis, const Lanes<T>& scale) {
   return axis.most > -(scale * Lanes<T>(kFlatSlack<T>));
 }
 
-/// Puts the points of some lanes to where both shapes are.
+/// Recomputes the points of some lanes as points on both shapes.
 template <typename Staged, typename Pair, typename T>
 inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes) {
   const Staged stage(pair, answer.normal);
@@ -369,9 +377,9 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
                   Lanes<T>::load(point.value[2])};
 }
 
-/// Answers about the cores of a block. Lanes that are apart get their distance if it is `wanted`,
-/// else a lower bound. Below the true distance is what the better of two directions separates,
-/// above it the way between two points.
+/// Computes the distance of the cores of a block. Lanes that are apart get their distance if
+/// `wanted`, else a lower bound. The better of two directions gives the lower bound of a distance,
+/// a pair of points the upper bound.
 template <int L, typename Staged, typename Pair, typename Axis, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const Pair& pair, const Axis& axis,
                                                     const LaneMask<T>& wanted) {
@@ -417,7 +425,7 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
   return answer;
 }
 
-/// Contacts of a pair, or the one where its faces come closest.
+/// Returns the contacts of a pair, or the one point where its faces are closest.
 template <typename Staged>
 inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, unsigned lane,
                                  double margin, ContactPoint* points) {
@@ -432,8 +440,8 @@ inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, uns
   return flat_contacts(a, b, normal, margin, points);
 }
 
-/// Contacts of the lanes of `touching` between the patches of `stage`. Returns the lanes in which
-/// they leave out where the shapes are closest: no manifolds.
+/// Writes the contacts between the patches of `stage` in the `touching` lanes. Returns the lanes in
+/// which the contacts miss the point where the shapes are closest; these get no contacts.
 template <typename Staged>
 [[gnu::always_inline]] inline Mask16 write_true_contacts(NarrowJob& job,
                                                          const PairBlock<double>& given,
@@ -462,8 +470,8 @@ template <typename Staged>
   return missed;
 }
 
-/// Levels distance and manifold of a block; `sign` as OrderedBlock has it. Returns the uncertified
-/// lanes.
+/// Answers a block at levels distance and manifold; `sign` is as in OrderedBlock. Returns the
+/// uncertified lanes.
 template <int L, typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_flat(NarrowJob& job, const PairBlock<T>& given,
                                                  const Pair& pair, const T* sign) {
@@ -485,29 +493,30 @@ template <int L, typename Staged, typename T, typename Pair>
   return ~certified;
 }
 
-/// Distances of all lanes, of few blocks: of a copy, so that the caller's pair need not be in
-/// memory.
+/// Measures all lanes of a block. Out of line as few blocks need it, and with a copy of the pair,
+/// so that the caller's pair need not be in memory.
 template <typename Staged, typename T, typename Pair>
 [[gnu::noinline]] inline CoreAnswer<T> measured(Pair pair) {
   const auto axis = step<ToBestAxis, T>(pair);
   return measure<kManifold, Staged>(pair, axis, pair.scale == pair.scale);
 }
 
-/// Of level boolean, over the scale. What float has read of a pair was rounded before: twice as
-/// much.
+/// The error bound of level boolean. The float pass rounds its inputs first, which doubles it.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> verdict_slack(const Lanes<T>& scale) {
   return scale * Lanes<T>(kFirstPass<T> ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);
 }
 
-/// Lanes of sizes of which level boolean compares products of three lengths, and shares of them.
+/// The lanes in which level boolean can compare products of three lengths without overflow or
+/// underflow.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_verdict_range(const Lanes<T>& scale) {
   if constexpr (!kFirstPass<T>) return in_range(scale * scale);
   return (scale > Lanes<T>(T(1e-8F))) & (scale < Lanes<T>(T(1e8F)));
 }
 
-/// Level boolean: the pairs that `apart` and `over` leave open are measured, but not in float.
+/// Answers a block at level boolean. In double, pairs that are in neither `apart` nor `over` are
+/// measured; in float they remain uncertified.
 template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
                                                      const Pair& pair, const LaneMask<T>& apart,

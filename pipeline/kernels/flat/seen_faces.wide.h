@@ -1,7 +1,8 @@
 #pragma once
 
-// Faces of boxes and triangles across the contact normal, eight pairs at a time in double: what
-// box_patch, triangle_patch, PatchFrame and Outline make of one pair, to the bit.
+// Projects the faces of boxes and triangles along the contact normal, eight pairs at a time in
+// double. The results equal to the bit what box_patch, triangle_patch, PatchFrame and Outline
+// compute for one pair. Called by the flat kernels through flat.wide.h.
 
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -10,7 +11,7 @@ namespace winnow::WINNOW_ISA_NAME::flat {
 
 using Doubles3 = Vec3<double>;
 
-/// Vectors and numbers of all lanes in memory, to be read one lane at a time, too.
+/// Vectors and numbers of all lanes in memory, so that single lanes can be read.
 template <typename T, int Count>
 struct Stage {
   alignas(64) T value[Count][Lanes<T>::kCount];
@@ -37,14 +38,15 @@ struct Stage {
   }
 };
 
-/// Corners of a face in order around it.
+/// The corners of a face in order around it.
 template <int Corners>
 struct FaceCorners {
   Doubles3 corner[Corners];
   Lanes<double> number;
 };
 
-/// The face of a box that looks along `normal`: see box_patch.
+/// The face of a box that is most perpendicular to `normal`, on the side of the normal: see
+/// box_patch.
 [[gnu::always_inline]] inline FaceCorners<4> face_of_box(const Doubles3 (&axis)[3],
                                                          const Doubles3& half,
                                                          const Doubles3& center,
@@ -56,7 +58,7 @@ struct FaceCorners {
   const LaneMask<double> is_0 = !(beats_0 | is_2);
   const LaneMask<double> is_1 = beats_0 & !is_2;
   const Lanes<double> half_of[3] = {half.x, half.y, half.z};
-  // What is `turn` axes after the face's.
+  // The axis, or half extent, `turn` places after the face's axis, cyclically.
   const auto axis_after = [&](int turn) __attribute__((always_inline)) {
     return select(is_0, axis[turn], select(is_1, axis[(1 + turn) % 3], axis[(2 + turn) % 3]));
   };
@@ -92,7 +94,7 @@ struct FaceCorners {
 /// Both faces of eight pairs.
 class SeenPairs {
  public:
-  /// The axes along which faces are seen: see PatchFrame.
+  /// Sets the projection axes for a normal: see PatchFrame.
   [[gnu::always_inline]] void look_along(const Doubles3& n) {
     const Lanes<double> one(1.0);
     const Lanes<double> sign = (n.z & Lanes<double>(-0.0)) | one;
@@ -104,7 +106,7 @@ class SeenPairs {
     plain_ = ~Mask16{0};
   }
 
-  /// The face of one side, 0 or 1, seen along the axes.
+  /// Projects the face of one side, 0 or 1.
   template <int Corners>
   [[gnu::always_inline]] void see(const FaceCorners<Corners>& face, int side) {
     const Doubles3 x = rows_.vector(kAxisX);
@@ -143,7 +145,7 @@ class SeenPairs {
         bits((area > Lanes<double>(kThin) * size * size) & (area > Lanes<double>(kSteep) * length));
   }
 
-  /// False for a lane with a face that is thin or steep, which is for contact_patch.
+  /// False for a lane with a thin or steep face; these need contact_patch.
   [[nodiscard]] bool is_plain(unsigned lane) const { return (plain_ >> lane & 1U) != 0; }
   [[nodiscard]] SeenFaces faces(unsigned lane, double rounding_a, double rounding_b) const {
     const auto number = [&](int side) { return static_cast<std::uint32_t>(number_[side][lane]); };

@@ -1,8 +1,9 @@
-// Two triangles, and what separates them: axis 0 the normal of a, 1 that of b, 2 + 3 i + j the
-// product of edge i of a and edge j of b.
+// The kernels of triangle-triangle. SAT axes: 0 is the normal of a, 1 the normal of b, 2 + 3 i + j
+// is the cross product of edge i of a and edge j of b.
 //
-// Closest and deepest points: where a vertex meets a face, or two edges cross, the best axis is the
-// normal; what else there is has a vertex of one and an edge of the other.
+// Closest and deepest points: if a vertex touches a face, or two edges cross, the best axis is the
+// normal. In all other cases the points are a vertex of one triangle and a point of an edge of the
+// other. The steps that all pairs of flat shapes share are in flat.wide.h.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -30,7 +31,7 @@ struct TrianglePair {
   [[gnu::always_inline]] Lanes<T> rounding_b() const { return b.rounding; }
   [[gnu::always_inline]] Vec3<T> to_world(const Vec3<T>& v) const { return v; }
 
-  /// Heights of the vertices of one over the plane of the other, as a separation.
+  /// Separation along the normal of one triangle, times the normal's length.
   [[gnu::always_inline]] Lanes<T> over_a() const { return over(a.normal, a.vertex[0], b); }
   [[gnu::always_inline]] Lanes<T> over_b() const { return over(b.normal, b.vertex[0], a); }
   [[gnu::always_inline]] static Lanes<T> over(const Vec3<T>& normal, const Vec3<T>& foot,
@@ -51,9 +52,10 @@ struct TrianglePair {
   }
 };
 
-/// Calls body(i, j, axis, separation, size) for the nine products of edges: the separation along
-/// the axis, unscaled, and at least the product of the edges' lengths. All of a triangle's vertices
-/// but one are on the edge; how far that one is off is the other edge times the normal.
+/// Calls body(i, j, axis, separation, size) for the nine cross products of edges: the separation
+/// times the length of the axis, and an upper bound of that length. Two vertices of each triangle
+/// are on the edge; the height of the third along the axis is the other triangle's edge times the
+/// normal.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_products(const TrianglePair<T>& pair, Body&& body) {
   const Lanes<T> zero(T(0));
@@ -77,17 +79,18 @@ template <typename T, typename Body>
   }
 }
 
-/// The axis of the largest separation.
+/// The axis with the largest separation.
 template <typename T>
 struct TriangleAxis {
   /// Unit, from a to b.
   Vec3<T> normal;
   Lanes<T> separation;
-  /// No unit vector separates more.
+  /// Upper bound of the separations along all axes; if the cores overlap, along any unit vector.
   Lanes<T> most;
-  /// -1 if all edges are parallel, and the normal is no axis.
+  /// -1 if all edges are parallel: there is no axis then, and `normal` is meaningless.
   Lanes<T> index;
-  /// Square of the length of the axis, and for products the edges and where they begin.
+  /// Square of the length of the axis before it was normalized. For cross products also the edges
+  /// and their starts.
   Lanes<T> length2;
   Vec3<T> edge_a;
   Vec3<T> edge_b;
@@ -112,7 +115,8 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline TriangleAxis<T> best_axis(const TrianglePair<T>& pair) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-  // Worse than any axis; left as it is if there is none: a normal that is no axis is not unit.
+  // Less than the separation along any axis. It stays if there is no axis; the normal is then not
+  // unit.
   const Lanes<T> none = -pair.scale * Lanes<T>(T(2));
   BestAxis<T> best{none * abs(none), Lanes<T>(T(1)), Lanes<T>(T(-1))};
   Lanes<T> left_out(T(0));
@@ -149,9 +153,9 @@ template <typename T>
   return r;
 }
 
-/// Of eighteen pairs of a vertex and an edge the closest: 3 i + j for edge i of a and vertex j of
-/// b, 9 + 3 j + i for edge j of b and vertex i of a. Compared by expanded squares; the distance is
-/// measured between points afterwards.
+/// Returns the closest of eighteen pairs of a vertex and an edge: 3 i + j for edge i of a and
+/// vertex j of b, 9 + 3 j + i for edge j of b and vertex i of a. Compares expanded squares, which
+/// are inexact; the distance is computed from the points afterwards.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> nearest_vertex_and_edge(const TrianglePair<T>& pair) {
   const Lanes<T> two(T(2));
@@ -249,7 +253,7 @@ template <typename T>
   return p;
 }
 
-/// Where the numbers of a staged pair begin.
+/// Rows of the values of a staged pair.
 enum TrianglePlace {
   kA = 0,
   kB = 9,
@@ -268,7 +272,7 @@ enum TrianglePlace {
   }
 }
 
-// Where a pair stands, and its normal, in memory.
+// The placement of the pairs and their normals, in memory.
 template <typename T>
 struct TriangleStage {
   Stage<T, kCount> stage;
@@ -318,8 +322,8 @@ struct TriangleTriangle {
     const TrianglePair<T> pair(job, block);
     const Lanes<T> slack = verdict_slack(pair.scale);
     const Mask16 valid = bits(in_verdict_range(pair.scale));
-    // An axis is at most as long as the edges' product: what is above the slack and the roundings
-    // times that is separated by more.
+    // The axes are not normalized. An axis is at most as long as the product of its edges: if its
+    // value exceeds the slack and roundings times that product, the triangles are apart.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;
     const Lanes<T> over_a = pair.over_a();
     const Lanes<T> over_b = pair.over_b();

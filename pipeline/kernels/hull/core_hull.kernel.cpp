@@ -1,13 +1,13 @@
-// Spheres, capsules and boxes against hulls, and hulls against triangles: the simple shapes as
-// hulls, so that they meet hulls by the same kernels.
+// The kernels of hulls with spheres, capsules, boxes and triangles. The simple shapes are
+// represented as hulls, so that hull_answers.wide.h serves all these pairs.
 
 #include "pipeline/kernels/hull/hull_answers.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::hull {
-/// Faces, edges and neighbours of boxes. Vertex i is at the high end of axis k where bit k is set;
-/// face 2 k + 1 looks along axis k, face 2 k against it; edge 4 k + j is along axis k, at the ends
-/// of the others that the bits of j say. The numbers are those of box_patch.
+/// Faces, edges and neighbours of boxes. Vertex i is at the positive end of axis k if bit k is set.
+/// Face 2 k + 1 is the positive face of axis k, face 2 k the negative one. Edge 4 k + j runs along
+/// axis k; the bits of j are its ends of the two other axes. box_patch uses the same numbers.
 struct BoxTopology {
   std::uint32_t loop[24];
   std::uint32_t loop_edge[24];
@@ -17,7 +17,7 @@ struct BoxTopology {
   std::uint32_t neighbour[24];
 };
 
-/// The axes other than one, in order.
+/// The two other axes, in order.
 constexpr std::uint32_t lower_other(std::uint32_t axis) {
   return axis == 0 ? 1 : 0;
 }
@@ -65,10 +65,10 @@ constexpr BoxTopology make_box_topology() {
 
 inline constexpr BoxTopology kBoxTopology = make_box_topology();
 
-/// What the few roundings of a length may take from it, as a factor.
+/// Factor that makes up for the rounding of a length.
 inline constexpr double kOverRoundings = 1.0 + 1e-15;
 
-/// A triangle's two sides, and an edge that both have.
+/// The two sides of a triangle; they share all edges.
 inline constexpr std::uint32_t kTriangleLoop[6] = {0, 1, 2, 0, 2, 1};
 inline constexpr std::uint32_t kTriangleLoopEdge[6] = {0, 1, 2, 2, 1, 0};
 inline constexpr HullEdge kTriangleEdges[3] = {
@@ -79,11 +79,12 @@ inline constexpr HullEdge kSegmentEdge[1] = {{{0, 1}, {~0U, ~0U}}};
 inline constexpr std::uint32_t kSegmentNeighbourFirst[3] = {0, 1, 2};
 inline constexpr std::uint32_t kSegmentNeighbours[2] = {1, 0};
 
-/// A hull of up to eight vertices and six faces with what it points to. Does not move. Until it is
-/// completed its faces have no planes: many pairs are decided before they are asked for.
+/// A hull of up to eight vertices and six faces, with storage for everything that it points to;
+/// must not be moved. Its faces have no planes until complete() is called: many pairs are decided
+/// without them.
 class CoreHull {
  public:
-  /// Nothing is set: to do so for all slots of a job takes longer than the answer to one pair.
+  /// Uninitialized, because a small job uses few of the slots.
   CoreHull() {}
   CoreHull(const CoreHull&) = delete;
   CoreHull& operator=(const CoreHull&) = delete;
@@ -152,11 +153,11 @@ class CoreHull {
     return hull_;
   }
 
-  /// Makes the planes of the faces; false if they cannot be relied on.
+  /// Computes the planes of the faces; returns false if they are not reliable.
   bool complete() {
     if (hull_.dimension == 2) return complete_triangle();
     for (std::uint32_t face = 0; face < hull_.face_count; ++face) {
-      // The last vertex of a box is at the high end of each axis.
+      // The last vertex of a box is at the positive end of every axis.
       set_plane(face, hull_.faces[face].normal, vertex_[face / 2][7]);
     }
     return true;
@@ -195,7 +196,7 @@ class CoreHull {
     }
     cross3(e, f, n);
     const double area = __builtin_sqrt(dot3(n, n));
-    // A sliver is left to the solver.
+    // Slivers are left to the solver.
     if (!(area > 1e-6 * (dot3(e, e) + dot3(f, f)))) return false;
     for (int k = 0; k < 3; ++k) {
       face_[0].normal[k] = n[k] / area;
@@ -224,11 +225,11 @@ class CoreHull {
   HullFace face_[2];
   alignas(64) double vertex_[3][kRow];
   alignas(64) float vertex_float_[3][kLanes];
-  /// Rows from the count of faces on are not read as faces.
+  /// Rows beyond the number of faces are not read as faces.
   alignas(64) float plane_[4][kLanes];
 };
 
-/// How a shape's supports are found.
+/// Selects the class that computes a shape's supports.
 template <typename Shape>
 struct SecondsOf;
 template <>
@@ -261,7 +262,8 @@ static inline const TriangleShape* table_of(const ShapeTables& t, const Triangle
   return t.triangles;
 }
 
-/// A simple shape, of body a if `Before`, and a hull, which is the first of the HullPair.
+/// A simple shape and a hull. The hull is the first of the HullPair; the simple shape is on body a
+/// if `Before`.
 template <typename Shape, bool Before>
 class CoreAndHull {
  public:

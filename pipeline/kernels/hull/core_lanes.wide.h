@@ -1,6 +1,6 @@
 #pragma once
 
-// Cores of shapes, one per lane, and their points that lie farthest along directions.
+// Cores of shapes, one per lane, and their support functions.
 
 #include <winnow/pipeline/shapes.h>
 #include "simd/lanes/vectors.h"
@@ -13,15 +13,15 @@ inline constexpr int kCoreNumbers = 9;
 template <typename T>
 struct CoreLanes {
   /// Box: half extents. Capsule, cylinder, cone: radius of the core, 0, half length. Triangle:
-  /// three vertices. Ellipsoid: radii, and what is taken off all around, which the rounding has
-  /// instead: the least radius of curvature. Tapered capsule: by how much the larger ball is
-  /// larger, z of its middle, z of the smaller one's; the same twice, and no radius, where it holds
-  /// the smaller one. Hulls and a program's own sets have none.
+  /// three vertices. Ellipsoid: its radii, and the least radius of curvature, which is removed from
+  /// the core and added to the rounding. Tapered capsule: the difference of the radii, z of the
+  /// larger ball, z of the smaller ball; if the larger ball contains the smaller: 0, and twice z of
+  /// the larger ball. Hulls and user shapes have no numbers.
   Lanes<T> number[kCoreNumbers];
   ShapeKind kind;
 };
 
-/// How many of the numbers cores of a kind have.
+/// The number of entries of `number` that a kind uses.
 constexpr int core_numbers(ShapeKind kind) {
   switch (kind) {
     case ShapeKind::sphere:
@@ -37,11 +37,13 @@ constexpr int core_numbers(ShapeKind kind) {
   }
 }
 
-/// Directions whose part across an axis is shorter are along it.
+/// If the component of a direction perpendicular to an axis is shorter, the direction counts as
+/// parallel to the axis.
 template <typename T>
 inline constexpr T kLeastAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
 
-/// The point of a rim in the direction of d, at z; where d is along the axis the rim's middle.
+/// The point of a rim at height z in the direction of d; the centre of the rim if d is along the
+/// axis.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> rim_point(const Lanes<T>& radius, const Vec3<T>& d,
                                                        const Lanes<T>& across, const Lanes<T>& z) {
@@ -49,8 +51,8 @@ template <typename T>
   return {d.x * over, d.y * over, z};
 }
 
-/// That of an ellipsoid: n as in CoreLanes::number. Relative to the largest product, so that no
-/// square vanishes that counts.
+/// Support point of an ellipsoid, with n as in CoreLanes::number. Values are relative to the
+/// largest product, so that no relevant square underflows.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> ellipsoid_point(const Lanes<T>* n, const Vec3<T>& d) {
   const Vec3<T> stretched{n[0] * d.x, n[1] * d.y, n[2] * d.z};
@@ -62,7 +64,7 @@ template <typename T>
           n[2] * share.z * over - off * d.z};
 }
 
-/// That of a tapered capsule: n as in CoreLanes::number.
+/// Support point of a tapered capsule, with n as in CoreLanes::number.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> taper_point(const Lanes<T>* n, const Vec3<T>& d) {
   const Lanes<T> zero(T(0));
@@ -73,8 +75,8 @@ template <typename T>
                 Vec3<T>{d.x * over, d.y * over, n[1] + d.z * over});
 }
 
-/// The farthest point of a core along d, in its frame; `one_by_one` finds that of hulls and of a
-/// program's own sets.
+/// Returns the support point of a core along d, in its frame; `one_by_one` computes it for hulls
+/// and user shapes.
 template <typename T, typename OneByOne>
 [[gnu::always_inline]] static inline Vec3<T> support(const CoreLanes<T>& core, const Vec3<T>& d,
                                                      OneByOne&& one_by_one) {
@@ -115,7 +117,7 @@ template <typename T, typename OneByOne>
   }
 }
 
-/// A rotation or its inverse, of one matrix per lane.
+/// Applies a rotation, or its inverse; one matrix per lane.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> turned(const Lanes<T>* m, const Vec3<T>& v) {
   return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,

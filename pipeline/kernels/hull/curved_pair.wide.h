@@ -1,8 +1,7 @@
 #pragma once
 
-// A pair of convex shapes by itself, in double: as the curved kernels pass it from stage to stage,
-// and as a pair alone is judged. Lengths are multiplied by a power of two that brings the largest
-// into [1, 2).
+// One pair of convex shapes in double: the curved kernels pass it from stage to stage, and single
+// pairs are tested with it. Lengths are scaled by a power of two so that the largest is in [1, 2).
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
@@ -13,72 +12,76 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 /// The core of a shape in its own frame.
 struct Form {
   ShapeKind kind;
-  /// As those of CoreLanes.
+  /// The same numbers as in CoreLanes.
   double number[hull::kCoreNumbers];
-  /// Of a hull, and of a program's own set.
+  /// Null unless the shape is a hull, and a user shape, respectively.
   const HullShape* hull;
   const SupportShape* own;
   double rounding;
-  /// A point of it.
+  /// A point of the core.
   double center[3];
 };
 
-/// What the search found out about the cores.
+/// Result of the search for the closest points of the cores.
 enum class CurvedState : std::uint32_t {
-  /// Farther apart than anyone asks.
+  /// Farther apart than `CurvedPair::far`.
   far,
-  /// Closest points found.
+  /// Apart; closest points found.
   apart,
-  /// Overlap beyond doubt.
+  /// Certainly overlapping.
   inside,
-  /// Touching, as far as double can tell.
+  /// Touching, within the accuracy of double.
   close,
 };
 
-/// "First" is body a of the pair, or body b where `swapped`.
+/// The first is body a of the pair, or body b if `swapped` is set.
 struct CurvedPair {
   Form first;
   Form second;
-  /// From the second's frame to the first's: x -> turn x + shift; rows.
+  /// Transform from the frame of the second to the frame of the first: x -> turn x + shift, where
+  /// `turn` has rows.
   double turn[9];
   double shift[3];
-  /// From the first's frame to the world's axes; rows.
+  /// Rotation from the frame of the first to world axes; rows.
   double frame[9];
-  /// Position of the second less that of the first, in the world's axes and the caller's lengths.
+  /// Position of the second minus position of the first, in world axes and the caller's units.
   double offset[3];
-  /// An upper bound of every length that occurs.
+  /// Upper bound of all lengths that occur.
   double size;
   double rounding;
-  /// The search stops with state far beyond this, in the caller's lengths, roundings excluded;
-  /// infinite: never.
+  /// The search stops with state `far` if the distance of the cores (without roundings) exceeds
+  /// this; in the caller's units. Infinite: never.
   double far;
-  /// What lengths were multiplied by, and its inverse.
+  /// Factor by which lengths are multiplied, and its inverse.
   double scale;
   double unit;
   std::uint32_t index;
   bool swapped;
   // Outcome of the search.
   CurvedState state;
-  /// Points of first - second, and the points of the first that are in them: those that span the
-  /// closest feature, or where the cores overlap the four around the origin.
+  /// Points of the Minkowski difference first - second, and the points of the first that belong to
+  /// them: the simplex that spans the closest feature or, if the cores overlap, four points around
+  /// the origin.
   std::uint32_t count;
   double difference[4][3];
   double on_first[4][3];
-  /// first - second where they are closest, its length, and a lower bound of the distance.
+  /// The vector first - second at the closest points, its length, and a lower bound of the
+  /// distance.
   double gap[3];
   double upper;
   double lower;
 };
 
-/// Nothing is known of the surface of a program's own set but its points.
+/// True if the pair has a user shape, of which only the support function is available.
 static inline bool has_own(const CurvedPair& pair) {
   return pair.second.kind == ShapeKind::support;
 }
 
-/// A bound of the rounding errors of lengths, over size: some forty operations of half a unit each.
+/// Bound of rounding errors of lengths, relative to size: some forty operations of half an ulp
+/// each.
 inline constexpr double kRoundingError = 40.0 * 0x1p-53;
 
-/// Sizes within these have powers that neither overflow nor vanish.
+/// If the size is in this range, its powers neither overflow nor underflow.
 inline constexpr double kSmallest = 1e-60;
 inline constexpr double kLargestSize = 1e60;
 
@@ -92,7 +95,8 @@ static inline double dot2(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/// Unit, across d, which is unit, and each other, the same while d trembles: see kAxisCosine.
+/// Two unit vectors perpendicular to the unit vector d and to each other, stable while d jitters:
+/// see kAxisCosine.
 static inline void directions_across(const double* d, double (*across)[3]) {
   int axis = 0;
   while (axis < 2 && !(__builtin_fabs(d[axis]) <= kAxisCosine)) ++axis;
@@ -106,7 +110,8 @@ static inline void directions_across(const double* d, double (*across)[3]) {
   cross3(d, across[0], across[1]);
 }
 
-/// Fills the core, unscaled, and returns its reach from its origin.
+/// Sets the core, without scaling, and returns an upper bound on the distance of its points from
+/// its origin.
 static inline double describe(const ShapeTables& tables, ShapeId id, Form& form) {
   form.kind = id.kind();
   form.hull = nullptr;
@@ -185,8 +190,8 @@ static inline double describe(const ShapeTables& tables, ShapeId id, Form& form)
   return form.number[0] + form.number[1] + form.number[2];
 }
 
-/// Pairs of one kind are computed alike in either order: the sign of the difference of positions
-/// decides.
+/// True if b comes before a. Pairs of one kind are computed in the same way in either order: the
+/// sign of the difference of positions decides.
 static inline bool comes_second(const Pose& a, const Pose& b) {
   for (int i = 0; i < 3; ++i) {
     const double c = b.position[i] - a.position[i];
@@ -195,7 +200,7 @@ static inline bool comes_second(const Pose& a, const Pose& b) {
   return false;
 }
 
-/// Fills what the search needs; false if poses or sizes are out of range.
+/// Sets the input of the search. Returns false if poses or sizes are out of range.
 static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair& pair) {
   const ShapeId ids[2] = {job.shapes[bodies.a], job.shapes[bodies.b]};
   const Pose& pose_a = job.poses[bodies.a];
@@ -242,7 +247,7 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   return true;
 }
 
-/// The vertex of a hull that is farthest along d, times `scale`.
+/// Writes the vertex of a hull that is farthest along d, times `scale`.
 template <typename T>
 static inline void hull_support(const HullShape& shape, const T* d, T scale, T* x) {
   const std::uint32_t vertex = hull::highest_vertex(shape, Vec3<T>{d[0], d[1], d[2]});
@@ -250,7 +255,7 @@ static inline void hull_support(const HullShape& shape, const T* d, T scale, T* 
   for (int k = 0; k < 3; ++k) x[k] = column[k][vertex] * scale;
 }
 
-/// That of a core of which no lanes are made.
+/// Support point of a core for which there is no lane code: a hull or a user shape.
 template <typename T>
 static inline void single_support(const Form& form, const T* d, T scale, T* x) {
   if (form.kind == ShapeKind::support) {

@@ -1,12 +1,12 @@
 #pragma once
 
-// Points of cores, and of their differences, that are farthest along directions, one at a time.
+// Support points of cores and of their Minkowski difference, for one pair at a time.
 
 #include "pipeline/kernels/hull/curved_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// The farthest point of a core along d, in its frame.
+/// The support point of a core along d, in its frame.
 static inline void farthest(const Form& form, const double* d, double scale, double* x) {
   const double* n = form.number;
   const auto towards = [](double along, double half) { return along < 0.0 ? -half : half; };
@@ -63,7 +63,7 @@ static inline void farthest(const Form& form, const double* d, double scale, dou
   }
 }
 
-/// The point of first - second that is farthest along n, and that of the first in it.
+/// The support point w of first - second along n, and the point `mine` of the first in it.
 static inline void difference_point(const CurvedPair& pair, const double* n, double* w,
                                     double* mine) {
   double back[3];

@@ -1,6 +1,8 @@
 #pragma once
 
-// Jobs of the hull kernels: pairs are placed, searched in float lanes and finished one by one.
+// Runs the jobs of the hull kernels: pairs are placed, searched by GJK in float lanes
+// (hull_search.wide.h), and then finished one at a time in double (hull_depth, hull_finish,
+// hull_contacts). Level boolean first tries the faster overlap tests of one_verdict.wide.h.
 
 #include "pipeline/kernels/hull/hull_contacts.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
@@ -10,17 +12,20 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Answers jobs of one level. Shapes says which hulls the pairs of a job are:
-/// `kRoom` at a time, by place(job, bodies, slot, pair), which is false for what is out of range,
-/// and complete(slot) for what the search has not decided, which is false for what lanes do not do,
-/// by `kSimpleSecond` whether their second is a simple shape, by `kPointSecond` whether the core of
-/// that is a point, at its origin, and by `Seconds` how the search finds its supports.
+/// Answers jobs of one level. `Shapes` provides the hulls of the pairs:
+/// - kRoom: the number of pairs that it can store at once.
+/// - place(job, bodies, slot, pair): fills in a pair; false if it is out of range.
+/// - complete(slot): computes the planes of faces, for pairs that the search has not decided; false
+///   if the kernel cannot handle the shape.
+/// - kSimpleSecond: the second hull is a simple shape.
+/// - kPointSecond: the core of the second is a point at its origin.
+/// - Seconds: the class that computes supports of the second.
 template <typename Shapes, int Level>
 class HullAnswers {
  public:
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
-      // Most need no more.
+      // Most pairs are decided by these tests.
       return answer_in_doubt<HullAnswers>(job, curved::verdicts(job));
     } else {
       HullAnswers answers(job);
@@ -40,7 +45,7 @@ class HullAnswers {
 
   explicit HullAnswers(NarrowJob& job) : job_(job) {}
 
-  /// Answers what is left; returns how many are uncertified in all.
+  /// Answers the remaining pairs; returns the total number of uncertified pairs.
   std::uint32_t finish_taken() {
     answer_taken();
     return uncertified_;
@@ -60,7 +65,7 @@ class HullAnswers {
     taken_ = 0;
   }
 
-  /// Beyond all distances that occur.
+  /// Larger than any distance that occurs.
   static constexpr double kFarthest = 1e10;
 
   bool place(std::uint32_t i, std::uint32_t slot, HullPair& pair) {
@@ -91,7 +96,7 @@ class HullAnswers {
     HullDistance core{};
     if (pair.state == HullState::apart) {
       finish_apart(pair, core);
-      // An error of the length is one of the direction: this keeps it below 0.01 degrees.
+      // An error of the length implies an error of the direction: this keeps it below 0.01 degrees.
       if (!(core.error <= 1e-8 * core.distance)) return false;
     } else {
       if (!depth_.find(pair)) return false;
@@ -130,7 +135,7 @@ class HullAnswers {
   }
 
   static constexpr double kCertified = 1e-12;
-  /// Contacts are of floats: a few units in their last place.
+  /// Contacts are stored as floats: a few units in the last place.
   static constexpr double kContactDoubt = 4e-7;
 
   void write_normal(const HullPair& pair, const double* local, double* world) {
@@ -141,7 +146,8 @@ class HullAnswers {
     for (int k = 0; k < 3; ++k) job_.normal[k][pair.index] = world[k];
   }
 
-  /// The point of body a: on the first, or where swapped on the second, `distance` farther.
+  /// Writes the point of body a: the point on the first, or, if swapped, the point on the second,
+  /// `distance` farther.
   void write_point(const HullPair& pair, const HullDistance& core, double distance) {
     const double reach = pair.first->rounding + (pair.swapped ? distance : 0.0);
     double point[3];
@@ -153,8 +159,8 @@ class HullAnswers {
     }
   }
 
-  /// The same where features that are parallel touch. False if that is not where the pair is
-  /// deepest: this takes the solver.
+  /// As above, if parallel features touch. Returns false if the deepest point is not among theirs;
+  /// the solver must answer then.
   bool write_shared_point(const HullPair& pair, const HullContacts& ask,
                           const HullCandidate* winner) {
     double point[3];
@@ -163,7 +169,7 @@ class HullAnswers {
     return true;
   }
 
-  /// False if no contact would be as deep as the pair: this takes the solver.
+  /// Returns false if no contact is as deep as the pair; the solver must answer then.
   bool contacts(const HullPair& pair, const HullContacts& ask, const HullCandidate* winner) {
     job_.contact_first[pair.index] = job_.contacts.size;
     job_.contact_count[pair.index] = 0;
@@ -179,13 +185,13 @@ class HullAnswers {
     return count > 0;
   }
 
-  /// Farther apart than the margin: a lower bound of the distance.
+  /// Writes a lower bound of the distance of pairs farther apart than the margin.
   void write_far(const HullPair& pair) {
     const double gap[3] = {static_cast<double>(pair.gap[0]), static_cast<double>(pair.gap[1]),
                            static_cast<double>(pair.gap[2])};
     const double length = __builtin_sqrt(dot3(gap, gap));
     const double scale = 1.0 / static_cast<double>(pair.scale);
-    // HullSearch::kDoubt, of which a part is left for roundings here.
+    // Slightly less than HullSearch::kDoubt; the rest covers roundings here.
     constexpr double doubt = 5.5e-6;
     const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
     const double upper = (length + doubt) * scale;
@@ -209,7 +215,6 @@ class HullAnswers {
   HullDepth depth_;
 };
 
-/// The kernels of a pair kind.
 template <typename Shapes>
 inline constexpr NarrowKernels kHullKernels = {
     {HullAnswers<Shapes, 0>::run, HullAnswers<Shapes, 1>::run, HullAnswers<Shapes, 2>::run}};

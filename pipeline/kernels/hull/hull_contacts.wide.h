@@ -1,6 +1,7 @@
 #pragma once
 
-// The features of two hulls that meet along a normal, as patches for contact_patch.
+// Contacts of two hulls: finds their supporting features along a normal, and passes them as patches
+// to contact_patch.
 
 #include "pipeline/kernels/hull/hull_depth.wide.h"
 #include "pipeline/kernels/hull/hull_features.wide.h"
@@ -8,18 +9,18 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// From the first's frame to the axes of the world, relative to body a.
+/// Transforms from the frame of the first to world axes, relative to body a.
 static inline void to_world(const HullPair& pair, const double* x, double* r) {
   turn3(pair.frame, x, r);
   if (!pair.swapped) return;
   for (int k = 0; k < 3; ++k) r[k] -= pair.offset[k];
 }
 
-/// The supporting feature of one hull, in the axes of the world.
+/// The supporting feature of one hull, in world axes.
 class HullPatch {
  public:
-  /// `first`: of the first hull, else of the second. `normal`: from the first to the second, in the
-  /// first's frame.
+  /// `first` selects the hull. `normal` points from the first to the second, in the frame of the
+  /// first.
   HullPatch(const HullPair& pair, const double* normal, bool first)
       : pair_(pair), hull_(first ? *pair.first : *pair.second), first_(first) {
     if (first_) {
@@ -32,7 +33,7 @@ class HullPatch {
 
   void face(std::uint32_t index) {
     const HullFace& f = hull_.faces[index];
-    // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+    // If the polygon has too many corners, take every second (third, ...) one.
     const std::uint32_t stride = (f.count + kRoom - 1) / kRoom;
     count_ = 0;
     for (std::uint32_t i = 0; i < f.count; i += stride) {
@@ -41,8 +42,8 @@ class HullPatch {
     feature_ = index;
   }
 
-  /// An edge, or a face beside it that lies across the normal as well: what touches along the edge
-  /// is about to touch there.
+  /// Sets an edge, or a face beside it that also supports: shapes that touch along the edge are
+  /// about to touch along the face.
   void edge(std::uint32_t index) {
     std::uint32_t best = kNoFeature;
     double most = kFaceCosine;
@@ -57,14 +58,14 @@ class HullPatch {
     edge_alone(index);
   }
 
-  /// The same by its ends; what `across` finds if there is no such edge.
+  /// As above, with the edge given by its ends. Calls `across` if there is no such edge.
   void edge_between(std::uint32_t v, std::uint32_t w) {
     const std::uint32_t index = find_edge(hull_, v, w);
     if (index == kNoFeature) return across();
     edge(index);
   }
 
-  /// The same by the supporting vertices of a simplex: the features that are closest.
+  /// As above, with the feature given by the vertices of a simplex: the closest features.
   void closest(const std::uint32_t* vertices, std::uint32_t count, std::uint32_t shift) {
     const std::uint32_t v = vertices[0] >> shift & 0xFFFFU;
     std::uint32_t w = v;
@@ -78,15 +79,15 @@ class HullPatch {
     across_at(v);
   }
 
-  /// The face, edge or vertex that lies farthest along the normal: features within some degrees
-  /// of perpendicular to it count as lying across it, since bodies rock over them.
+  /// Sets the supporting face, edge or vertex along the normal. Faces and edges that are some
+  /// degrees off count as supporting, because bodies rock over them.
   void across() {
     float direction[3];
     write_direction(direction);
     across_at(farthest_vertex(hull_, direction));
   }
 
-  /// The same for a vertex that lies farthest.
+  /// As above, if the farthest vertex is given.
   void across_at(std::uint32_t vertex) {
     float direction[3];
     write_direction(direction);
@@ -100,8 +101,8 @@ class HullPatch {
     vertex_alone(vertex);
   }
 
-  /// Of a simple shape all that there is: the face that looks along the normal however steeply, a
-  /// segment, a point.
+  /// Sets all of a simple shape: the face that faces the normal best at any angle, a segment, or a
+  /// point.
   void whole() {
     if (hull_.dimension == 0) return vertex_alone(0);
     if (hull_.dimension == 1) return edge_alone(0);
@@ -155,7 +156,7 @@ class HullPatch {
   const HullPair& pair_;
   const HullShape& hull_;
   bool first_;
-  /// In the hull's own frame.
+  /// In the frame of the hull.
   double outward_[3];
   std::uint32_t count_ = 0;
   std::uint32_t feature_ = 0;
@@ -164,8 +165,8 @@ class HullPatch {
   std::uint32_t edge_feature_[kRoom];
 };
 
-/// The feature of one of the hulls in which they touch: that of the depth's winner, or, without
-/// one, of the closest vertices.
+/// Finds the feature with which one of the hulls touches: the feature of the axis of least depth
+/// (`winner`) or, if there is none, of the closest vertices.
 static inline void find_feature(const HullPair& pair, const HullCandidate* winner, bool first,
                                 HullPatch& patch) {
   using Kind = HullCandidate::Kind;
@@ -178,8 +179,8 @@ static inline void find_feature(const HullPair& pair, const HullCandidate* winne
   patch.edge_between(winner->arc.vertex[0], winner->arc.vertex[1]);
 }
 
-/// Those of both. `Simple`: the second is no hull but stands for a sphere, capsule, box or
-/// triangle.
+/// Finds the features of both hulls. `Simple`: the second is not a general hull but represents a
+/// sphere, capsule, box or triangle.
 template <bool Simple>
 static inline void find_features(const HullPair& pair, const HullCandidate* winner,
                                  HullPatch& first, HullPatch& second) {
@@ -191,19 +192,19 @@ static inline void find_features(const HullPair& pair, const HullCandidate* winn
   }
 }
 
-/// What is asked of the contacts of a pair.
+/// Input for the contacts of a pair.
 struct HullContacts {
-  /// In the first's frame, and from body a to body b in the axes of the world.
+  /// Contact normal: in the frame of the first, and from body a to body b in world axes.
   const double* normal;
   const double* world;
   double margin;
-  /// The pair's, and how far the deepest contact may be from it.
+  /// Distance of the pair, and how far the depth of the deepest contact may be from it.
   double distance;
   double doubt;
 };
 
-/// Writes the contacts of a pair and returns their number; 0 if the features do not meet where the
-/// pair is deepest.
+/// Writes the contacts of a pair and returns their number; 0 if the features do not overlap at the
+/// depth of the pair.
 template <bool Simple>
 static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& ask,
                                            const HullCandidate* winner, ContactWriter& writer) {
@@ -227,8 +228,9 @@ static inline std::uint32_t write_contacts(const HullPair& pair, const HullConta
   return count;
 }
 
-/// Where features touch of which no vertex tells where: the point of body a, in the axes of the
-/// world. False if the features do not meet where the pair is deepest, as far as `doubt`.
+/// Computes the contact point of body a from the features, in world axes, if the vertices do not
+/// determine it. Returns false if the features do not overlap at the depth of the pair, up to
+/// `doubt`.
 template <bool Simple>
 static inline bool point_of_features(const HullPair& pair, const HullContacts& ask,
                                      const HullCandidate* winner, double* point) {
@@ -242,8 +244,8 @@ static inline bool point_of_features(const HullPair& pair, const HullContacts& a
   return __builtin_fabs(depth + ask.distance) <= ask.doubt;
 }
 
-/// What of the first is closest to a point: the face of least depth, or what the closest vertices
-/// span.
+/// Returns the feature of the first that is closest to a point: the face of least depth, or the
+/// feature that the closest vertices span.
 static inline std::uint32_t feature_at_point(const HullPair& pair, const HullContacts& ask,
                                              const HullCandidate* winner) {
   const auto id = [](FeatureKind kind, std::uint32_t number) {
@@ -266,12 +268,12 @@ static inline std::uint32_t feature_at_point(const HullPair& pair, const HullCon
   return id(FeatureKind::vertex, v);
 }
 
-/// The one contact of a second whose core is a point: halfway between the surfaces.
+/// Writes the single contact of a second shape whose core is a point, halfway between the surfaces.
 static inline void write_point_contact(const HullPair& pair, const HullContacts& ask,
                                        const HullCandidate* winner, ContactWriter& writer) {
   double center[3];
   to_world(pair, pair.shift, center);
-  // Back towards the first, which is body a unless they are swapped.
+  // Moves back towards the first, which is body a unless they are swapped.
   const double back = pair.second->rounding + 0.5 * ask.distance;
   const double reach = pair.swapped ? back : -back;
   const std::uint32_t to = writer.size++;

@@ -1,33 +1,35 @@
 #pragma once
 
-// Penetration depth of two hulls in float: the smallest height of their difference over all
-// directions, found among those where it can be: normals of faces of either, and arcs between the
-// normals of neighbouring faces of the first, where the vertex of the second that is farthest
-// changes. Most are left out because a known point of the difference is higher than the best depth
-// along them (and over an arc, if it is at both ends: such heights are concave in between). What is
-// left out is deeper than the result by more than float's errors, so that the few candidates kept
-// hold the true minimum.
+// Penetration depth of two hulls in float: the smallest height of their Minkowski difference over
+// all directions. The minimum is at a face normal of either hull, or on an arc of the Gauss map
+// between the normals of neighbouring faces of the first, where the supporting vertex of the second
+// changes. Most faces and arcs are skipped because a known point of the difference is higher than
+// the best depth along them; an arc is skipped if one point is higher at both ends, since heights
+// are concave in between. Skipped directions are deeper than the result by more than the errors of
+// float, so the few candidates that are kept contain the true minimum. hull_finish.wide.h measures
+// these in double.
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Height of the difference along a direction: of the first's face, or a point on an arc.
+/// The height of the difference along a direction: the normal of a face of the first, or a
+/// direction on an arc.
 struct HullDirection {
-  /// Unit, outward from the hull whose face it is, in that hull's frame.
+  /// Unit, outward from the hull that has the face, in that hull's frame.
   float normal[3];
   /// normal . x <= offset for that hull.
   float offset;
   float depth;
-  /// The other hull's vertex farthest against the normal, in the same frame.
+  /// The other hull's supporting vertex against the normal, in the same frame.
   float point[3];
   std::uint32_t vertex;
-  /// The face; on an arc the one it begins at.
+  /// The face; on an arc, the face at which it begins.
   std::uint32_t face;
 };
 
-/// Part of the arc between two neighbouring faces of the first: from s[0] n + t[0] m to
-/// s[1] n + t[1] m, for their normals n and m.
+/// A part of the arc between the normals n and m of two neighbouring faces of the first, from s[0]
+/// n + t[0] m to s[1] n + t[1] m.
 struct HullArc {
   std::uint32_t face[2];
   std::uint32_t edge;
@@ -38,7 +40,7 @@ struct HullArc {
   [[nodiscard]] bool is_whole() const { return t[0] == 0.0F && s[1] == 0.0F; }
 };
 
-/// What can be the smallest depth, as far as float can tell.
+/// A face or arc that may have the smallest depth, up to the errors of float.
 struct HullCandidate {
   enum class Kind : std::uint8_t { first_face, second_face, arc } kind;
   std::uint32_t face;
@@ -51,7 +53,8 @@ class HullDepth {
   static constexpr std::uint32_t kMostFaces = 512;
   static constexpr std::uint32_t kMostCandidates = 24;
 
-  /// False if there is more to look at than there is room for, or nothing certain to find.
+  /// Finds the candidates. Returns false if there are more than fit, or if the result is not
+  /// certain.
   bool find(const HullPair& pair) {
     if (pair.first->dimension != 3 || pair.first->face_count > kMostFaces ||
         pair.second->face_count > kMostFaces) {
@@ -72,30 +75,31 @@ class HullDepth {
   [[nodiscard]] float best() const { return best_; }
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const HullCandidate& candidate(std::uint32_t i) const { return candidates_[i]; }
-  /// All others are at least this deep.
+  /// All other directions are at least this deep.
   [[nodiscard]] float floor() const { return best_ + slack_; }
 
  private:
   /// Three edges for two faces.
   static constexpr std::uint32_t kMostEdges = kMostFaces / 2 * 3;
 
-  /// A hull whose faces are tried, against the vertices of the other.
+  /// A hull whose faces are tested against the vertices of the other hull.
   struct Side {
     const HullShape* hull;
     const HullShape* other;
     HullCandidate::Kind kind;
-    /// The other's place in this hull's frame.
+    /// The other hull's placement in this hull's frame.
     float turn[9];
     float shift[3];
     float center[3];
-    /// Known points of this hull less the other.
+    /// Known points of this hull minus the other.
     float known[HullPair::kTrail][3];
     std::uint32_t known_count;
-    /// By face: bits that say which known points lie higher than the best depth; 0.0F if none.
+    /// For each face, bits of the known points that are higher along its normal than the best
+    /// depth; 0.0F if there are none.
     alignas(64) float closed[kMostFaces];
   };
 
-  /// A bit of `closed`, in a pattern that is a normal number.
+  /// One bit of `closed`, in a bit pattern that is a normal float.
   static float closed_bit(std::uint32_t i) {
     return __builtin_bit_cast(float, kClosedPattern | 1U << i);
   }
@@ -142,9 +146,9 @@ class HullDepth {
     return r;
   }
 
-  /// Finds for each face the known points that are higher along its normal than the best depth. The
-  /// ball in the other hull makes one more, where its middle is inside the face: there its height
-  /// is concave over arcs too.
+  /// Determines for each face the known points that are higher along its normal than the best
+  /// depth; such points close the face. The ball inside the other hull gives one more point, if its
+  /// center is inside the face's plane: then its height is concave along arcs, too.
   void close_faces(Side& side) {
     const float* const* plane = side.hull->plane_float;
     const Vec3<float> middle{side.center[0], side.center[1], side.center[2]};
@@ -166,7 +170,7 @@ class HullDepth {
     }
   }
 
-  /// Depths along the normals of the second's faces that no known point closes.
+  /// Measures the depths along the normals of the second's faces that no known point closes.
   void measure_open_faces() {
     const float* const* plane = second_.hull->plane_float;
     for (std::uint32_t row = 0; row < second_.hull->face_count; row += kLanes) {
@@ -186,7 +190,7 @@ class HullDepth {
     }
   }
 
-  /// The depth along the normal of a face of the first.
+  /// Measures the depth along the normal of a face of the first.
   void measure(std::uint32_t face, HullDirection& record) {
     const float* const* plane = first_.hull->plane_float;
     for (int k = 0; k < 3; ++k) record.normal[k] = plane[k][face];
@@ -194,12 +198,13 @@ class HullDepth {
     record.face = face;
     meet(record);
     if (record.depth <= best_ + slack_) find_tie(record);
-    // Kept a little longer than others for the arcs that `is_tied_end` leaves to HullTies.
+    // This face stays a candidate up to a slightly larger depth, for the arcs that `is_tied_end`
+    // leaves to HullTies.
     propose_face(HullCandidate::Kind::first_face, face, record.depth, kTie * slack_);
   }
 
-  /// Finds the middle of the second's vertices that a face meets, if there are several as far as
-  /// float can tell.
+  /// If several vertices of the second are lowest along a face's normal, up to the errors of float,
+  /// stores their mean.
   void find_tie(const HullDirection& face) {
     float local[3];
     turn_back3(first_.turn, face.normal, local);
@@ -213,8 +218,8 @@ class HullDepth {
     tie_.depth = face.depth;
   }
 
-  /// Whether an arc begins at the tied face and the middle of its vertices is deeper than the best
-  /// at the other end, and so in between.
+  /// True if an arc begins at the tied face, and the mean of its tied vertices is deeper than the
+  /// best depth at the other end, and so in between, too.
   [[nodiscard]] bool is_below_tie(const HullEdge& edge) const {
     const std::uint32_t* face = edge.face;
     if (face[0] != tie_.face && face[1] != tie_.face) return false;
@@ -225,7 +230,7 @@ class HullDepth {
     return plane[3][other] - dot3(normal, tie_.middle) > best_ + slack_;
   }
 
-  /// Finds the vertex of the second that a direction meets, and so the depth along it.
+  /// Finds the supporting vertex of the second against a direction, and the depth along it.
   [[gnu::always_inline]] void meet(HullDirection& direction) const {
     float local[3];
     turn_back3(first_.turn, direction.normal, local);
@@ -238,7 +243,7 @@ class HullDepth {
     direction.depth = direction.offset - dot3(direction.normal, direction.point);
   }
 
-  /// `less`: by how much what the face stands for can be less deep.
+  /// `less`: by how much other directions that the face stands for may be less deep.
   void propose_face(HullCandidate::Kind kind, std::uint32_t face, float depth, float less) {
     best_ = depth < best_ ? depth : best_;
     if (!(depth - less <= best_ + slack_)) return;
@@ -259,7 +264,7 @@ class HullDepth {
     propose(c);
   }
 
-  /// Adds a candidate, dropping those that have become too deep when the room runs out.
+  /// Adds a candidate. If there is no room, first drops candidates that have become too deep.
   void propose(const HullCandidate& candidate) {
     if (count_ >= kMostCandidates) drop_deep();
     if (count_ < kMostCandidates) candidates_[count_] = candidate;
@@ -275,7 +280,7 @@ class HullDepth {
     count_ = kept;
   }
 
-  /// All arcs of the first whose ends no known point closes both.
+  /// Searches all arcs of the first that no single known point closes at both ends.
   bool follow_arcs() {
     const HullShape& hull = *first_.hull;
     if (hull.edge_count > kMostEdges) return false;
@@ -300,15 +305,15 @@ class HullDepth {
     return true;
   }
 
-  /// Fills open_; measures at all faces that are not closed, but for those around a tied face that
-  /// its middle closes.
+  /// Fills open_. Measures the faces that are not closed, except the neighbours of a tied face that
+  /// is_below_tie excludes.
   std::uint32_t list_open_arcs(const HullShape& hull) {
     std::uint32_t count = 0;
     for (std::uint32_t e = 0; e < hull.edge_count; ++e) {
       const HullEdge& edge = hull.edges[e];
       const std::uint32_t a = closed_by(edge.face[0]);
       const std::uint32_t b = closed_by(edge.face[1]);
-      // Without a branch, which would be mispredicted at every arc found.
+      // Branchless: the branch would be mispredicted at every arc found.
       open_[count] = e;
       count += (a & b) == 0 ? 1U : 0U;
     }
@@ -340,13 +345,14 @@ class HullDepth {
     return record_[record_of_[face]];
   }
 
-  /// Heights of one point of the difference along the normals of two faces of the first.
+  /// The heights of one point of the difference along the normals of two faces of the first.
   struct Heights {
     float here;
     float there;
   };
 
-  /// Of a point that is high along the normal of `here`: the highest, if that has been measured.
+  /// The heights of a point that is high along the normal of `here`: of the highest point, if that
+  /// face has been measured.
   [[nodiscard, gnu::always_inline]] Heights high_point(std::uint32_t here, std::uint32_t there,
                                                        float cosine) const {
     const float* const* plane = first_.hull->plane_float;
@@ -358,7 +364,7 @@ class HullDepth {
     }
     const std::uint32_t closed = closed_by(here);
     if ((closed >> kBallBit & 1U) != 0) {
-      // A point of the ball in the other hull, against the normal from its middle.
+      // The point of the ball in the other hull that is farthest against the normal.
       const auto radius = static_cast<float>(first_.other->inner_radius);
       return {plane[3][here] - dot3(n, first_.center) + radius,
               plane[3][there] - dot3(m, first_.center) + radius * cosine};
@@ -367,8 +373,8 @@ class HullDepth {
     return {dot3(n, w), dot3(m, w)};
   }
 
-  /// Whether two known points say that all of an arc is deeper than the best, as in `cut`; for
-  /// ends less than a right angle apart.
+  /// True if two known points prove, as in `cut`, that the whole arc is deeper than the best depth.
+  /// Only for ends that are less than a right angle apart.
   [[nodiscard, gnu::always_inline]] bool is_deep(const HullEdge& edge) const {
     const float* const* plane = first_.hull->plane_float;
     const std::uint32_t f = edge.face[0];
@@ -397,14 +403,14 @@ class HullDepth {
            has_deep_ends(a.here, b.here, limit, f, g);
   }
 
-  /// The bound of an arc holds between its ends, which are candidates themselves if they were
-  /// measured.
+  /// The bound of an arc holds between its ends. Ends that were measured are candidates themselves.
   [[nodiscard]] bool has_deep_ends(float a, float b, float limit, std::uint32_t f,
                                    std::uint32_t g) const {
     return (a > limit || has_record(f)) && (b > limit || has_record(g));
   }
 
-  /// Searches an arc, halved where a third vertex of the second shows up, for depths near the best.
+  /// Searches an arc for depths near the best. An arc is split where a third vertex of the second
+  /// is the supporting one.
   bool follow(const HullArc& whole, const HullDirection& from, const HullDirection& to) {
     struct Part {
       HullDirection end[2];
@@ -422,7 +428,7 @@ class HullDepth {
     return true;
   }
 
-  /// Of one arc: a candidate, or two parts more on the stack, or neither.
+  /// Processes one arc: makes it a candidate, pushes two halves on the stack, or drops it.
   template <typename Part>
   bool search(HullArc arc, const HullDirection& from, const HullDirection& to, Part* stack,
               int& height) {
@@ -434,7 +440,7 @@ class HullDepth {
     arc.vertex[0] = from.vertex;
     arc.vertex[1] = to.vertex;
     if (verdict == Verdict::deep) {
-      // The ends of a whole arc are candidates, and HullTies looks around them.
+      // The ends of a whole arc are candidates, and HullTies searches around them.
       if (!arc.is_whole()) propose_arc(arc, from.depth < to.depth ? from.depth : to.depth);
       return true;
     }
@@ -456,23 +462,25 @@ class HullDepth {
     return true;
   }
 
-  /// Whether the points known at both ends of a whole arc are as high at one of them as float can
-  /// tell, and the arc nowhere lower: HullTies finds both points there, and looks at all such arcs
-  /// around the face. `other_point`: the height there of the point of the other end.
+  /// True if, at one end of a whole arc, the points of both ends have the same height up to the
+  /// errors of float, and the arc is nowhere lower. HullTies then finds both points at that face
+  /// and tests all such arcs around it. `other_point`: the height at this end of the other end's
+  /// point.
   [[nodiscard]] bool is_tied_end(const HullDirection& end, float other_point, float lowest) const {
     const float least = other_point < lowest ? other_point : lowest;
     return end.depth <= best_ + slack_ && least >= end.depth - kTie * slack_;
   }
 
-  /// Of the slack: heights that differ by less are tied.
+  /// Heights that differ by less than this fraction of the slack are tied.
   static constexpr float kTie = 0.25F;
 
   enum class Verdict : std::uint8_t { deep, near, lost };
 
-  /// Heights along an arc are at least those of the two points of the difference known at its ends:
-  /// where the two are equal this bound is smallest (or at an end, which has been looked at). If
-  /// that is near the best depth, measures there. Any direction between the ends will do for a
-  /// bound: to one side of the crossing one point is lower than there, to the other the other.
+  /// Bounds the heights along an arc from below by the two points found at its ends. The bound is
+  /// smallest in the direction in which both have the same height, or at an end, which has been
+  /// measured. If it is near the best depth, measures the depth in that direction. Any direction
+  /// between the ends gives a valid bound, as heights are concave: between it and an end, that
+  /// end's point is at least as high as at the lower of the two.
   Verdict cut(const HullDirection& a, const HullDirection& b, bool whole, HullDirection& middle,
               float* weight, float& lowest) {
     const float cosine = dot3(a.normal, b.normal);
@@ -507,8 +515,8 @@ class HullDepth {
     return Verdict::near;
   }
 
-  /// A face of the first near which the depth is smallest, and the middle of the vertices of the
-  /// second that are the lowest along its normal.
+  /// A face of the first along which the depth is near the smallest, and the mean of the vertices
+  /// of the second that are lowest along its normal.
   struct Tie {
     std::uint32_t face;
     float depth;

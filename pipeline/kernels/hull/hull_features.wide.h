@@ -1,7 +1,7 @@
 #pragma once
 
-// What of a hull lies across a direction at the vertex that is farthest along it: features within
-// some degrees of perpendicular count, since bodies rock over them.
+// The feature of a hull at its supporting vertex along a direction: a face or an edge if it is
+// within some degrees of perpendicular to the direction, because bodies rock over it.
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -19,10 +19,10 @@ static inline std::uint32_t find_edge(const HullShape& hull, std::uint32_t v, st
   return kNoFeature;
 }
 
-/// Cosines that float may have in the wrong order differ by no more.
+/// Cosines that differ by at most this may be in the wrong order in float.
 inline constexpr float kTiedCosines = 1e-6F;
 
-/// `face_across` in double, for faces that are nearly one plane.
+/// `face_across` in double, for faces that are nearly coplanar.
 static inline std::uint32_t tied_face_across(const HullShape& hull, const double* direction,
                                              const float* x, float doubt) {
   const float* const* plane = hull.plane_float;
@@ -38,8 +38,8 @@ static inline std::uint32_t tied_face_across(const HullShape& hull, const double
   return best;
 }
 
-/// The face most along the direction of those that pass within `doubt` of the vertex at x, if it
-/// lies across the direction.
+/// Returns the face that is most along the direction, among the faces whose planes pass within
+/// `doubt` of the vertex at x; kNoFeature if no cosine is above kFaceCosine.
 static inline std::uint32_t face_across(const HullShape& hull, const double* direction,
                                         const float* x, float doubt) {
   const float* const* plane = hull.plane_float;
@@ -75,7 +75,8 @@ static inline std::uint32_t face_across(const HullShape& hull, const double* dir
   return is_tied ? tied_face_across(hull, direction, x, doubt) : best;
 }
 
-/// The neighbour of a vertex that lies least below it, if the edge to it lies across the direction.
+/// Returns the neighbour of a vertex that is least below it, if the edge to it is nearly
+/// perpendicular to the direction.
 static inline std::uint32_t neighbour_across(const HullShape& hull, const float* direction,
                                              std::uint32_t vertex, const float* x) {
   std::uint32_t best = kNoFeature;

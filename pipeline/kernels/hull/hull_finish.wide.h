@@ -1,29 +1,28 @@
 #pragma once
 
-// From the features that the float search found to an answer in double: the distance between points
-// that lie on the hulls is an upper bound, the separation of all vertices along the direction found
-// a lower one, and their difference the error.
+// From the features found by the float search to an answer in double. The distance between two
+// points on the hulls is an upper bound; the separation of all vertices along the direction found
+// is a lower bound; the difference of the two is the error. Called by hull_answers.wide.h.
 
 #include "pipeline/kernels/hull/hull_measure.wide.h"
 #include "pipeline/kernels/hull/hull_ties.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Distance of the cores (negative: depth) along `normal`, from the first to the second, in the
-/// first's frame; `point` is on the first.
+/// The distance of the cores (negative: depth) along `normal`, which points from the first to the
+/// second, in the first's frame; `point` is on the first.
 struct HullDistance {
   double distance;
   double error;
   double normal[3];
   double point[3];
-  /// Features that touch, for contacts: vertices of the closest simplex are used where this is not
-  /// set.
+  /// The touching features, for contacts. If null, the vertices of the closest simplex are used.
   const HullCandidate* winner;
-  /// Room for one that the float search has not found.
+  /// Storage for a winner that the float search has not found.
   HullCandidate found;
 };
 
-/// Weights of the point nearest to the origin on the segment w0, w1; on the triangle.
+/// Weights of the point nearest to the origin, on a segment and on a triangle.
 static inline void nearest_on_segment(const double (*w)[3], double* weight) {
   double e[3];
   for (int k = 0; k < 3; ++k) e[k] = w[1][k] - w[0][k];
@@ -58,7 +57,7 @@ static inline void nearest_on_triangle(const double (*w)[3], double* weight) {
                        e[0] * f[1] - e[1] * f[0]};
   const double area = dot3(n, n);
   const double* p = w[0];
-  // Of the second and the third corner, times the area.
+  // Weights of the second and the third corner, times the area.
   const double u = n[0] * (f[1] * p[2] - f[2] * p[1]) + n[1] * (f[2] * p[0] - f[0] * p[2]) +
                    n[2] * (f[0] * p[1] - f[1] * p[0]);
   const double v = -(n[0] * (e[1] * p[2] - e[2] * p[1]) + n[1] * (e[2] * p[0] - e[0] * p[2]) +
@@ -84,7 +83,7 @@ static inline void nearest_on_triangle(const double (*w)[3], double* weight) {
   }
 }
 
-/// Cores that are apart, from the search's simplex.
+/// The distance of separate cores, from the search's simplex.
 static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
   double a[3][3];
   double w[3][3];
@@ -114,11 +113,12 @@ static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
   answer.distance = length;
   answer.error = (doubt > 0.0 ? doubt : 0.0) + kDoubleError * pair.size;
   answer.winner = nullptr;
-  // Not a number if the length is 0.
+  // The error would be NaN if the length is 0.
   if (!(length > 0.0)) answer.error = __builtin_inf();
 }
 
-/// What candidates of the float search may have missed. False if that cannot be told.
+/// Searches around the candidates for minima that float may have missed. Returns false if the
+/// minimum cannot be determined.
 static inline bool finish_ties(const HullPair& pair, const HullDepth& found, const double* depth,
                                const double* least, double& best, double& lower,
                                HullDistance& answer) {
@@ -144,8 +144,8 @@ static inline bool finish_ties(const HullPair& pair, const HullDepth& found, con
   return true;
 }
 
-/// Cores that overlap: measures the candidates. The error is not small where a candidate that is
-/// left out in double is not surely deeper.
+/// The depth of overlapping cores: the smallest depth of the candidates. The error is large if the
+/// lower bound of some candidate is well below that.
 static inline void finish_depth(const HullPair& pair, const HullDepth& found,
                                 HullDistance& answer) {
   HullMeasure measure(pair);
@@ -177,7 +177,7 @@ static inline void finish_depth(const HullPair& pair, const HullDepth& found,
   if (!sure) answer.error = __builtin_inf();
 }
 
-/// Whether a point in a hull's own frame lies in front of no face by more than `doubt`; false for
+/// True if a point in a hull's own frame is in front of no face by more than `doubt`; false for
 /// flat hulls.
 static inline bool contains(const HullShape& hull, const double* x, double doubt) {
   for (std::uint32_t i = 0; i < hull.face_count; ++i) {
@@ -187,8 +187,8 @@ static inline bool contains(const HullShape& hull, const double* x, double doubt
   return hull.dimension == 3;
 }
 
-/// Where two edges cross as seen along the normal: the point on the first's. False if that is
-/// beyond an end of one of them, or if they are parallel.
+/// Computes the point of the first's edge where two edges cross as seen along the normal. Returns
+/// false if it is beyond an end of an edge, or if the edges are parallel.
 static inline bool crossing_point(const HullPair& pair, HullDistance& answer) {
   const HullArc& arc = answer.winner->arc;
   const HullEdge& edge = pair.first->edges[arc.edge];
@@ -206,28 +206,28 @@ static inline bool crossing_point(const HullPair& pair, HullDistance& answer) {
     e[k] = b[1][k] - b[0][k];
     r[k] = b[0][k] - a[0][k];
   }
-  // Across the second edge and the normal.
+  // Perpendicular to the second edge and the normal.
   const double* n = answer.normal;
   const double across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
                             e[0] * n[1] - e[1] * n[0]};
   const double sine = dot3(across, d);
   const double t = dot3(across, r) / sine;
   for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
-  // Likewise along the second.
+  // The parameter on the second edge, likewise.
   const double from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
                                 d[0] * n[1] - d[1] * n[0]};
   const double u = dot3(from_first, r) / sine;
   return t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0;
 }
 
-/// Where two hulls touch along a normal, by the vertices that are farthest along it.
+/// The touching point of two hulls along a normal, from the vertices that are farthest along it.
 class HullTouch {
  public:
   HullTouch(const HullPair& pair, const HullDistance& answer)
       : pair_(pair), answer_(answer), rounding_(kDoubleError * pair.size) {}
 
-  /// Finds the middle of the first's or the second's farthest vertices, as a point on the first in
-  /// its frame; returns how many those are.
+  /// Computes the mean of the first's or the second's farthest vertices, as a point on the first in
+  /// its frame; returns the number of these vertices.
   std::uint32_t find_middle(bool first, double* x) const {
     if (first) return middle_of(*pair_.first, answer_.normal, x);
     double direction[3];
@@ -240,7 +240,7 @@ class HullTouch {
     return tied;
   }
 
-  /// Whether a point of the touching plane lies on the first or the second.
+  /// True if a point of the touching plane is on the first or the second.
   [[nodiscard]] bool lies_on(bool first, const double* x) const {
     if (first) return contains(*pair_.first, x, rounding_);
     double across[3];
@@ -262,9 +262,10 @@ class HullTouch {
   double rounding_;
 };
 
-/// Where edges cross or one vertex touches a face. Where features are parallel, the middle of one
-/// of them, or else halfway between both, which hulls that are symmetrical about their middles
-/// share if they touch at all; false if none of these is on both.
+/// Computes the point where edges cross or one vertex touches a face. If parallel features touch,
+/// tries the middle of one of them, then the midpoint of both middles, which hulls that are
+/// symmetric about their centers share if they touch at all, then the middle of the other. Returns
+/// false if none of these points is on both hulls.
 static inline bool touching_point(const HullPair& pair, HullDistance& answer) {
   using Kind = HullCandidate::Kind;
   const Kind kind = answer.winner->kind;

@@ -12,9 +12,9 @@ namespace {
 
 using hull::kNoFeature;
 
-/// Vertices of a hull over a plane, no higher than `reach` over the lowest: that, and those of the
-/// face or edge at it that faces the plane; of more than four those that contact_patch keeps, the
-/// first of which is hardly higher than the lowest.
+/// Vertices of a hull that stand on a plane: the lowest vertex, and the vertices of the face or
+/// edge at it that faces the plane, if they are at most `reach` higher. If there are more than
+/// four, standing_corners chooses; the first is then hardly higher than the lowest.
 class StandingPoints {
  public:
   static constexpr std::uint32_t kMost = kManifoldPoints;
@@ -65,7 +65,7 @@ class StandingPoints {
     double point[kRoom][3];
     std::uint32_t edge[kRoom];
     std::uint32_t vertex[kRoom];
-    // Of polygons with more corners than there is room for, every second (third, ...) is taken.
+    // If the polygon has too many corners, take every second (third, ...) one.
     const std::uint32_t stride = (face.count + kRoom - 1) / kRoom;
     std::uint32_t size = 0;
     for (std::uint32_t i = 0; i < face.count; i += stride) {
@@ -86,8 +86,8 @@ class StandingPoints {
   std::uint32_t vertex_[kMost + 1] = {};
 };
 
-/// The plane and its normal in the hulls' axes, lane by lane as well, and what is asked of each
-/// hull beside its vertices.
+/// The plane in the frames of the hulls, also stored lane by lane, and the numbers of each hull
+/// other than its vertices.
 template <typename T>
 struct PlaneUnderHull {
   Plane<T> plane;
@@ -96,7 +96,7 @@ struct PlaneUnderHull {
   Vec3<T> up;
   alignas(64) T normal[3][Lanes<T>::kCount];
   alignas(64) T rounding[Lanes<T>::kCount];
-  alignas(64) T reach[Lanes<T>::kCount];  // of what coordinates add up to
+  alignas(64) T reach[Lanes<T>::kCount];  // bound on sums of coordinates
 
   [[gnu::always_inline]] PlaneUnderHull(const NarrowJob& job, const PairBlock<T>& block)
       : plane(load_plane<SideB>(job, block)),
@@ -108,7 +108,7 @@ struct PlaneUnderHull {
     up.z.store(normal[2]);
   }
 
-  /// The hull of a lane; has to be called for all.
+  /// Reads and returns the hull of a lane. Call it for every lane.
   [[gnu::always_inline]] const HullShape& take(const NarrowJob& job, const PairBlock<T>& block,
                                                std::uint32_t lane) {
     const HullShape& shape =
@@ -118,7 +118,7 @@ struct PlaneUnderHull {
     return shape;
   }
 
-  /// What is the same of all feet.
+  /// Sets the members that all feet share.
   template <int Count>
   [[gnu::always_inline]] void set_common(Feet<T, Count>& feet) const {
     feet.rounding = Lanes<T>::load(rounding);
@@ -139,7 +139,7 @@ struct HullOverPlane {
     }
   }
 
-  /// How high the lowest vertices are, whichever these are.
+  /// Computes only the heights of the lowest vertices.
   [[gnu::noinline]] static Feet<float, 1> heights(const NarrowJob& job,
                                                   const PairBlock<float>& block) {
     PlaneUnderHull<float> under(job, block);
@@ -167,7 +167,7 @@ struct HullOverPlane {
     const auto& normal = under.normal;
     alignas(64) T height[kWidth];
     plane.height.store(height);
-    // The last is the lowest, as high as the first counts.
+    // The last entry is the lowest vertex, whose height the first foot gets.
     alignas(64) T vertex[Count + 1][3][kWidth];
     alignas(64) T name[Count + 1][kWidth];
     alignas(64) T missing[Count][kWidth] = {};

@@ -2,7 +2,7 @@
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::hull {
-/// Both hulls as they stand in the pool.
+/// The kernels of hull-hull; both hulls are used as stored in the pool.
 struct HullAndHull {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr bool kSimpleSecond = false;

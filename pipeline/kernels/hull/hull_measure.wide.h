@@ -1,7 +1,7 @@
 #pragma once
 
-// How deep two hulls overlap along the directions that the float search found, over all vertices,
-// in double.
+// Depth of two hulls along the directions that the float search found, over all vertices, in
+// double.
 
 #include "pipeline/kernels/hull/hull_depth.wide.h"
 #include "pipeline/kernels/hull/hull_features.wide.h"
@@ -17,7 +17,7 @@ namespace winnow::WINNOW_ISA_NAME::hull {
   for (int k = 0; k < 3; ++k) x[k] += pair.shift[k];
 }
 
-/// The smallest product of a vertex of the second and `direction`.
+/// The smallest dot product of a vertex of the second with `direction`.
 static inline double lowest_of_second(const HullPair& pair, const double* direction) {
   double local[3];
   turn_back3(pair.turn, direction, local);
@@ -30,7 +30,7 @@ static inline double depth_along(const HullPair& pair, const double* normal) {
   return height_of(*pair.first, normal) - lowest_of_second(pair, normal);
 }
 
-/// The directions between which an arc runs, in the first's frame and of any length.
+/// The directions at the ends of an arc, in the first's frame, not normalized.
 static inline void arc_ends(const HullPair& pair, const HullArc& arc, double (*end)[3]) {
   const double* n = pair.first->faces[arc.face[0]].normal;
   const double* m = pair.first->faces[arc.face[1]].normal;
@@ -41,8 +41,8 @@ static inline void arc_ends(const HullPair& pair, const HullArc& arc, double (*e
   }
 }
 
-/// The depth of one candidate: an upper bound of the smallest in `depth` and its direction, and in
-/// `lower` a lower bound for all directions that the candidate stands for.
+/// Measures a candidate: `depth` is an upper bound of the smallest depth, attained along `normal`;
+/// `lower` is a lower bound for all directions that the candidate stands for.
 class HullMeasure {
  public:
   explicit HullMeasure(const HullPair& pair) : pair_(pair) {}
@@ -64,7 +64,7 @@ class HullMeasure {
     lower = depth;
   }
 
-  /// As HullDepth::cut bounds an arc.
+  /// Bounds an arc as HullDepth::cut does.
   void arc(const HullArc& arc) {
     double end[2][3];
     double mine[3];
@@ -81,8 +81,9 @@ class HullMeasure {
     if (!arc.is_whole()) bound_ends(end, w);
   }
 
-  /// Of the arc between two directions and two points of the difference: the direction in which
-  /// they are as high, or, if one of them is the higher at both ends, the end where that is lower.
+  /// For the arc between two directions and two points of the difference: measures the direction in
+  /// which both points have the same height. If one point is higher at both ends, measures the end
+  /// at which it is lower.
   void crossing(const double (*end)[3], const double (*w)[3]) {
     const double here[2] = {dot3(end[0], w[0]), dot3(end[0], w[1])};
     const double there[2] = {dot3(end[1], w[0]), dot3(end[1], w[1])};
@@ -105,7 +106,8 @@ class HullMeasure {
     lower = heights[crosses ? low : top];
   }
 
-  /// Where both points rise along an arc it is an end that bounds the higher of them.
+  /// If both points rise along an arc, the higher of them is lowest at an end: lowers the bound to
+  /// the heights at the ends.
   void bound_ends(const double (*end)[3], const double (*w)[3]) {
     for (int i = 0; i < 2; ++i) {
       const double heights[2] = {dot3(end[i], w[0]), dot3(end[i], w[1])};

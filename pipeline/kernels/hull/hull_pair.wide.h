@@ -1,7 +1,7 @@
 #pragma once
 
 // A pair of convex polytopes, possibly rounded, as the hull kernels pass it from stage to stage,
-// and which vertex of a hull lies farthest along a direction, sixteen vertices at a time.
+// and the support function of a hull, sixteen vertices at a time.
 
 #include "pipeline/kernels/fetch_ahead.wide.h"
 #include "pipeline/kernels/single_vectors.wide.h"
@@ -9,38 +9,39 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// What the float search found out about the cores.
+/// Result of the float search about the cores.
 enum class HullState : std::uint32_t {
-  /// Farther apart than anyone asks.
+  /// Farther apart than the caller needs.
   far,
-  /// Closest features found; not proven.
+  /// Closest features found, but not proven.
   apart,
-  /// Overlap beyond float's doubt.
+  /// The overlap exceeds the errors of float.
   inside,
-  /// Touching or overlapping, as far as float can tell.
+  /// Touching or overlapping, up to the errors of float.
   close,
 };
 
-/// "First" is body a of the pair, or body b where `swapped`: see comes_second.
+/// "First" is body a of the pair, or body b if `swapped`: see comes_second.
 struct HullPair {
   const HullShape* first;
   const HullShape* second;
-  /// From the second's frame to the first's: x -> turn x + shift; rows.
+  /// From the second's frame to the first's: x -> turn x + shift; stored by rows.
   double turn[9];
   double shift[3];
-  /// From the first's frame to the world's axes; rows.
+  /// From the first's frame to world axes; stored by rows.
   double frame[9];
-  /// Position of the second less that of the first, in the world's axes.
+  /// Position of the second minus position of the first, in world axes.
   double offset[3];
-  /// An upper bound of every length that occurs: both hulls' reach from their origins and the
-  /// distance of these.
+  /// An upper bound of every length that occurs: the distance of the origins plus the radii of both
+  /// hulls around them.
   double size;
   /// Sum of the roundings.
   double rounding;
-  /// The search stops with state far beyond this, rounding excluded; infinite: never.
+  /// The search stops with state far if the cores are farther apart than this plus the rounding;
+  /// infinite to never stop.
   double far;
-  /// The same for float, where lengths are multiplied by `scale`, a power of two that brings `size`
-  /// into [1, 2).
+  /// This placement in float. `scaled_` lengths are multiplied by `scale`, a power of two that
+  /// brings `size` into [1, 2).
   float turn_float[9];
   float scaled_turn[9];
   float scaled_shift[3];
@@ -49,34 +50,36 @@ struct HullPair {
   bool swapped;
   // Outcome of the search.
   HullState state;
-  /// Vertices of the closest features: `count` times that of the first, | that of the second << 16.
+  /// `count` vertex pairs of the closest features: vertex of the first | vertex of the second <<
+  /// 16.
   std::uint32_t count;
   std::uint32_t vertices[3];
-  /// first - second where they are closest, scaled.
+  /// first - second at the closest points, scaled.
   float gap[3];
-  /// A lower bound of the distance of the cores, scaled; of state far.
+  /// State far: a lower bound of the distance of the cores, times the length of `gap`, scaled.
   float lower;
   /// Square of an upper bound of the penetration depth, scaled.
   float depth_squared;
-  /// The latest supports, points of first - second, scaled.
+  /// The latest support points of first - second, scaled.
   static constexpr std::uint32_t kTrail = 8;
   float trail[kTrail][3];
   std::uint32_t trail_length;
 };
 
-/// Sizes beyond these leave the range in which products of four floats are normal numbers.
+/// Beyond these sizes, products of four floats may not be normal numbers.
 inline constexpr double kSmallestHull = 1e-8;
 inline constexpr double kLargestHull = 1e8;
-/// Vertex numbers of the search have 16 bits.
+/// The search stores vertex numbers in 16 bits.
 inline constexpr std::uint32_t kMostHullVertices = 65535;
 
-/// A bound of the rounding errors in lengths that are computed in double from a HullPair, over
-/// size: some forty operations of half a unit each.
+/// Bound of the rounding errors of lengths computed in double from a HullPair, relative to size:
+/// some forty operations of half a unit each.
 inline constexpr double kDoubleError = 40.0 * 0x1p-53;
-/// The same in float, over size, with the doubt about which vertex is the highest: see kLaneBits.
+/// As above in float, including the error in the choice of the highest vertex: see kLaneBits.
 inline constexpr float kFloatError = 40.0F * 0x1p-24F;
 
-/// The rotation of a quaternion of any length; false if its square leaves double's range.
+/// Computes the rotation of a quaternion of any length; returns false if its square is out of
+/// double's range.
 static inline bool rotation_of(const double* q, double* m) {
   const double length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(length > 1e-200 && length < 1e200)) return false;
@@ -110,8 +113,9 @@ static inline double reach_of(const HullShape& hull) {
          __builtin_fabs(hull.center[2]) + hull.radius;
 }
 
-/// Whether the pair is answered with b first, so that (a, b) and (b, a) are computed alike: solids
-/// come first, then the sign of the difference of positions decides, then what else differs.
+/// True if the pair is computed with b first. The order is chosen such that (a, b) and (b, a) are
+/// computed alike: solids come first, then the sign of the difference of the positions decides,
+/// then any other difference.
 static inline bool comes_second(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                 const Pose& pose_b) {
   if ((a.dimension == 3) != (b.dimension == 3)) return b.dimension == 3;
@@ -133,8 +137,8 @@ static inline float scale_of(double size) {
   return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
 }
 
-/// Fills what the search needs, b first where `swapped`; false if poses or sizes are out of range.
-/// `PointSecond`: how the second is turned does not matter.
+/// Fills in the inputs of the search, with b first if `swapped`; returns false if poses or sizes
+/// are out of range. `PointSecond`: the second's orientation is irrelevant.
 template <bool PointSecond = false>
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                const Pose& pose_b, bool swapped, HullPair& pair) {
@@ -183,8 +187,8 @@ static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pos
   return true;
 }
 
-/// The four low bits of a float give way to a lane's number, so that a maximum also says where it
-/// was found: an error of 16 units in the last place in the choice of a vertex.
+/// The four low bits of a float are replaced by its lane's number, so that a maximum also names its
+/// lane. The chosen vertex may thus be lower than the highest by 16 units in the last place.
 inline constexpr std::uint32_t kLaneBits = 15;
 
 [[gnu::always_inline]] static inline Floats with_lane_number(const Floats& value) {
@@ -208,8 +212,9 @@ inline constexpr std::uint32_t kLaneBits = 15;
          Floats::load(vertex[2] + row) * d.z;
 }
 
-/// Sixteen heights along `direction`, of which the largest is the hull's, with its lane's number in
-/// the low bits; `block` gets the block of each where there is more than one.
+/// Computes sixteen heights along `direction` with their lanes' numbers in the low bits; the
+/// largest is the hull's. If the hull has more than sixteen vertices, `block` receives the block of
+/// sixteen that each height is from.
 [[gnu::always_inline]] static inline void heights(const HullShape& hull, const float* direction,
                                                   float* height, float* block) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
@@ -227,13 +232,14 @@ inline constexpr std::uint32_t kLaneBits = 15;
   best.store(height);
 }
 
-/// The lane that a maximum of zero is from. A zero with a lane's number is a denormal number, which
-/// a host may have flushed to zero wherever it is computed with; what is stored has kept it.
+/// The lane of a maximum that is zero. A zero with a lane's number is a denormal number, and
+/// arithmetic may flush these to zero on this host; the stored heights still have the bits.
 [[gnu::noinline]] static std::uint32_t lane_of_zero(const float* height) {
   const auto pattern = [&](std::uint32_t i) {
     return __builtin_bit_cast(std::uint32_t, height[i]);
   };
-  // In the order in which denormal numbers are larger, which other hosts take them by.
+  // From the largest denormal number to the smallest: the order in which hosts that do not flush
+  // them choose.
   for (std::uint32_t i = kLanes; i-- > 0;) {
     if (pattern(i) == i) return i;
   }
@@ -243,18 +249,18 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return 0;
 }
 
-/// The vertex that a maximum of `heights` names.
+/// The vertex that the maximum of `heights` names.
 [[gnu::always_inline]] static inline std::uint32_t vertex_of(const HullShape& hull, float highest,
                                                              const float* height,
                                                              const float* block) {
   std::uint32_t vertex = __builtin_bit_cast(std::uint32_t, highest) & kLaneBits;
   if (highest == 0.0F) vertex = lane_of_zero(height);
   if (hull.vertex_count > kLanes) vertex += static_cast<std::uint32_t>(block[vertex]);
-  // Padding repeats vertex 0.
+  // The columns are padded with copies of vertex 0.
   return vertex < hull.vertex_count ? vertex : 0;
 }
 
-/// The same for one direction.
+/// The supporting vertex along one direction.
 [[gnu::always_inline]] static inline std::uint32_t farthest_vertex(const HullShape& hull,
                                                                    const float* direction) {
   alignas(64) float height[kLanes];
@@ -276,7 +282,6 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return hull.vertex_float;
 }
 
-/// The largest of all lanes.
 template <typename T>
 [[gnu::always_inline]] static inline T largest_lane(const Lanes<T>& v) {
   if constexpr (sizeof(T) == sizeof(float)) return reduce_max(v);
@@ -291,15 +296,15 @@ template <typename T>
   return value[0];
 }
 
-/// The first lane of the largest number; any of them where there are such as are none.
+/// The first lane with the largest number; an unspecified lane if there are NaNs.
 template <typename T>
 [[gnu::always_inline]] static inline std::uint32_t lane_of_largest(const Lanes<T>& v) {
   constexpr Mask16 last = 1U << (Lanes<T>::kCount - 1);
   return first(static_cast<Mask16>(bits(v == Lanes<T>(largest_lane(v))) | last));
 }
 
-/// The vertex that is farthest along a direction; of those that are as far one that comes first in
-/// its lane.
+/// The supporting vertex along a direction. If several vertices are equally far, the lowest lane
+/// wins, and in a lane the first vertex.
 template <typename T>
 static inline std::uint32_t highest_vertex(const HullShape& hull, const Vec3<T>& direction) {
   constexpr std::uint32_t kWidth = Lanes<T>::kCount;
@@ -316,11 +321,11 @@ static inline std::uint32_t highest_vertex(const HullShape& hull, const Vec3<T>&
   where.store(row);
   const std::uint32_t lane = lane_of_largest(best);
   const std::uint32_t found = static_cast<std::uint32_t>(row[lane]) + lane;
-  // Padding repeats vertex 0.
+  // The columns are padded with copies of vertex 0.
   return found < hull.vertex_count ? found : 0;
 }
 
-/// The largest product of a vertex and `direction`.
+/// The largest dot product of a vertex with `direction`.
 template <typename T>
 static inline T height_of(const HullShape& hull, const T* direction) {
   constexpr std::uint32_t kWidth = Lanes<T>::kCount;
@@ -336,7 +341,8 @@ static inline T height_of(const HullShape& hull, const T* direction) {
   return largest_lane(best);
 }
 
-/// The first vertex that is at least so high along `direction`; false if there are others.
+/// Finds the first vertex whose height along `direction` is at least `limit`; returns false if
+/// there is not exactly one.
 template <typename T>
 static inline bool sole_vertex_from(const HullShape& hull, const T* direction, T limit,
                                     std::uint32_t& vertex) {
@@ -354,8 +360,8 @@ static inline bool sole_vertex_from(const HullShape& hull, const T* direction, T
   return found == 1;
 }
 
-/// The mean of all vertices that are at least so high along `direction`; returns how many those
-/// are.
+/// Computes the mean of all vertices whose height along `direction` is at least `limit`; returns
+/// their number.
 template <typename T>
 static inline std::uint32_t middle_from(const HullShape& hull, const T* direction, T limit,
                                         T* middle) {

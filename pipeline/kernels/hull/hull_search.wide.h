@@ -1,21 +1,22 @@
 #pragma once
 
-// Closest features of pairs of hulls in float: the algorithm of Gilbert, Johnson and Keerthi (1988)
-// one pair per lane. A lane that is done takes the next pair, so that a hard pair does not hold
-// fifteen easy ones. Where the origin is inside, the
-// search begins again from a point just outside, and finds a face of the difference that is a good
-// guess for the nearest one. Nothing here has to be right: the stages after it prove what they use.
+// Closest features of pairs of hulls in float, by GJK (Gilbert, Johnson, Keerthi 1988) with one
+// pair per lane. A lane that is done takes the next pair, so that a hard pair does not hold up
+// fifteen easy ones. If the origin is inside the difference, the search restarts towards a point
+// just outside and finds a face of the difference that is a good guess for the nearest one. No
+// result needs to be right: the later stages prove what they use. Called by hull_answers.wide.h.
 
 #include "pipeline/kernels/hull/hull_supports.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Seconds: HullSeconds, CenteredSeconds or TriangleSeconds.
+/// `Seconds` computes the supports of the second hulls: HullSeconds, CenteredSeconds or
+/// TriangleSeconds.
 template <typename Seconds>
 class HullSearch {
  public:
-  /// For a verdict the search stops with state inside where roundings surely overlap.
+  /// `for_verdict`: the search stops with state inside as soon as the roundings certainly overlap.
   HullSearch(HullPair* pairs, std::uint32_t count, bool for_verdict)
       : next_(pairs), end_(pairs + count), for_verdict_(for_verdict) {}
 
@@ -33,15 +34,15 @@ class HullSearch {
 
  private:
   static constexpr std::uint32_t kMostSteps = 48;
-  /// Steps from outside towards the difference when the origin is inside.
+  /// Number of steps after a restart from outside.
   static constexpr std::uint32_t kSinkSteps = 8;
-  /// Where these begin, over the lowest height known.
+  /// Distance of the restart's goal from the origin, relative to the lowest height found.
   static constexpr float kOutside = 1.25F;
-  /// Below this, scaled, the origin counts as on the simplex.
+  /// Scaled; if its nearest point is closer, the simplex counts as touching the origin.
   static constexpr float kTouching = 2e-6F;
-  /// A support that is nearer by less than this, scaled, is no progress.
+  /// Scaled; a support that is nearer by less than this is no progress.
   static constexpr float kNoGain = 4e-7F;
-  /// Doubt about a support's height, scaled: it may not be the highest by kLaneBits units in the
+  /// Scaled error of a support's height, which may be below the highest by kLaneBits units in the
   /// last place.
   static constexpr float kDoubt = 6e-6F;
 
@@ -78,7 +79,7 @@ class HullSearch {
     square_[lane] = square;
   }
 
-  /// From the second's middle to the first's: a point of their difference.
+  /// The vector from the second's center to the first's: a point of their difference.
   static void start_direction(const HullPair& pair, float* d) {
     double middle[3];
     turn3(pair.turn, pair.second->center, middle);
@@ -92,8 +93,7 @@ class HullSearch {
     }
   }
 
-  /// The point of the difference that lies farthest against a direction, and in `name` which
-  /// vertices it is made of.
+  /// Returns the support point of the difference against a direction, and in `name` its vertices.
   Vec3<float> support(const Vec3<float>& gap, Floats& name) {
     firsts_.find(-gap, active_);
     const SecondSupport second = seconds_.find(gap, active_);
@@ -102,7 +102,7 @@ class HullSearch {
     return firsts_.vertex() * Floats::load(scale_) - second.point - goal;
   }
 
-  /// One step of all lanes; returns those that are done.
+  /// Advances all lanes by one step; returns the lanes that are done.
   Mask16 step() {
     const Floats zero(0.0F);
     Simplex<float> simplex;
@@ -154,8 +154,8 @@ class HullSearch {
     return done | give_up(active_ & ~done, sinking_bits);
   }
 
-  /// Begins again for lanes whose origin is inside: from a point outside near the lowest support.
-  /// Returns those where there is such a point.
+  /// Restarts the lanes whose origin is inside: the goal becomes a point outside, near the lowest
+  /// support. Returns the lanes that have such a point.
   Mask16 sink(Mask16 lanes) {
     Mask16 sunk = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -181,7 +181,7 @@ class HullSearch {
     return sunk;
   }
 
-  /// Keeps the lowest height of the difference over the origin and where it was met.
+  /// Keeps the lowest height of the difference over the origin, and its direction.
   void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Floats& square,
                   const Floats& height) {
     const Floats zero(0.0F);
@@ -197,7 +197,7 @@ class HullSearch {
     remember(w + goal);
   }
 
-  /// Ends searches that take too long.
+  /// Ends searches that exceed the step limit.
   Mask16 give_up(Mask16 lanes, Mask16 sinking) {
     Mask16 late = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -209,7 +209,7 @@ class HullSearch {
     return late;
   }
 
-  /// Points of the difference serve HullDepth.
+  /// Stores points of the difference for HullDepth.
   void remember(const Vec3<float>& w) {
     alignas(64) float point[3][kLanes];
     w.x.store(point[0]);
@@ -223,7 +223,7 @@ class HullSearch {
     }
   }
 
-  /// Where `moves`: the nearest feature becomes the simplex.
+  /// In the lanes `moves`, the nearest feature becomes the simplex.
   void keep(const Simplex<float>& simplex, const SimplexNearest<float>& nearest,
             const LaneMask<float>& moves, const Vec3<float>& w, const Floats& name,
             const Vec3<float>& gap, const Floats& next_square) {
@@ -277,7 +277,7 @@ class HullSearch {
   alignas(64) float far_[kLanes] = {};
   alignas(64) float near_[kLanes] = {};
   alignas(64) float fresh_[kLanes] = {};
-  /// 1 where the origin is inside, and the search goes on from the point `goal_` outside.
+  /// 1 if the origin is inside and the search continues from the point `goal_` outside.
   alignas(64) float sinking_[kLanes] = {};
   alignas(64) float goal_[3][kLanes] = {};
   alignas(64) float lowest_[3][kLanes] = {};

@@ -1,32 +1,33 @@
 #pragma once
 
-// Supports of sixteen pairs of hulls, one pair a lane: the vertex of the first that lies farthest
-// against a direction, and the point of the second farthest along it. Hulls are looked at sixteen
-// vertices at a time, one after the other; the few vertices of simple shapes all lanes at once.
+// Support points for sixteen pairs of hulls, one pair per lane: the vertex of the first that is
+// farthest against a direction, and the point of the second farthest along it. Hulls are processed
+// one after the other, sixteen vertices at a time; the few vertices of simple shapes are processed
+// in all lanes at once. Used by hull_search.wide.h and verdicts.wide.h.
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// The number of a vertex, as what stands in a lane.
+/// The number of a vertex as the bit pattern of a lane.
 constexpr float number_pattern(std::uint32_t number) {
   return __builtin_bit_cast(float, number);
 }
-/// That of the second is kept above that of the first.
+/// The second's vertex number is stored above the first's.
 constexpr float second_pattern(std::uint32_t number) {
   return number_pattern(number << 16U);
 }
 
-/// Heights of sixteen vertices, or of the highest in each sixteenth of more, a row for each lane,
-/// and which sixteen they are of.
+/// One row per lane: the heights of sixteen vertices. With more vertices, the highest of every
+/// sixteenth vertex, and the block of sixteen that it is in.
 struct VertexHeights {
   alignas(64) float height[kLanes * kLanes];
   alignas(64) float block[kLanes * kLanes];
 };
 
-/// Calls found(lane, vertex) with the number of the vertex of hull[lane] that is farthest along the
-/// lane's direction, in float and in the hull's own frame, for all lanes `active`.
+/// Calls found(lane, vertex) for all `active` lanes with the vertex of hull[lane] that is farthest
+/// along the lane's direction, in float and in the hull's own frame.
 template <typename Found>
 [[gnu::always_inline]] static inline void for_farthest_vertices(const HullShape* const* hull,
                                                                 const Vec3<float>& direction,
@@ -50,7 +51,7 @@ template <typename Found>
   }
 }
 
-/// Those vertices; 0 in other lanes.
+/// Returns those vertices; 0 in the other lanes.
 [[gnu::noinline]] static Vec3<float> farthest_vertices(const HullShape* const* hull,
                                                        const Vec3<float>& direction, Mask16 active,
                                                        VertexHeights& rows) {
@@ -61,7 +62,7 @@ template <typename Found>
   return {Floats::load(x[0]), Floats::load(x[1]), Floats::load(x[2])};
 }
 
-/// Vertices of hulls that are farthest along directions, and their numbers.
+/// The supporting vertices of the hulls in the lanes, and their numbers.
 class FarthestVertices {
  public:
   void put(int lane, const HullShape& hull) { hull_[lane] = &hull; }
@@ -79,7 +80,7 @@ class FarthestVertices {
   [[nodiscard]] Vec3<float> vertex() const {
     return {Floats::load(vertex_[0]), Floats::load(vertex_[1]), Floats::load(vertex_[2])};
   }
-  /// Numbers times 2^shift.
+  /// The numbers times 2^shift.
   [[nodiscard]] Floats numbers(std::uint32_t shift) const {
     alignas(64) float pattern[kLanes];
     for (int lane = 0; lane < kLanes; ++lane)
@@ -94,14 +95,14 @@ class FarthestVertices {
   VertexHeights rows_;
 };
 
-/// The second's point that lies farthest along a direction, in the first's frame and scaled, and
-/// its number.
+/// The second's point that is farthest along a direction, in the first's frame and scaled, and its
+/// number.
 struct SecondSupport {
   Vec3<float> point;
   Floats number;
 };
 
-/// Second hulls as they stand in the pool.
+/// Second hulls as stored in the pool.
 class HullSeconds {
  public:
   void put(int lane, const HullPair& pair) {
@@ -128,8 +129,8 @@ class HullSeconds {
   alignas(64) float shift_[3][kLanes] = {};
 };
 
-/// Cores of spheres, capsules and boxes: a middle, and `Axes` arms that reach from it to both
-/// sides. Bit k of a vertex's number says that it is at the far end of arm k.
+/// Cores of spheres, capsules and boxes: a center and `Axes` half axes. Bit k of a vertex's number
+/// is set if it is at the positive end of half axis k.
 template <int Axes>
 class CenteredSeconds {
  public:

@@ -1,27 +1,30 @@
 #pragma once
 
+// Completes the search of hull_depth.wide.h in double for nearly parallel hulls. Called by
+// hull_finish.wide.h.
+
 #include "pipeline/kernels/hull/hull_measure.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Arcs that float cannot follow: where hulls are nearly parallel, several vertices of the second
-/// are as far along a face's normal of the first as float can tell, and the search may have taken
-/// the same for both ends of an arc along which they change. Here they are told apart in double, on
-/// all arcs around the face.
+/// Searches arcs that float cannot resolve. If hulls are nearly parallel, several vertices of the
+/// second are equally far along a face normal of the first, up to the errors of float, and the
+/// float search may have found the same vertex at both ends of an arc along which the vertex
+/// changes. This class distinguishes them in double, on all arcs around the face.
 class HullTies {
  public:
-  /// `best` and `lower`: the least depth known and the least that it can be.
+  /// `best` is the smallest depth found, `lower` a lower bound of the depth.
   HullTies(const HullPair& pair, double best, double lower)
       : pair_(pair), measure_(pair), best_(best), lower_(lower) {}
 
-  /// Looks around a face of the first, along whose normal the depth is known; false if there is
-  /// more to look at than there is room for.
+  /// Searches around a face of the first, along whose normal the depth is `depth`; returns false if
+  /// there is more to search than there is room for.
   bool around(std::uint32_t face, double depth) {
     const HullFace& f = pair_.first->faces[face];
     return !has_ties(f.normal, f.offset - depth) || follow_all(face, f.offset - depth);
   }
 
-  /// Looks again at an arc on which a third vertex is nearer than the two that were found.
+  /// Searches an arc again on which a third vertex is nearer than the two that were found.
   bool along_arc(const HullArc& arc) {
     measure_.arc(arc);
     const double high = height_of(*pair_.first, measure_.normal);
@@ -43,13 +46,13 @@ class HullTies {
  private:
   static constexpr int kMostParts = 16;
 
-  /// Between two directions along which two vertices of the second are the nearest.
+  /// Part of an arc between two directions, and the supporting vertices of the second there.
   struct Part {
     double end[2][3];
     std::uint32_t vertex[2];
   };
 
-  /// `least`: the lowest vertices of the second along the face's normal.
+  /// `least`: the height of the second's lowest vertices along the face's normal.
   [[gnu::noinline]] bool follow_all(std::uint32_t face, double least) {
     const HullShape& hull = *pair_.first;
     const double* normal = hull.faces[face].normal;
@@ -72,7 +75,7 @@ class HullTies {
     return true;
   }
 
-  /// Whether float could not tell which vertex is the lowest, `least` or a little higher.
+  /// True if several vertices are within float's errors of the lowest, whose height is `least`.
   [[nodiscard]] bool has_ties(const double* normal, double least) const {
     const double doubt = 4.0 * static_cast<double>(kFloatError) * pair_.size;
     double local[3];
@@ -116,8 +119,8 @@ class HullTies {
     return true;
   }
 
-  /// Bounds an arc by one point of the second, if that is no less deep than the best at both ends:
-  /// its height is concave in between.
+  /// Bounds an arc by one point of the second if at both ends that point is at least as deep as the
+  /// best: its height is concave in between.
   bool is_deep(const double* point, const double* from, const double* to) {
     double w[3];
     for (int k = 0; k < 3; ++k) w[k] = mine_[k] - point[k];
@@ -129,7 +132,7 @@ class HullTies {
     return true;
   }
 
-  /// Bounds a part of an arc, or puts its halves on the stack where a third vertex is nearer.
+  /// Bounds a part of an arc, or pushes its halves on the stack if a third vertex is nearer.
   void look(std::uint32_t edge, const Part& part, Part* stack, int& height) {
     double w[2][3];
     for (int i = 0; i < 2; ++i) {
@@ -138,7 +141,7 @@ class HullTies {
       for (int k = 0; k < 3; ++k) w[i][k] = mine_[k] - theirs[k];
     }
     const double rounding = kDoubleError * pair_.size;
-    // One vertex, whose height is least at an end.
+    // With a single vertex, the height is lowest at an end.
     if (part.vertex[0] == part.vertex[1]) {
       for (const double(&end)[3] : part.end) {
         bound(dot3(end, w[0]) / __builtin_sqrt(dot3(end, end)) + rounding);
@@ -180,7 +183,7 @@ class HullTies {
   bool found_ = false;
   double normal_[3];
   HullCandidate winner_ = {};
-  /// The vertex of the first at whose edge an arc lies.
+  /// A vertex of the first on the edge of the arc.
   double mine_[3];
 };
 

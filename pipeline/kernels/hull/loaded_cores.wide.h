@@ -1,7 +1,7 @@
 #pragma once
 
-// Shapes of a block of pairs as cores in float lanes. Of hulls and a program's own sets no lanes
-// are made: all but their points.
+// Loads the shapes of a block of pairs as cores in float lanes. For hulls and user shapes only
+// their bounds are loaded, not their points. Used by verdicts.wide.h.
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
@@ -12,25 +12,26 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 struct LoadedCores {
   CoreLanes<float> core;
   Floats rounding;
-  /// At least the distance of a point of the core from its origin.
+  /// Upper bound of the distance of the core's points from its origin.
   Floats reach;
-  /// In the middle, and the radius of a ball around it that lies in the core; where no point is
-  /// known to, a negative number.
+  /// A central point of the core, and the radius of a ball around it that is inside the core;
+  /// negative if no point of the core is available.
   Vec3<float> center;
   Floats inner;
 };
 
-/// Of no set of a program's own a point is known without asking.
+/// User shapes: no point is available without calling the support function.
 inline constexpr float kNoInner = -1e30F;
 
-/// Floats of the shapes of a block, lane by lane: numbers_of(shape index, out) gives those of one.
+/// Loads floats from the shapes of a block, lane by lane: numbers_of(shape index, out) writes the
+/// numbers of one shape.
 template <typename Side, int Count, typename NumbersOf>
 [[gnu::always_inline]] static inline void stage_numbers(const NarrowJob& job,
                                                         const PairBlock<float>& block,
                                                         NumbersOf&& numbers_of,
                                                         Floats (&out)[Count]) {
   alignas(64) float column[Count][Floats::kCount];
-  // A pair that is alone is looked up once.
+  // A single pair is loaded only once.
   const int lanes = block.count == 1 ? 1 : Floats::kCount;
   for (int lane = 0; lane < lanes; ++lane) {
     double number[Count];
@@ -168,7 +169,7 @@ template <typename Side>
   to.reach = max(max(taxicab(v[0]), taxicab(v[1])), taxicab(v[2]));
 }
 
-/// All are of one kind.
+/// All shapes are of one kind.
 template <typename Side>
 [[gnu::noinline]] static void load_cores(const NarrowJob& job, const PairBlock<float>& block,
                                          ShapeKind kind, LoadedCores& to) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Whether two convex shapes overlap, of a pair alone and in double: the search of Gilbert, Johnson
-// and Keerthi (1988), which ends as soon as a direction parts the shapes or points of them do not.
-// Lanes that one pair does not fill take several times as long.
+// Overlap test of a single pair of convex shapes in double, by GJK (Gilbert, Johnson, Keerthi
+// 1988). It ends as soon as a direction separates the shapes or points of the simplex prove an
+// overlap. The lane version (verdicts.wide.h) is wasteful for one pair.
 
 #include "pipeline/kernels/hull/farthest_points.wide.h"
 #include "pipeline/kernels/hull/verdicts.wide.h"
@@ -11,7 +11,7 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 
 class OneVerdict {
  public:
-  /// Answers a job of one pair, or lists it in `uncertified`; returns how many are listed.
+  /// Answers a job of one pair, or adds it to `uncertified`; returns the number of pairs there.
   [[gnu::noinline]] static std::uint32_t run(NarrowJob& job) {
     CurvedPair pair;
     if (place_pair(job, job.pairs[0], pair)) {
@@ -28,15 +28,15 @@ class OneVerdict {
   enum class Verdict : std::uint8_t { unsure, apart, meet };
   using Point = double[3];
 
-  /// Of lengths, which are below 2: far more than rounding takes, and what lanes are not sure of,
-  /// so that a pair alone is answered as among others.
+  /// Tolerance of lengths, which are below 2. It is far above the rounding errors, and equals the
+  /// tolerance of the lanes, so that a single pair gets the same answer as in a larger job.
   static constexpr double kDoubt = static_cast<double>(hull::Verdicts::kDoubt);
-  /// Of the product of a length and two edges.
+  /// Tolerance of the product of a length and two edges.
   static constexpr double kPlaneDoubt = 1e-14;
-  /// Steps find nothing new where they gain less of the square.
+  /// A step that reduces the square by less than this fraction is no progress.
   static constexpr double kNoGain = 1e-14;
   static constexpr int kMostSteps = 48;
-  /// Of a nearest point that has no direction.
+  /// A nearest point closer than this gives no direction.
   static constexpr double kNowhere = 1e-15;
 
   explicit OneVerdict(const CurvedPair& pair) : pair_(pair) {}
@@ -61,8 +61,8 @@ class OneVerdict {
     return Verdict::unsure;
   }
 
-  /// From inner points of both, whose difference is one of the points that are searched; of a
-  /// program's own set none is known, and it is but a direction.
+  /// Starts from the difference of two inner points, which is a point of the simplex. No inner
+  /// point of a user shape is available; the difference is then only a direction.
   void begin() {
     Point theirs;
     turn3(pair_.turn, pair_.second.center, theirs);
@@ -72,8 +72,8 @@ class OneVerdict {
     if (!has_own(pair_)) put(nearest_);
   }
 
-  /// Adds a point and brings `nearest_` to the point of the simplex that is nearest to the origin;
-  /// true if the simplex holds the origin beyond doubt.
+  /// Adds a point and moves `nearest_` to the point of the simplex that is nearest to the origin;
+  /// returns true if the simplex certainly contains the origin.
   [[nodiscard]] bool holds_origin(const Point& w) {
     switch (count_) {
       case 0:
@@ -105,7 +105,8 @@ class OneVerdict {
         point_[0], point_[0]);
   }
 
-  /// A point of a triangle w, a, b: w + s (a - w) + t (b - w), and how far it is away, squared.
+  /// A point of the triangle w, a, b: w + s (a - w) + t (b - w), and its squared distance from the
+  /// origin.
   struct Nearest {
     double s;
     double t;
@@ -113,8 +114,8 @@ class OneVerdict {
     double square;
   };
 
-  /// The point nearest to the origin, by the regions of its features (Ericson, "Real-time collision
-  /// detection", 5.1.5).
+  /// Returns the point nearest to the origin, by the Voronoi regions of the triangle's features
+  /// (Ericson, "Real-time collision detection", 5.1.5).
   [[nodiscard]] static Nearest of_triangle(const Point& w, const Point& a, const Point& b) {
     Point to_a;
     Point to_b;
@@ -133,7 +134,7 @@ class OneVerdict {
     const double across_w = a_at_a * b_at_b - a_at_b * b_at_a;
     Nearest r{0.0, 0.0, {}, 0.0};
     if (a_at_w <= 0.0 && b_at_w <= 0.0) {
-      // w itself.
+      // The point is w.
     } else if (a_at_a >= 0.0 && b_at_a <= a_at_a) {
       r.s = 1.0;
     } else if (b_at_b >= 0.0 && a_at_b <= b_at_b) {
@@ -156,7 +157,7 @@ class OneVerdict {
     return r;
   }
 
-  /// The feature that the point is on becomes the simplex.
+  /// The feature that contains the point becomes the simplex.
   void take(const Point& w, const Nearest& nearest, const Point& a, const Point& b) {
     const Point old[2] = {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
     for (int k = 0; k < 3; ++k) nearest_[k] = nearest.at[k];
@@ -171,7 +172,7 @@ class OneVerdict {
   }
 
   [[nodiscard]] bool tetrahedron_holds_origin(const Point& w) {
-    // The sides at w, and the corner across from each.
+    // The three faces at w, and the corner opposite to each.
     constexpr int kSide[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
     bool holds = is_inside(point_[0], point_[1], point_[2], w);
     Nearest best{0.0, 0.0, {}, __builtin_inf()};
@@ -190,7 +191,7 @@ class OneVerdict {
     return false;
   }
 
-  /// The origin is on the side of a triangle's plane where the fourth point is, beyond doubt.
+  /// True if the origin is certainly on the same side of a triangle's plane as the fourth point.
   [[nodiscard]] bool is_inside(const Point& p, const Point& q, const Point& r,
                                const Point& fourth) const {
     Point to_q;
@@ -205,7 +206,8 @@ class OneVerdict {
     cross3(to_q, to_r, n);
     const double origin = -dot3(n, p);
     const double height = dot3(n, to_fourth);
-    // What rounding leaves of the normal of a sliver has another length than its edges say.
+    // For slivers the normal is mostly rounding error, which is proportional to the edges' lengths,
+    // not to the normal's.
     const double edges = __builtin_sqrt(dot3(to_q, to_q) * dot3(to_r, to_r));
     const double limit = kDoubt * __builtin_sqrt(dot3(n, n)) + kPlaneDoubt * edges;
     return __builtin_fabs(origin) > limit && __builtin_fabs(height) > limit &&
@@ -213,13 +215,13 @@ class OneVerdict {
   }
 
   const CurvedPair& pair_;
-  /// Points of the difference, and the nearest to the origin of what they span.
+  /// Points of the difference, and the point of their hull that is nearest to the origin.
   int count_ = 0;
   Point point_[3];
   Point nearest_;
 };
 
-/// Decides pairs that are beyond doubt and lists the others in `uncertified`; returns how many.
+/// Decides the pairs that are certain and lists the others in `uncertified`; returns their number.
 static inline std::uint32_t verdicts(NarrowJob& job) {
   return job.count == 1 ? OneVerdict::run(job) : hull::Verdicts::run(job);
 }

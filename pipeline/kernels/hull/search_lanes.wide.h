@@ -1,15 +1,15 @@
 #pragma once
 
-// Steps of the algorithm of Gilbert, Johnson and Keerthi (1988), one search per lane. The last
-// support along the direction found bounds the distance from below, the point of the difference
-// found bounds it from above.
+// Steps of GJK (Gilbert, Johnson, Keerthi 1988), one search per lane. The last support along the
+// direction found bounds the distance from below; the point of the difference found bounds it from
+// above. Used by verdicts.wide.h and by the curved kernels (curved_search.wide.h).
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Lanes whose search ended, and how.
+/// The lanes whose search ended, by outcome.
 struct SearchEnds {
   Mask16 far;
   Mask16 apart;
@@ -19,8 +19,8 @@ struct SearchEnds {
   [[nodiscard]] Mask16 all() const { return far | apart | inside | close; }
 };
 
-/// Where the searches in the lanes are; lengths are about 1. `Points`: with the points of the first
-/// core that the differences were made of.
+/// The state of the searches in the lanes; lengths are about 1. `Points`: also stores the points of
+/// the first core from which the differences were computed.
 template <typename T, bool Points>
 class SearchLanes {
  public:
@@ -29,25 +29,26 @@ class SearchLanes {
 
   static constexpr bool kIsDouble = sizeof(T) == sizeof(double);
   static constexpr std::uint32_t kMostSteps = kIsDouble ? 60 : 20;
-  /// A difference of the bounds that is as good as none; squares of angles likewise.
+  /// If the gap between the bounds is smaller, it counts as closed; kNoTurn is the same for squares
+  /// of angles.
   static constexpr T kNoGain = kIsDouble ? T(2e-15) : T(4e-7F);
   static constexpr T kNoTurn = kIsDouble ? T(1e-13) : T(1e-5F);
-  /// Over the distance, what bounds of that of a program's own sets may differ by: their directions
-  /// then by less than 0.003 degrees.
+  /// User shapes: relative gap at which the search ends. The directions then differ by less than
+  /// 0.003 degrees.
   static constexpr T kOwnGain = T(1e-9);
-  /// Below this the origin counts as on the simplex.
+  /// If its nearest point is closer, the simplex counts as touching the origin.
   static constexpr T kTouching = kIsDouble ? T(1e-13) : T(2e-6F);
 
   explicit SearchLanes(bool own) : enough_(own ? kOwnGain : T(0)) {}
 
-  /// Begins with nothing but the point of the difference that the direction is to.
+  /// Starts without a simplex; the caller sets the first direction.
   void start(int lane) {
     for (int s = 0; s < kSlots; ++s) present[s][lane] = T(0);
     fresh[lane] = T(1);
     steps[lane] = 0;
   }
 
-  /// Begins after a first step that has found `point`, whose square is given.
+  /// Starts after a first step that has found `point`, whose square is given.
   void start_from(unsigned lane, const T* point, T point_square) {
     for (int s = 0; s < kSlots; ++s) present[s][lane] = T(s == 0);
     for (int k = 0; k < 3; ++k) {
@@ -59,7 +60,8 @@ class SearchLanes {
     steps[lane] = 1;
   }
 
-  /// One step of the lanes `active`; supports(side, d) are the farthest points of the cores.
+  /// Advances the `active` lanes by one step; supports(side, d) returns the support points of the
+  /// cores.
   template <typename Supports>
   [[gnu::always_inline]] SearchEnds step(Mask16 active, Supports&& supports) {
     const Lanes<T> zero(T(0));
@@ -121,7 +123,7 @@ class SearchLanes {
   /// From the second's frame to the first's.
   alignas(64) Column turn[9] = {};
   alignas(64) Column shift[3] = {};
-  /// Squares of distances of the cores above which shapes are apart, and up to which they overlap.
+  /// Squares of distances of the cores: the shapes are apart above `far` and overlap up to `near`.
   alignas(64) Column far = {};
   alignas(64) Column near = {};
   /// 1 before the first step.
@@ -130,11 +132,11 @@ class SearchLanes {
   alignas(64) Column gap[3] = {};
   alignas(64) Column square = {};
   alignas(64) Column height_along = {};
-  /// The simplex, 1 where there is a point.
+  /// The simplex; `present` is 1 where there is a point.
   alignas(64) Column slot[kSlots][3] = {};
   alignas(64) Column slot_mine[Points ? kSlots : 1][3] = {};
   alignas(64) Column present[kSlots] = {};
-  /// Where it ended inside, the last point.
+  /// The last point of a search that ended inside.
   alignas(64) Column latest[3] = {};
   alignas(64) Column latest_mine[3] = {};
   std::uint32_t steps[kWidth] = {};
@@ -149,7 +151,7 @@ class SearchLanes {
     return r;
   }
 
-  /// Where `moves`: the nearest feature becomes the simplex.
+  /// In the lanes `moves`, the nearest feature becomes the simplex.
   [[gnu::always_inline]] void keep(const Simplex<T>& simplex, const SimplexNearest<T>& nearest,
                                    const LaneMask<T>& moves, const Vec3<T>& w, const Vec3<T>& mine,
                                    const Vec3<T>& nearest_yet, const Lanes<T>& next_square) {

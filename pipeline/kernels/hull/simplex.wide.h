@@ -1,7 +1,7 @@
 #pragma once
 
 // Simplices of up to four points and their features nearest to the origin, one per lane: the step
-// of the algorithm of Gilbert, Johnson and Keerthi (1988).
+// of GJK (Gilbert, Johnson, Keerthi 1988).
 
 #include "simd/lanes/vectors.h"
 
@@ -9,8 +9,9 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 inline constexpr int kSlots = 3;
 
-/// Squares that are as good as zero, the smallest square of a sine of a triangle that has a normal,
-/// and squares of heights that rounding may have made; of lengths about 1.
+/// For lengths about 1. kVanishing: squares up to this count as zero. kThin: the smallest squared
+/// sine of a triangle that has a normal. kDoubtful: squared heights up to this may be rounding
+/// errors.
 template <typename T>
 inline constexpr T kVanishing = sizeof(T) == sizeof(double) ? T(1e-200) : T(1e-30F);
 template <typename T>
@@ -18,14 +19,14 @@ inline constexpr T kThin = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-12F);
 template <typename T>
 inline constexpr T kDoubtful = sizeof(T) == sizeof(double) ? T(1e-24) : T(1e-10F);
 
-/// Whether nearest points are to bound distances from above as they are, and the square of the
-/// least height of a triangle then.
+/// kExact: nearest points must be upper bounds of the distance as computed. kNarrow: the smallest
+/// squared height of a triangle in that case.
 template <typename T>
 inline constexpr bool kExact = sizeof(T) == sizeof(double);
 template <typename T>
 inline constexpr T kNarrow = T(1e-18);
 
-/// Up to three points; with the support that comes next at most a tetrahedron.
+/// Up to three points; with the next support at most a tetrahedron.
 template <typename T>
 struct Simplex {
   Vec3<T> point[kSlots];
@@ -35,18 +36,18 @@ struct Simplex {
 template <typename T>
 struct SimplexNearest {
   Vec3<T> point;
-  /// Which points of the simplex span the nearest feature together with the new one.
+  /// The points of the simplex that span the nearest feature together with the new one.
   LaneMask<T> keep[kSlots];
-  /// The origin is in the tetrahedron; `deep` where that is beyond doubt.
+  /// The origin is in the tetrahedron; `deep` if that is certain.
   LaneMask<T> inside;
   LaneMask<T> deep;
   /// The new point was there before.
   LaneMask<T> repeated;
 };
 
-/// Of a simplex whose nearest point is known and `w`, which is nearer along the line to it: the
-/// nearest feature holds w, so of the tetrahedron's fifteen features eight are left. Lengths are
-/// about 1.
+/// Finds the nearest feature after adding w to a simplex. As w lies in front of the old nearest
+/// point, the new feature contains w: eight of the tetrahedron's fifteen features remain. Lengths
+/// are about 1.
 template <typename T>
 static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3<T>& w) {
   const Lanes<T> zero(T(0));
@@ -64,7 +65,7 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
     edge[s] = select(simplex.present[s], simplex.point[s] - w, none);
     length[s] = dot(edge[s], edge[s]);
     r.repeated = r.repeated | (simplex.present[s] & (length[s] <= zero));
-    // From w to the origin, across the edge.
+    // Distance from the edge's line to the origin, as a vector times the edge's length.
     arm[s] = cross(edge[s], w);
   }
   for (int s = 0; s < kSlots; ++s) {
@@ -96,7 +97,8 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
     Lanes<T> square = height[s] * t;
     LaneMask<T> wide = area[s] > Lanes<T>(kThin<T>) * length[i] * length[k];
     if constexpr (kExact<T>) {
-      // Between the points, whatever rounding has made of the normal.
+      // Interpolates the points, so that rounding of the normal does not move the result off the
+      // triangle.
       const Lanes<T> over = one / max(area[s], Lanes<T>(kVanishing<T>));
       x = w + edge[i] * (u * over) + edge[k] * (v * over);
       square = dot(x, x);
@@ -109,7 +111,8 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
     r.keep[i] = r.keep[i] | nearer;
     r.keep[k] = r.keep[k] | nearer;
   }
-  // Heights of the origin over the faces at w, and over the face across, have the volume's sign.
+  // The heights of the origin over the three faces at w, and over the opposite face, have the
+  // volume's sign if the origin is inside.
   const Lanes<T> side = sign_or_one(volume);
   const Vec3<T> across = normal[0] + normal[1] + normal[2];
   const Lanes<T> opposite = (volume + height[0] + height[1] + height[2]) * side;

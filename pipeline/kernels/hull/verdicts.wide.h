@@ -1,9 +1,9 @@
 #pragma once
 
-// Verdicts in float, of pairs of any kinds of convex shapes, as far as they are beyond doubt. A
-// block of pairs is loaded and placed, all lanes alike, and asked once along the line of the cores'
-// middles, which shows most that are apart; those that are left take turns in the lanes of a
-// search. Lengths are divided by the pair's size.
+// Overlap tests in float for pairs of any convex kinds; only certain results count. A block of
+// pairs is loaded and placed in lanes and tested once along the line of the cores' centers, which
+// separates most pairs that are apart. The remaining pairs take turns in the lanes of a GJK search.
+// Lengths are divided by the pair's size.
 
 #include "pipeline/kernels/answers.wide.h"
 #include "pipeline/kernels/hull/hull_supports.wide.h"
@@ -15,10 +15,10 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 class Verdicts {
  public:
-  /// Some 90 roundings make up a height: this is three times as much.
+  /// About 90 roundings contribute to a height; this is three times as much.
   static constexpr float kDoubt = 1.6e-5F;
 
-  /// Answers a job, but for pairs that it lists in `uncertified`; returns how many.
+  /// Answers a job except the pairs that it lists in `uncertified`; returns their number.
   [[gnu::noinline]] static std::uint32_t run(NarrowJob& job) {
     if (job.count == 0) return 0;
     Verdicts verdicts(job);
@@ -42,7 +42,7 @@ class Verdicts {
         kind_{job.shapes[job.pairs->a].kind(), job.shapes[job.pairs->b].kind()},
         lanes_(kind_[1] == ShapeKind::support) {}
 
-  /// The shapes in lanes of whose cores there are no numbers.
+  /// The shapes in lanes whose cores have no numbers: hulls and user shapes.
   struct Singles {
     const HullShape* hull[2][kWidth];
     const SupportShape* own[2][kWidth];
@@ -52,7 +52,7 @@ class Verdicts {
     return kind == ShapeKind::hull || kind == ShapeKind::support;
   }
 
-  /// How the cores of a block lie, those of the second in the frame of the first.
+  /// The placement of the cores of a block, with the second in the frame of the first.
   struct Placed {
     Floats turn[9];
     Vec3<float> shift;
@@ -70,7 +70,7 @@ class Verdicts {
     const Vec3<float> y = frame.to_local(axes.y);
     const Vec3<float> z = frame.to_local(axes.z);
     const Vec3<float> shift = frame.to_local(load_offset(job_, block));
-    // Of a bad pose this is no number.
+    // NaN for an invalid pose.
     const Floats size =
         side[0].reach + side[1].reach + taxicab(shift) + (taxicab(x) + taxicab(y)) * Floats(0.0F);
     const LaneMask<float> usable = (size > Floats(kSmallest)) & (size < Floats(kLargest));
@@ -88,7 +88,7 @@ class Verdicts {
             bits(usable) & block.lanes()};
   }
 
-  /// The first step of a block; returns the lanes that are not for this.
+  /// The first step of a block; returns the lanes that are out of range.
   [[gnu::noinline]] Mask16 look(const PairBlock<float>& block) {
     LoadedCores side[2];
     const Placed placed = place(block, side);
@@ -140,7 +140,7 @@ class Verdicts {
     Search::store3(placed.shift, shift_);
   }
 
-  /// Goes on with the pairs that wait until all are in lanes; where this `ends` until all lanes are
+  /// Advances the searches until all waiting pairs have a lane, or, if `ends`, until all lanes are
   /// done.
   [[gnu::noinline]] void search(bool ends) {
     for (Mask16 free = kAllRows & ~active_; free != 0 && waiting_ != 0; free &= free - 1) {
@@ -169,7 +169,7 @@ class Verdicts {
     }
   }
 
-  /// The next pair that waits, after its first step.
+  /// Puts the next waiting pair into a lane, after its first step.
   void refill(unsigned lane) {
     if (waiting_ == 0) return;
     const unsigned row = first(waiting_);
@@ -207,7 +207,7 @@ class Verdicts {
     }
   }
 
-  /// The farthest points of the cores of one side.
+  /// The support points of the cores of one side.
   [[gnu::always_inline]] Vec3<float> points(const CoreLanes<float>& core, int side,
                                             const Singles& singles, Mask16 active,
                                             const Vec3<float>& d) {
@@ -241,14 +241,14 @@ class Verdicts {
   const ShapeKind kind_[2];
   std::uint32_t in_doubt_ = 0;
 
-  // The searches, and which pairs they are of.
+  // The searches and their pairs.
   Mask16 active_ = 0;
   Search lanes_;
   std::uint32_t pair_[kWidth] = {};
   alignas(64) float lane_number_[2][kCoreNumbers][kWidth] = {};
   Singles lane_singles_;
 
-  // A block after its first step, and which of its pairs wait for a lane.
+  // A block after its first step, and its pairs that wait for a lane.
   Mask16 waiting_ = 0;
   std::uint32_t first_pair_ = 0;
   alignas(64) float number_[2][kCoreNumbers][kWidth];
@@ -262,13 +262,13 @@ class Verdicts {
   VertexHeights heights_;
 };
 
-/// Answers the pairs that verdicts have left in `uncertified`, `count` of them, with an object that
-/// takes much room and so time to make: most jobs of one pair leave none.
+/// Answers the `count` pairs that verdicts() has left in `uncertified`. The large Answers object
+/// is constructed only if there are any; most jobs of one pair leave none.
 template <typename Answers>
 std::uint32_t answer_in_doubt(NarrowJob& job, std::uint32_t count) {
   if (count == 0) return 0;
   Answers answers(job);
-  // No more are given up than were read, so what is still to be read is not written over.
+  // At most as many indices are written as have been read, so unread entries are not overwritten.
   for (std::uint32_t k = 0; k < count; ++k) answers.take(job.uncertified[k]);
   return answers.finish_taken();
 }

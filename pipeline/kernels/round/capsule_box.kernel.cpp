@@ -1,3 +1,7 @@
+// Capsules against boxes, many pairs at a time. If the segment and the box are apart, finds their
+// closest points; if they overlap, the least overlap over all face normals of their Minkowski sum.
+// Contacts are the ends of the range of the segment that lies over a face.
+
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -6,7 +10,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// A capsule's segment middle + s axis, |s| <= half, in the frame of the box |x_i| <= size_i.
+/// The segment middle + s axis, |s| <= half, of a capsule, in the frame of the box |x_i| <= size_i.
 template <typename T>
 struct CapsuleAndBox {
   Lanes<T> middle[3];
@@ -25,18 +29,20 @@ template <typename T>
   return {w[0], w[1], w[2]};
 }
 
-/// Half the derivative by s of the squared distance to the box: piecewise linear and never falling.
+/// Half the derivative, with respect to s, of the squared distance to the box: piecewise linear and
+/// nondecreasing.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> slope_at(const CapsuleAndBox<T>& p, const Lanes<T>& s) {
   const Vec3<T> w = towards_box(p, s);
   return -(w.x * p.axis[0] + w.y * p.axis[1] + w.z * p.axis[2]);
 }
 
-/// Where the segment is closest to the box: the root of the slope, between the last of its corners
-/// (where the segment passes a face's plane) with a slope below zero and the first above. An error
-/// of the slope is eps |c| times the part of the axis across the slabs that the segment is outside
-/// of, and the root's is that over the square of the same part, so the distance is as good as the
-/// poses, whatever the angle.
+/// Returns the s at which the segment is closest to the box: the root of the slope, between its
+/// last breakpoint (where the segment crosses the plane of a face) with a negative slope and its
+/// first one with a nonnegative slope. Let a be the length of the part of the axis that is
+/// perpendicular to the slabs that the segment is outside of. The error of the slope is eps |c| a,
+/// and the error of the root is that over a^2. So the distance is as accurate as the poses, at any
+/// angle.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> closest_place(const CapsuleAndBox<T>& p) {
   const Lanes<T> zero(T(0));
@@ -64,15 +70,15 @@ template <typename T>
   return select(ends[0] >= zero, -p.half, select(ends[1] <= zero, p.half, inner));
 }
 
-/// The direction along which segment and box overlap least, by the normals of their sum's faces:
-/// the box's, and the products of the axis with the box's.
+/// The direction in which segment and box overlap least, among the face normals of their Minkowski
+/// sum: the axes of the box, and cross products of the segment's axis with them.
 template <typename T>
 struct Overlap {
-  /// Negative where they overlap.
+  /// Negative if they overlap.
   Lanes<T> distance;
-  /// Unit, from the segment to the box, in the box's frame.
+  /// Unit, from the segment to the box, in the frame of the box.
   Lanes<T> normal[3];
-  /// The sines between the axis and the box's edges are 0, or no less than kLeastSine.
+  /// True if the sines between the axis and the edges of the box are 0, or at least kLeastSine.
   LaneMask<T> sharp;
 };
 
@@ -114,9 +120,10 @@ template <typename T>
   return r;
 }
 
-/// Where on the segment the cores touch if they are moved apart along the normal: at its end; or,
-/// as the segment is level with what it touches, nearest to the edge (of the box's directions of
-/// which the normal is made) and over the face (the other directions).
+/// Returns the s at which the cores touch if they are moved apart along the normal: an end of the
+/// segment; or, if the segment is parallel to the feature that it touches, the point that is
+/// nearest to the edge (in the axes of the box of which the normal consists) and over the face (in
+/// the other axes).
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> deepest_place(const CapsuleAndBox<T>& p, const Vec3<T>& n) {
   const Lanes<T> zero(T(0));
@@ -149,14 +156,14 @@ struct CapsuleBoxSolution {
   CapsuleAndBox<T> scene;
   Rotation<T> axes;
   ProofLanes<T> proof;
-  /// In the box's frame, from the capsule to the box.
+  /// In the frame of the box, from the capsule to the box.
   Vec3<T> normal;
   Lanes<T> s;
   Lanes<T> radius;
   Lanes<T> radius_b;
 };
 
-/// Not inlined: all levels share it, and it takes long to compile.
+/// Not inlined: shared by all levels, and slow to compile.
 template <typename T>
 [[gnu::noinline]] CapsuleBoxSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
@@ -180,7 +187,8 @@ template <typename T>
   const Lanes<T> s = closest_place(r.scene);
   const Vec3<T> w = towards_box(r.scene, s);
   const Lanes<T> length = sqrt(dot(w, w));
-  // An error of the products is one over their sines. A flat sum is never deep but by rounding.
+  // The error of a cross product is proportional to 1 / its sine. A flat Minkowski sum has depth
+  // only by rounding.
   const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> inside = overlap.sharp & (overlap.distance < -slack);
   r.proof = {select(inside, overlap.distance - slack, length) - both,
@@ -192,11 +200,11 @@ template <typename T>
   return r;
 }
 
-/// The face that looks against the normal most.
+/// The face of the box that faces against the normal most.
 template <typename T>
 struct FacingBox {
   LaneMask<T> is_axis[3];
-  /// Of a vector the coordinate across the face, and those along it: the first and the second.
+  /// Components of a vector: across the face, and along it, first and second.
   [[gnu::always_inline]] Lanes<T> across(const Lanes<T> (&v)[3]) const {
     return select(is_axis[2], v[2], select(is_axis[1], v[1], v[0]));
   }
@@ -213,8 +221,8 @@ struct FacingBox {
   }
 };
 
-/// The stretch of the segment over the box's face, seen along the normal: contacts at its ends are
-/// those that the segment and the face have as patches.
+/// The range of the segment that is over the face of the box, projected along the normal. The
+/// contacts at its ends equal the contacts that contact_patch finds for the segment and the face.
 template <typename T>
 [[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleBoxSolution<T>& r,
                                                            const FacingBox<T>& face) {
@@ -224,7 +232,7 @@ template <typename T>
   const Lanes<T> normal[3] = {r.normal.x, r.normal.y, r.normal.z};
   const Lanes<T> facing = face.across(normal);
   const Lanes<T> over = one / facing;
-  // The way along the normal to the face's plane, at s: base + rise s.
+  // Distance along the normal to the plane of the face at s: base + rise s.
   const Lanes<T> base = -(sign_or_one(facing) * face.across(p.size) + face.across(p.middle)) * over;
   const Lanes<T> rise = -face.across(p.axis) * over;
   const Lanes<T> slack = r.proof.scale * Lanes<T>(T(kOnePlace));
@@ -240,7 +248,7 @@ template <typename T>
     const Lanes<T> one_over = one / slope;
     const Lanes<T> from = (-size - place) * one_over;
     const Lanes<T> to = (size - place) * one_over;
-    // Not if all of the segment is inside but for rounding, or lies along a side.
+    // Do not cut if the whole segment is inside, up to rounding, or lies along a side.
     const Lanes<T> lean = p.half * abs(slope);
     const LaneMask<T> is_beside =
         (abs(place) + lean <= size + near) & (abs(place) - lean >= size - near);
@@ -249,7 +257,7 @@ template <typename T>
     high = select(cuts, min(high, max(from, to)), high);
     high = select(cuts & (slope == zero), -p.half - p.half, high);
   }
-  // Ends of the stretch that are not ends of the capsule: 3 and 4.
+  // Ends of the range that are not ends of the capsule have the feature numbers 3 and 4.
   const auto name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
     return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
   };

@@ -1,3 +1,6 @@
+// The kernels of capsule-capsule: the closest points of two segments (closest_feet in
+// round.wide.h), and two contacts if the capsules lie side by side.
+
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -6,8 +9,8 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// Two capsules, the first at the origin. Which body is the first depends on the sign of the offset
-/// alone, so that (a, b) and (b, a) are the same problem.
+/// Two capsules, the first at the origin. Their order depends only on the sign of the offset, so
+/// that (a, b) and (b, a) are the same problem.
 template <typename T>
 struct Couple {
   LaneMask<T> swapped;
@@ -57,7 +60,7 @@ template <typename T>
   return r;
 }
 
-/// A point of a manifold, still in the order of the couple.
+/// A contact, in the order of the couple.
 template <typename T>
 struct Touch {
   SegmentFeet<T> feet;
@@ -98,9 +101,9 @@ template <typename T>
   return dot(p.across, p.across) < Lanes<T>(static_cast<T>(kBesideSquare));
 }
 
-/// Capsules that are parallel to 0.1 touch at the two ends of the stretch along which they lie side
-/// by side, as far as those are within the margin; others at `closest`. By value and not inlined:
-/// few blocks have any, and the others' lanes stay in registers.
+/// Capsules that are parallel to 0.1 get contacts at the two ends of the range over which they lie
+/// side by side, if these are within the margin; others get `closest`. By value and not inlined:
+/// few blocks need it, and the lanes of the others stay in registers.
 template <typename T>
 [[gnu::noinline]] void write_ends(NarrowJob& job, PairBlock<T> block, Couple<T> p,
                                   CertifiedLanes<T> answer, ContactLanes<T> closest) {
@@ -110,8 +113,8 @@ template <typename T>
   const Lanes<T> low = max(middle - reach, -p.half[0]);
   const Lanes<T> high = min(middle + reach, p.half[0]);
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
-  // The deeper end stands for the closest point if that is hardly deeper, as a share of the radii;
-  // capsules that cross have one point.
+  // The deeper end replaces the closest point if that is hardly deeper, relative to the radii.
+  // Otherwise the capsules cross and have one contact.
   constexpr T hardly = static_cast<T>(kHardlyLess);
   const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
   const LaneMask<T> side_by_side =
@@ -122,7 +125,7 @@ template <typename T>
   ends[1].distance -= behind;
   const LaneMask<T> near_low = side_by_side & (ends[0].distance <= margin);
   const LaneMask<T> near_high = side_by_side & (ends[1].distance <= margin);
-  // Back from b to a where the couple is.
+  // The normal in the order of the couple.
   const Vec3<T> normal = select(p.swapped, -answer.normal, answer.normal);
   ContactLanes<T> contacts[2] = {closest, contact_of(p, normal, ends[1])};
   contacts[0] = choose(near_high, contacts[1], contacts[0]);
@@ -131,8 +134,8 @@ template <typename T>
   write_contacts(job, block, contacts);
 }
 
-/// Segments that cross or lie in one line part at right angles to both. Of two at one place, that
-/// are parallel, neither is the first.
+/// For segments that touch: if they cross or are collinear, the normal is perpendicular to both.
+/// Left out are parallel segments with the same center, whose order in the couple is undefined.
 template <typename T>
 [[gnu::noinline]] CertifiedLanes<T> part_couple(Couple<T> p, CertifiedLanes<T> answer) {
   const Lanes<T> square = dot(p.across, p.across);

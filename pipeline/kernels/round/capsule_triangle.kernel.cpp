@@ -1,3 +1,8 @@
+// Capsules against triangles, many pairs at a time. If the segment and the triangle are apart,
+// finds their closest points; if they intersect, the least depth over all face normals of their
+// Minkowski difference. Contacts are the ends of the range of the segment that lies over the
+// triangle.
+
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -6,29 +11,30 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// A capsule's segment about the origin and a triangle, in the triangle's frame.
+/// The segment of a capsule, centred at the origin, and a triangle, in the frame of the triangle.
 template <typename T>
 struct CapsuleAndTriangle {
   Vec3<T> axis;
   Lanes<T> half;
   TriangleView<T> triangle;
-  /// axis x edge, its square, and one over its length
+  /// axis x edge, its squared length, and 1 / its length
   Vec3<T> across[3];
   Lanes<T> across_square[3];
   Lanes<T> across_over[3];
 };
 
-/// The direction in which the cores are farthest apart or least deep. The difference of segment and
-/// triangle is a prism: its faces' normals are the triangle's and the products of the segment with
-/// the edges. Of two points that are closest, neither inside an edge nor the face, the normal is
-/// their difference.
+/// The direction in which the cores are farthest apart or least deep. The Minkowski difference of a
+/// segment and a triangle is a prism, whose face normals are the normal of the triangle and the
+/// cross products of the segment with the edges. If the closest points are not inside an edge or
+/// the face, the normal is their difference.
 template <typename T>
 struct Verdict {
   Gap<T> gap;
-  /// Where on the segment the cores touch if they are moved apart along the prism's normal.
+  /// Position on the segment where the cores touch if they are moved apart along the normal of the
+  /// prism.
   Lanes<T> s;
   Lanes<T> feature;
-  /// No normal of the prism was made from a sine below kLeastSine.
+  /// True if no normal of the prism was computed from a sine below kLeastSine.
   LaneMask<T> sharp;
 };
 
@@ -54,7 +60,7 @@ template <typename T>
   const Vec3<T> n = b.normal * (one / sqrt(b.normal_square));
   const Lanes<T> rise = dot(n, p.axis);
   const Gap<T> flat = gap_along(b, n, p.half * abs(rise));
-  // The end that is deepest.
+  // The deepest end.
   const Lanes<T> end = select(dot(flat.normal, p.axis) < zero, -p.half, p.half);
   try_axis(v, has_normal(b), flat, end, Lanes<T>(T(7)));
   v.sharp = b.normal_square > b.square[0] * b.square[1] * least;
@@ -77,14 +83,14 @@ template <typename T>
     const Vec3<T> w = b.vertex[i] + b.edge[i] * feet[i].t - p.axis * feet[i].s;
     nearer(nearest, w.x == w.x, w, feet[i].s, edge_feature(feet[i].t, i));
   }
-  // Only the end that is nearer to the plane can be closest to the face's inside.
+  // Only the end that is nearer to the plane can be closest to the inside of the face.
   const Lanes<T> side = dot(b.normal, b.vertex[0]) * dot(b.normal, p.axis);
   const Lanes<T> end = select(side < zero, -p.half, p.half);
   nearer_in_face(nearest, b, p.axis * end, end);
   return nearest;
 }
 
-/// What all levels need.
+/// Result that all levels use.
 template <typename T>
 struct CapsuleTriangleSolution {
   CapsuleAndTriangle<T> scene;
@@ -114,8 +120,8 @@ template <typename T>
   const Vec3<T> n = nearest.w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n)) -
                          p.half * abs(dot(p.axis, n));
-  // An error of the prism's normals is one over their sines. A flat prism is never deep but by
-  // rounding.
+  // The error of a normal of the prism is proportional to 1 / its sine. A flat prism has depth only
+  // by rounding.
   const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> pierced = v.sharp & (v.gap.distance < -slack);
   const Lanes<T> depth = v.gap.distance;
@@ -128,7 +134,7 @@ template <typename T>
   r.feature = select(pierced, v.feature, nearest.feature);
 }
 
-/// Not inlined: all levels share it, and it takes long to compile.
+/// Not inlined: shared by all levels, and slow to compile.
 template <typename T>
 [[gnu::noinline]] CapsuleTriangleSolution<T> solve(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
@@ -155,8 +161,8 @@ template <typename T>
   return r;
 }
 
-/// The stretch of the segment over the triangle, seen along the normal: contacts at its ends are
-/// those that both have as patches.
+/// The range of the segment that is over the triangle, projected along the normal. The contacts at
+/// its ends equal the contacts that contact_patch finds for the two.
 template <typename T>
 [[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleTriangleSolution<T>& r) {
   const Lanes<T> zero(T(0));
@@ -170,7 +176,8 @@ template <typename T>
   const Lanes<T> near = min(longest, p.half * Lanes<T>(T(2))) * Lanes<T>(T(kAlongSide));
   Lanes<T> low = -p.half;
   Lanes<T> high = p.half;
-  // What of the triangle ends it: an edge, or the face where the segment ends first.
+  // Feature of the triangle at each end of the range: an edge, or the face if the segment ends
+  // first.
   Lanes<T> feature[2] = {Lanes<T>(T(7)), Lanes<T>(T(7))};
   for (int i = 0; i < 3; ++i) {
     const Vec3<T> inward = cross(r.normal, b.edge[i]) * side;
@@ -179,7 +186,7 @@ template <typename T>
     const Lanes<T> offset = dot(inward, b.vertex[i]);
     const Lanes<T> at = offset / slope;
     const Lanes<T> edge(T(4 + i));
-    // Not if all of the segment is inside but for rounding, or lies along the edge.
+    // Do not cut if the whole segment is inside, up to rounding, or lies along the edge.
     const Lanes<T> lean = p.half * abs(slope);
     const Lanes<T> length = sqrt(b.square[i]);
     const LaneMask<T> is_beside =
@@ -194,7 +201,7 @@ template <typename T>
     const LaneMask<T> never = cuts & (slope == zero);
     high = select(never, -p.half - p.half, high);
   }
-  // The way along the normal to the triangle's plane, at s: base + rise s.
+  // Distance along the normal to the plane of the triangle at s: base + rise s.
   const Lanes<T> over = one / facing;
   const Lanes<T> base = dot(b.normal, b.vertex[0]) * over - r.radius - r.radius_b;
   const Lanes<T> rise = -dot(b.normal, p.axis) * over;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Points and directions seen from an ellipsoid, in its frame: how far it reaches, and where its
-// surface is nearest.
+// Ellipsoids in their own frame: the support point along a direction, and the nearest point of the
+// surface to a point. Used by round_ellipsoid.kernel.cpp.
 
 #include "simd/lanes/vectors.h"
 
@@ -12,7 +12,7 @@ template <typename T>
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// An ellipsoid as far as it goes along a direction.
+/// The support point of an ellipsoid and its height along the direction.
 template <typename T>
 struct Reach {
   Lanes<T> height;
@@ -27,17 +27,18 @@ template <typename T>
   return {height, times(radius, stretched) * (Lanes<T>(T(1)) / max(height, least))};
 }
 
-/// A point seen from an ellipsoid, in its frame and, by its symmetry, where no coordinate is
-/// negative. The way out of, or to, the surface is along q_i / (s + e_i), where e_i are the squares
-/// of the radii less that of the least, and s is the largest at which the r_i q_i / (s + e_i) are a
-/// unit vector (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid",
-/// 2013). Its length's inverse is nearly straight in s, and Newton's method goes up to the root (as
-/// Moré and Sorensen, "Computing a trust region step", 1983).
+/// The nearest point of an ellipsoid's surface to a point q, in the ellipsoid's frame; by symmetry
+/// no coordinate of q is negative. The normal there is parallel to q_i / (s + e_i), where e_i are
+/// the squares of the radii minus the square of the smallest, and s is the largest number for which
+/// r_i q_i / (s + e_i) is a unit vector (Eberly, "Distance from a point to an ellipse, an
+/// ellipsoid, or a hyperellipsoid", 2013). The inverse of that vector's length is nearly linear in
+/// s, and Newton's method approaches the root from below (as in Moré and Sorensen, "Computing a
+/// trust region step", 1983).
 template <typename T>
 struct SurfaceView {
-  /// Unit.
+  /// Unit normal of the surface.
   Vec3<T> outward;
-  /// Signed, between these.
+  /// Bounds of the signed distance of q from the ellipsoid.
   Lanes<T> low;
   Lanes<T> high;
 };
@@ -54,7 +55,7 @@ template <typename T>
   const auto of_least = [&](const Lanes<T>& w, const Lanes<T>& e) {
     return select(e > zero, zero, w * w);
   };
-  // Never 0, which has no inverse: beside a flat ellipsoid this is as good.
+  // Never 0, which has no inverse; near a flat ellipsoid this value makes no difference.
   const Lanes<T> most = max(max(radius.x, radius.y), radius.z);
   const Lanes<T> hardly =
       most * most * Lanes<T>(sizeof(T) == sizeof(double) ? T(1e-30) : T(1e-12F));
@@ -77,8 +78,9 @@ template <typename T>
   const Vec3<T> share = times(weight, over);
   const Lanes<T> within = one / max(sqrt(dot(share, share)), one);
   const Vec3<T> gap = q - times(radius, share) * within;
-  // Any t above -thin^2 bounds the squared distance to the surface (Lagrange's dual function).
-  // Where it is not above zero, the point is hardly inside or has no s: nothing is known.
+  // Lagrange's dual function: any t above -thin^2 gives a lower bound of the squared distance to
+  // the surface. If that bound is not positive, the point is hardly inside or has no s, and the
+  // result is NaN.
   const Lanes<T> t = s - thin * thin;
   const Lanes<T> least = t * (dot(times(q, q), over) - one);
   const Lanes<T> unknown(T(__builtin_nan("")));

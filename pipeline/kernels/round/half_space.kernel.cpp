@@ -1,4 +1,5 @@
-// Half-spaces against spheres, capsules, boxes and triangles: the vertices' heights over the plane.
+// The kernels of half-spaces with spheres, capsules, boxes and triangles. They compute the heights
+// of the vertices over the plane; over_plane.wide.h turns these into answers.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
@@ -22,7 +23,7 @@ template <typename T>
 struct CapsuleOverPlane {
   Plane<T> plane;
   Lanes<T> radius;
-  /// From the middle to the upper end of the core, and how much that rises.
+  /// From the middle to the upper end of the core, and its component along the normal.
   Vec3<T> arm;
   Lanes<T> rise;
   Lanes<T> scale;
@@ -71,7 +72,7 @@ struct CapsuleFeet {
 };
 
 struct TriangleFeet {
-  /// As the vertices are.
+  /// Feet in the order of the vertices.
   template <typename T>
   [[gnu::always_inline]] static Feet<T, 3> in_order(const NarrowJob& job,
                                                     const PairBlock<T>& block) {
@@ -122,14 +123,14 @@ struct TriangleFeet {
   }
 };
 
-/// A box over a plane, by its half axes.
+/// A box over a plane, given by its half axes.
 template <typename T>
 struct BoxOverPlane {
   Plane<T> plane;
-  Lanes<T> cosine[3];       // of axes and normal
-  LaneMask<T> negative[3];  // half axes that are turned round, so that they point down
+  Lanes<T> cosine[3];       // of the axes with the normal
+  LaneMask<T> negative[3];  // half axes that are reversed so that they point down
   Vec3<T> down[3];
-  Lanes<T> rise[3];  // of an axis from its lower end to the middle
+  Lanes<T> rise[3];  // of a half axis from its lower end to the middle
   Lanes<T> rounding;
   Lanes<T> scale;
 
@@ -161,8 +162,8 @@ struct BoxOverPlane {
 };
 
 struct BoxFeet {
-  /// The four vertices of the face that looks most towards the plane, lowest first, the one
-  /// opposite last. A vertex is called by its signs: bit i if coordinate i is negative.
+  /// The four vertices of the face that is turned most towards the plane, the lowest first and the
+  /// one opposite to it last. The feature of a vertex has bit i set if coordinate i is negative.
   template <typename T>
   [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
     BoxOverPlane<T> box(job, block);
@@ -175,7 +176,7 @@ struct BoxFeet {
       lowest = lowest + select(box.negative[i], bit, Lanes<T>(T(0)));
       flip[i] = select(box.negative[i], -bit, bit);
     }
-    // Arms 0 and 1 span the face, arm 2 is the one nearest to the normal.
+    // Arms 0 and 1 span the face, arm 2 is nearest to the normal.
     const auto exchange = [&](const LaneMask<T>& mask, int i) {
       const auto swap = [&](auto& x, auto& y) {
         const auto t = select(mask, y, x);

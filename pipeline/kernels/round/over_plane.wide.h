@@ -1,25 +1,25 @@
 #pragma once
 
-// The end of every kernel of half-spaces: from the points of a shape that are lowest over the plane
-// to answers. A half-space reaches to infinity, so the direction is always that of its plane.
+// The last step of every kernel of half-spaces: from the lowest points of a shape over the plane to
+// answers. A half-space is unbounded, so the normal is always the normal of its plane.
 
 #include "pipeline/kernels/round/round.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::round {
 
-/// The half-space's plane, relative to the position of body a: the outward normal, and the height
+/// The half-space's plane, relative to the position of body a: its outward normal, and the height
 /// of the other body's position over it.
 template <typename T>
 struct Plane {
   Vec3<T> normal;
   Lanes<T> height;
-  /// The sum of the magnitudes of what height was made of; NaN for a bad pose.
+  /// The sum of the magnitudes of the terms of `height`; NaN for an invalid pose.
   Lanes<T> scale;
   /// The position of body b.
   Vec3<T> to_b;
 };
 
-/// Of the side's body.
+/// Loads the plane of the given side's body.
 template <typename Side, typename T>
 [[gnu::always_inline]] inline Plane<T> load_plane(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
@@ -31,7 +31,7 @@ template <typename Side, typename T>
   return {normal, other - plane.offset, taxicab(c) + abs(plane.offset) + doubt(turn), c};
 }
 
-/// How high the lowest point of a shape's core is over a plane.
+/// The height of the lowest point of a shape's core over a plane.
 template <typename T>
 struct LeastHeight {
   Lanes<T> height;
@@ -44,13 +44,13 @@ struct LeastHeight {
   }
 };
 
-/// Points of a shape's core over a plane, relative to body a, in the axes of the world.
+/// Points of a shape's core over a plane, relative to body a, in world axes.
 template <typename T, int Count>
 struct Feet {
   Vec3<T> foot[Count];
   Lanes<T> height[Count];
   Lanes<T> feature[Count];
-  /// Foot 0 is the lowest. The rounding is that of all.
+  /// Foot 0 is the lowest. All feet have the same rounding.
   Lanes<T> rounding;
   Vec3<T> normal;
   Lanes<T> scale;
@@ -58,7 +58,7 @@ struct Feet {
   [[gnu::always_inline]] LeastHeight<T> least() const { return {height[0], rounding, scale}; }
 };
 
-/// Exchanges two feet if the second is lower.
+/// Swaps two feet if the second is lower.
 template <typename T, int Count>
 [[gnu::always_inline]] inline void sort_two(Feet<T, Count>& f, int first, int second) {
   const LaneMask<T> wrong = f.height[second] < f.height[first];
@@ -72,8 +72,8 @@ template <typename T, int Count>
   exchange(f.feature[first], f.feature[second]);
 }
 
-/// From feet to answers with up to so many contacts; returns the uncertified lanes. `PlaneSide` is
-/// the half-space's.
+/// Turns feet into answers with up to `Contacts` contacts; returns the uncertified lanes.
+/// `PlaneSide` is the side of the half-space.
 template <int Contacts, typename PlaneSide = SideB>
 struct FeetAnswers {
   static constexpr bool kPlaneFirst = __is_same(PlaneSide, SideA);
@@ -125,9 +125,9 @@ struct FeetAnswers {
   }
 };
 
-/// The kernels of a class that finds the feet, and maybe the lowest alone, which is all that level
-/// distance asks for, and its height alone, all that level boolean asks for; levels share these
-/// parts, not inlined, as they take long to compile.
+/// The kernels of a class that computes the feet. It may also have `lowest`, only the lowest foot,
+/// which is enough for level distance, and `least`, only its height, which is enough for level
+/// boolean. Levels share these functions and do not inline them, because they take long to compile.
 template <typename Source, int Contacts>
 struct OverPlane {
   template <typename T, int L>

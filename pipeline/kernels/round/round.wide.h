@@ -1,43 +1,47 @@
 #pragma once
 
-// The end of every kernel of spheres and capsules: from the cores' witness to certified answers.
+// Shared by the kernels of spheres and capsules: closest points of segments and triangles, and the
+// last step of every kernel, from the cores' closest points to certified answers and contacts.
 
 #include "pipeline/kernels/one_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::round {
 
-/// How often the unit roundoff of a pair's scale the closed forms may be wrong: about three times
-/// the sum over their operations.
+/// Error bound of the closed forms in units of roundoff of the pair's scale: about three times the
+/// sum over their operations.
 inline constexpr int kRoundings = 16;
 
-/// Shortest distance of the cores, relative to the pair's scale, that still gives a normal: its
-/// error is a few roundings over this.
+/// The shortest distance of the cores, relative to the pair's scale, that still gives a normal. The
+/// error of the normal is a few roundings divided by this.
 inline constexpr double kShortest = 1e-9;
 
-/// The smallest sine of which a product of directions is taken for a normal of overlapping cores,
-/// and how far, relative to the pair's scale, their depth along it may be wrong: a few roundings
-/// over the sine.
+/// The smallest sine for which the cross product of two directions counts as the normal of
+/// overlapping cores, and the error of the depth along it relative to the pair's scale: a few
+/// roundings divided by the sine.
 template <typename T>
 inline constexpr T kLeastSine = T(1) / T(128);
 template <typename T>
 inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
 
-/// Square of the sine of two directions below which their product is rounding alone.
+/// If the square of the sine of two directions is smaller, their cross product consists of rounding
+/// errors.
 template <typename T>
 inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 
-/// Where the cores of a pair are closest.
+/// The vector between the closest points of two cores.
 template <typename T>
 struct WitnessLanes {
-  /// From the point of core a to that of core b, at most kRoundings * epsilon * scale wrong.
+  /// From the point on core a to the point on core b; its error is at most kRoundings * epsilon *
+  /// scale.
   Vec3<T> w;
-  /// Both roundings.
+  /// The sum of both roundings.
   Lanes<T> radius;
-  /// At least the sum of all lengths that w was made of, and of the radius; NaN for a bad pose.
+  /// At least the sum of all lengths from which w was computed, and of the radius; NaN for an
+  /// invalid pose.
   Lanes<T> scale;
 };
 
-/// Only signs count that bounds prove.
+/// The lanes in which the error bound proves the sign.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
                                                      const Lanes<T>& bound, const Lanes<T>& scale,
@@ -45,8 +49,8 @@ template <typename T>
   return bits(in_range(scale * scale) & normal & (abs(distance) > bound));
 }
 
-/// Level boolean, by squares; returns the uncertified lanes. With w wrong by e, its square is by
-/// 2 |w| e, and |w| <= scale.
+/// Level boolean, from squares; returns the uncertified lanes. If w has the error e, its square has
+/// the error 2 |w| e, and |w| <= scale.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                     const WitnessLanes<T>& witness) {
@@ -57,7 +61,7 @@ template <typename T>
   return ~certified_lanes(excess, error, witness.scale, square > Lanes<T>(T(0)));
 }
 
-/// A distance along a normal, and whether it may be written.
+/// A distance along a normal, and the lanes in which it is certified.
 template <typename T>
 struct CertifiedLanes {
   Lanes<T> distance;
@@ -66,7 +70,7 @@ struct CertifiedLanes {
   Mask16 certified;
 };
 
-/// Level boolean of kernels that have the distance.
+/// Level boolean for kernels that have computed the distance.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_sign(const NarrowJob& job, const PairBlock<T>& block,
                                                  const Lanes<T>& distance, const Lanes<T>& bound,
@@ -75,7 +79,7 @@ template <typename T>
   return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
 }
 
-/// Levels distance and manifold. `shortest` is the least |w| that has a direction.
+/// Levels distance and manifold. `shortest` is the smallest |w| that gives a normal.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const WitnessLanes<T>& witness,
                                                                 const Lanes<T>& shortest) {
@@ -86,7 +90,7 @@ template <typename T>
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
-/// The same along a direction that is always known.
+/// As above, for a normal that always exists.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,
                                                              const Lanes<T>& distance,
@@ -95,8 +99,8 @@ template <typename T>
   return {distance, bound, normal, certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)))};
 }
 
-/// A unit vector at right angles to a unit vector (Duff et al., "Building an orthonormal basis,
-/// revisited", JCGT 2017).
+/// Returns a unit vector perpendicular to a unit vector (Duff et al., "Building an orthonormal
+/// basis, revisited", JCGT 2017).
 template <typename T>
 [[gnu::always_inline]] inline Vec3<T> any_across(const Vec3<T>& u) {
   const Lanes<T> one(T(1));
@@ -105,8 +109,8 @@ template <typename T>
   return {one + sign * u.x * u.x * a, sign * u.x * u.y * a, -(sign * u.x)};
 }
 
-/// Where cores that have no thickness share a point, as far as rounding can tell, and a direction
-/// across both is known, they are apart as soon along it as along any other.
+/// If cores without thickness share a point, up to rounding, and a direction `across` perpendicular
+/// to both exists, no direction separates them sooner: it becomes the normal.
 template <typename T>
 [[gnu::always_inline]] inline void part_across(CertifiedLanes<T>& answer,
                                                const WitnessLanes<T>& witness,
@@ -118,8 +122,8 @@ template <typename T>
   answer.certified |= certified_lanes(answer.distance, answer.error_bound, witness.scale, touch);
 }
 
-/// Writes the columns of levels distance and manifold. `foot` is the point of core a, `radius` its
-/// rounding.
+/// Writes the columns of levels distance and manifold. `foot` is the point on core a, `radius` the
+/// rounding of a.
 template <int L, typename T>
 [[gnu::always_inline]] inline void write_certified(const NarrowJob& job, const PairBlock<T>& block,
                                                    const CertifiedLanes<T>& c, const Vec3<T>& foot,
@@ -129,7 +133,7 @@ template <int L, typename T>
   write_answer<L>(job, block, answer);
 }
 
-/// The point halfway between the surfaces, for certified pairs within the margin.
+/// A contact halfway between the surfaces, for certified pairs within the margin.
 template <typename T>
 [[gnu::always_inline]] inline ContactLanes<T> witness_contact(
     const NarrowJob& job, const PairBlock<T>& block, const CertifiedLanes<T>& c,
@@ -141,7 +145,7 @@ template <typename T>
           bits(near) & c.certified & block.lanes()};
 }
 
-/// Levels distance and manifold of pairs that touch in one point, where body a's has no feature;
+/// Levels distance and manifold for pairs that touch in one point, which has no feature on body a;
 /// returns the uncertified lanes.
 template <int L, typename T>
 [[gnu::always_inline]] inline Mask16 write_touch(NarrowJob& job, const PairBlock<T>& block,
@@ -156,7 +160,7 @@ template <int L, typename T>
   return ~c.certified;
 }
 
-/// The same of a sphere as body a, whose core is its position.
+/// As above with a sphere as body a; its core is its position.
 template <int L, typename T>
 [[gnu::always_inline]] inline Mask16 write_ball(NarrowJob& job, const PairBlock<T>& block,
                                                 const CertifiedLanes<T>& c, const Lanes<T>& radius,
@@ -165,21 +169,21 @@ template <int L, typename T>
   return write_touch<L>(job, block, c, Vec3<T>{zero, zero, zero}, radius, feature_b);
 }
 
-/// A sphere as body a beside a shape that has its distance in closed form.
+/// A sphere as body a, and a shape whose distance from a point has a closed form.
 template <typename T>
 struct BallSolution {
   Lanes<T> distance;
   Lanes<T> bound;
   Lanes<T> scale;
-  /// In the axes of the world, where `unique` holds.
+  /// In world axes; valid where `unique` is set.
   Vec3<T> normal;
   LaneMask<T> unique;
   Lanes<T> radius;
-  /// Of body b.
+  /// The feature of body b.
   Lanes<T> feature;
 };
 
-/// All levels; returns the uncertified lanes.
+/// Answers a sphere pair at any level; returns the uncertified lanes.
 template <int L, typename T>
 [[gnu::always_inline]] inline Mask16 answer_ball(NarrowJob& job, const PairBlock<T>& block,
                                                  const BallSolution<T>& r) {
@@ -192,20 +196,20 @@ template <int L, typename T>
   }
 }
 
-/// A signed distance that lies between the two numbers, but for kRoundings * epsilon * scale.
+/// Bounds of a signed distance, up to an error of kRoundings * epsilon * scale.
 template <typename T>
 struct ProofLanes {
-  /// How far the shapes are along some direction.
+  /// The separation along some direction.
   Lanes<T> low;
-  /// How far two of their points are, or how deep they are along a direction.
+  /// The distance of two points of the shapes, or minus the depth along some direction.
   Lanes<T> high;
   /// As in WitnessLanes.
   Lanes<T> scale;
-  /// Where the direction is well defined.
+  /// The lanes in which the direction is well defined.
   LaneMask<T> unique;
 };
 
-/// Scales of which the fourth power is in T's range.
+/// The lanes in which the fourth power of the scale is in T's range.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_narrow_range(const Lanes<T>& scale) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
@@ -224,8 +228,8 @@ template <typename T>
   return ~bits(valid & ((proof.high < -error) | (proof.low > error)));
 }
 
-/// Levels distance and manifold. Bounds are at most 1e-12 of sizes and distance, of which scale is
-/// at most twice as much.
+/// Levels distance and manifold. Error bounds are at most 1e-12 of sizes plus distance; `scale` is
+/// at most twice that sum.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_proven(const ProofLanes<T>& proof,
                                                               const Vec3<T>& normal) {
@@ -243,13 +247,13 @@ template <typename T>
   return min(max(v, low), high);
 }
 
-/// 0, or NaN where the orientation is not usable.
+/// 0, or NaN if the orientation is not usable.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> doubt(const Turn<T>& turn) {
   return turn.scale - turn.scale;
 }
 
-/// What a contact at t of a capsule's segment is called: 1 and 2 the ends, 0 between them.
+/// The feature of a contact at t on a capsule's segment: 1 and 2 for the ends, 0 between them.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> segment_feature(const Lanes<T>& t,
                                                        const Lanes<T>& half_length) {
@@ -258,14 +262,14 @@ template <typename T>
   return select(t >= half_length, Lanes<T>(T(1)), low);
 }
 
-/// Points s u and c + t e.
+/// The points s u and c + t e.
 template <typename T>
 struct SegmentFeet {
   Lanes<T> s;
   Lanes<T> t;
 };
 
-/// The second segment: c + t e, low <= t <= high; `square` is |e|^2, which may be 0.
+/// The second segment: c + t e, low <= t <= high. `square` is |e|^2, which may be 0.
 template <typename T>
 struct SegmentLanes {
   Vec3<T> c;
@@ -275,12 +279,12 @@ struct SegmentLanes {
   Lanes<T> high;
 };
 
-/// The closest points of the segment s u, |u| = 1, |s| <= h, and another. After Ericson, Real-Time
-/// Collision Detection (2005), 5.1.9, but s comes from products of cross products, `k` = u x e,
-/// `over` = 1 / |k|^2: by Lagrange's identity the same numbers without the cancellation of parallel
-/// segments. An error of s is then eps |c| / sin, of the distance in which it enters times sin eps
-/// |c|, whatever the angle; where u x e vanishes any s will do, as the last two steps find the
-/// closest points then.
+/// Returns the closest points of the segment s u, |u| = 1, |s| <= h, and another. As in Ericson,
+/// Real-Time Collision Detection (2005), 5.1.9, but s is computed from the cross product k = u x e
+/// and over = 1 / |k|^2. By Lagrange's identity these are the same numbers, without the
+/// cancellation for nearly parallel segments. The error of s is then eps |c| / sin; it enters the
+/// distance times sin, so the distance has an error of eps |c| whatever the angle. If u x e
+/// vanishes, any s will do: the last two steps then find the closest points.
 template <typename T>
 [[gnu::always_inline]] inline SegmentFeet<T> closest_feet(const Vec3<T>& u, const Lanes<T>& h,
                                                           const SegmentLanes<T>& b,
@@ -296,8 +300,8 @@ template <typename T>
   return {clamp(dot(u, b.c) + along * t, -h, h), t};
 }
 
-/// A triangle around the origin of the question: vertices, edge i from vertex i to the next one,
-/// squares of the edges' lengths, and the normal e0 x e1 of any length.
+/// A triangle relative to a query point: vertices, edge i from vertex i to the next one, squares of
+/// the edges' lengths, and the normal e0 x e1, which is not normalized.
 template <typename T>
 struct TriangleView {
   Vec3<T> vertex[3];
@@ -307,7 +311,7 @@ struct TriangleView {
   Lanes<T> normal_square;
 };
 
-/// `offset` is added to the vertices.
+/// Adds `offset` to the vertices.
 template <typename T>
 [[gnu::always_inline]] inline TriangleView<T> view_triangle(const TriangleLanes<T>& triangle,
                                                             const Vec3<T>& offset) {
@@ -322,24 +326,24 @@ template <typename T>
   return r;
 }
 
-/// Where the normal is more than rounding.
+/// The lanes in which the normal is more than rounding error.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> has_normal(const TriangleView<T>& b) {
   const Lanes<T> least(kNoSineSquare<T>);
   return b.normal_square > b.square[0] * b.square[1] * least;
 }
 
-/// The largest coordinates of a vertex, summed.
+/// The largest sum of a vertex' absolute coordinates.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest(const TriangleLanes<T>& triangle) {
   return max(taxicab(triangle.vertex[0]),
              max(taxicab(triangle.vertex[1]), taxicab(triangle.vertex[2])));
 }
 
-/// The best so far of directions along which two cores are apart.
+/// The best direction so far along which two cores are apart.
 template <typename T>
 struct Gap {
-  /// How far they are, negative if they overlap.
+  /// The separation, negative if the cores overlap.
   Lanes<T> distance;
   /// Unit, from a to b.
   Vec3<T> normal;
@@ -354,8 +358,8 @@ template <typename T>
   gap.normal = select(better, normal, gap.normal);
 }
 
-/// How far a triangle lies on one side of a segment's ends along a unit direction, the better of
-/// the two ways. `reach` is that of the segment, whose middle is the origin.
+/// The separation of a triangle from a segment along a unit direction or its opposite, whichever is
+/// larger. `reach` is half the extent of the segment along it; its middle is the origin.
 template <typename T>
 [[gnu::always_inline]] inline Gap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
                                                const Lanes<T>& reach) {
@@ -367,15 +371,15 @@ template <typename T>
   return {max(ahead, behind), select(ahead >= behind, n, -n)};
 }
 
-/// The nearest candidate so far for the closest points.
+/// The best candidate so far for the closest points.
 template <typename T>
 struct NearestCandidate {
   /// From a to b.
   Vec3<T> w;
   Lanes<T> square;
-  /// Where on the segment of a.
+  /// The parameter of the point on the segment of a.
   Lanes<T> s;
-  /// Vertices of the triangle are 1, 2, 3, edges 4, 5, 6, the face is 7.
+  /// 1, 2, 3 for the vertices of the triangle, 4, 5, 6 for its edges, 7 for its face.
   Lanes<T> feature;
 };
 
@@ -391,8 +395,8 @@ template <typename T>
   nearest.feature = select(better, feature, nearest.feature);
 }
 
-/// A candidate in the face for a point: the convex combination of the vertices at the foot of the
-/// point, so that it lies on the triangle however thin that is.
+/// Tries the point of the face that is nearest to `point`: the convex combination of the vertices
+/// at its foot, so that the result is on the triangle however thin that is.
 template <typename T>
 [[gnu::always_inline]] inline void nearer_in_face(NearestCandidate<T>& nearest,
                                                   const TriangleView<T>& b, const Vec3<T>& point,
@@ -410,7 +414,7 @@ template <typename T>
   nearer(nearest, over, w, s, Lanes<T>(T(7)));
 }
 
-/// What an edge's point at t is called.
+/// The feature of an edge's point at t.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> edge_feature(const Lanes<T>& t, int edge) {
   const Lanes<T> zero(T(0));
@@ -419,30 +423,31 @@ template <typename T>
   return select(t <= zero, Lanes<T>(T(edge + 1)), select(t >= one, next, Lanes<T>(T(edge + 4))));
 }
 
-/// -1, 0, 1 for numbers below, at and above zero.
+/// Returns -1, 0 or 1.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> sign(const Lanes<T>& v) {
   const Lanes<T> zero(T(0));
   return select(v > zero, Lanes<T>(T(1)), select(v < zero, Lanes<T>(T(-1)), zero));
 }
 
-/// What the closest point of a box is called, by the signs of the direction towards the box: the
-/// digits of a number to the base of three.
+/// The feature of the closest point of a box, from the signs of the direction towards the box: a
+/// number with three ternary digits.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> box_feature(const Vec3<T>& towards) {
   const Lanes<T> three(T(3));
   return Lanes<T>(T(13)) - (sign(towards.x) + three * (sign(towards.y) + three * sign(towards.z)));
 }
 
-/// As a share of the pair's scale: places that are closer are one. What is as near to a stretch's
-/// end as the second is deepest there.
+/// Relative to the pair's scale. Contacts closer than kOnePlace are one contact. The end of a
+/// stretch counts as the deepest point if its depth differs by at most kSameDepth from the depth of
+/// the pair.
 inline constexpr double kOnePlace = 1e-9;
 inline constexpr double kSameDepth = 4e-7;
-/// The least square of the sine between a segment and the direction along which it is seen.
+/// The smallest square of the sine of the angle between a segment and the projection direction.
 inline constexpr double kSteepSquare = 1e-12;
 
-/// The stretch of a segment that is over a face, seen along the normal: where it begins and ends,
-/// how far the shapes are apart there, and what a contact there is called.
+/// The part of a segment that is over a face, seen along the normal: the parameters of its two
+/// ends, the distances of the shapes there, and the features of contacts there.
 template <typename T>
 struct LyingStretch {
   Lanes<T> at[2];
@@ -451,8 +456,8 @@ struct LyingStretch {
   LaneMask<T> lies;
 };
 
-/// Whether both ends say more than one point: they are two places, and one of them is where the
-/// pair is deepest. `u` is the segment's direction, `normal` that along which it is seen.
+/// True if the stretch deserves two contacts: its ends are distinct, and one of them is the deepest
+/// point of the pair. `u` is the segment's direction, `normal` the projection direction.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> two_ends(const LyingStretch<T>& stretch,
                                                    const ProofLanes<T>& proof, const Vec3<T>& u,
@@ -467,8 +472,9 @@ template <typename T>
          (abs(deepest - proof.high) <= proof.scale * Lanes<T>(T(kSameDepth)));
 }
 
-/// Contacts at the ends of the stretch that are within the margin; one at `s`, called `feature`,
-/// where none is or there is no stretch. `contact(s, distance, feature)` makes them.
+/// Writes contacts at the ends of the stretch that are within the margin. If there is no stretch,
+/// or neither end is within the margin, writes one at `s` with `feature`. `contact(s, distance,
+/// feature)` makes a contact.
 template <typename T, typename Contact>
 [[gnu::always_inline]] inline void write_stretch(NarrowJob& job, const PairBlock<T>& block,
                                                  const CertifiedLanes<T>& answer,

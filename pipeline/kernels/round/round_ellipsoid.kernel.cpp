@@ -1,4 +1,4 @@
-// Ellipsoids against spheres and half-spaces: how far a point or a plane is from one.
+// The kernels of ellipsoids with spheres and half-spaces.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/ellipsoid_surface.wide.h"
@@ -67,7 +67,7 @@ struct HalfSpaceEllipsoid {
     Lanes<T> bound;
     Lanes<T> scale;
     Vec3<T> normal;
-    /// Under the ellipsoid's lowest point, on the plane.
+    /// The point of the plane under the ellipsoid's lowest point.
     Vec3<T> foot;
   };
 

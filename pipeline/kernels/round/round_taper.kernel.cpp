@@ -1,5 +1,5 @@
-// Tapered capsules against spheres and half-spaces: how far a point or a plane is from the nearer
-// of two balls, or from the side between them.
+// The kernels of tapered capsules with spheres and half-spaces. The nearest feature is one of the
+// two balls, or the conical side between them.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
@@ -10,7 +10,7 @@ namespace {
 
 template <typename T>
 struct TaperLanes {
-  /// Of the balls at z = -half_length and z = half_length.
+  /// At z = -half_length and z = half_length.
   Lanes<T> radius[2];
   Lanes<T> half_length;
 };
@@ -23,14 +23,14 @@ template <typename T>
   return {{r[0], r[1]}, r[2]};
 }
 
-/// What contacts on the lower and the upper ball are called; 0 is the side.
+/// The features of the lower and the upper ball; the feature of the side is 0.
 template <typename T>
 inline constexpr T kBallNames[2] = {T(2), T(1)};
 
 struct SphereTaper {
-  /// In the plane of the point and the axis, the line that touches both balls leaves each of them
-  /// at the same angle, of which `sine` is the slope: what is beyond it sees a ball. Not inlined:
-  /// all levels share it.
+  /// In the plane of the point and the axis, a line touches both balls, at the same angle with the
+  /// axis; `sine` is the sine of that angle. Points beyond its ends are nearest to a ball. Not
+  /// inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static BallSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
@@ -58,7 +58,7 @@ struct SphereTaper {
     const Lanes<T> to_side = cosine * away + sine * over_low - shape.radius[0];
     const Lanes<T> radial = select(side, cosine, away / from_ball);
     const Lanes<T> axial = select(side, sine, over / from_ball);
-    // A point on the axis sees nothing aside of it, but for what `unique` leaves out.
+    // A point on the axis has no radial direction; `unique` excludes the cases that need one.
     const Lanes<T> outward = select(away > zero, radial / away, zero);
     const Lanes<T> scale =
         taxicab(c) + length + max(shape.radius[0], shape.radius[1]) + ra + doubt(turn);
@@ -79,15 +79,15 @@ struct SphereTaper {
 };
 
 struct HalfSpaceTaper {
-  /// The balls' points that are nearest to the plane or deepest behind it, the nearer or deeper one
-  /// first.
+  /// The balls' points that are nearest to the plane, or deepest behind it; the nearer or deeper
+  /// one first.
   template <typename T>
   struct Solution {
     Lanes<T> distance[2];
     /// On the plane.
     Vec3<T> foot[2];
     Lanes<T> feature[2];
-    /// A ball within the other has no part in the surface.
+    /// False if one ball is inside the other and thus has no part in the surface.
     LaneMask<T> has_second;
     Lanes<T> bound;
     Lanes<T> scale;

@@ -6,16 +6,16 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// The core of a box seen from a point.
+/// The signed distance of a point from the core of a box.
 template <typename T>
 struct BoxView {
   /// Negative inside, by the distance to the nearest face.
   Lanes<T> distance;
-  /// Unit, towards the box (inside: away from the nearest face), in the box's frame.
+  /// Unit, towards the box (if inside: away from the nearest face), in the box's frame.
   Vec3<T> towards;
-  /// The same of the first of the nearest faces.
+  /// As `towards`, for the first of the nearest faces.
   Vec3<T> face;
-  /// How far the nearest of another direction is behind; the direction is unique if above zero.
+  /// By how much the best other direction is worse; the direction is unique if this is above zero.
   Lanes<T> lead;
 };
 
@@ -60,7 +60,8 @@ template <typename T>
   const BoxLanes<T> box = load_box<SideB>(job, block);
   SphereBoxSolution<T> r;
   r.sphere_radius = load_sphere<SideA>(job, block);
-  // The signed distance changes by no more than its argument, so this is as good as the centre.
+  // The signed distance changes by no more than its argument does, so it is as accurate as the
+  // centre.
   r.axes = rotation(turn);
   r.view = view_box(-r.axes.to_local(c), box.half);
   const Lanes<T> radius = r.sphere_radius + box.rounding;
@@ -80,13 +81,13 @@ struct SphereBox {
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> roundings(T(kRoundings) * kEpsilon<T>);
     if constexpr (L == kBoolean) {
-      // Inlined, which leaves out what only further levels need.
+      // Inlined, so that the compiler drops what only the other levels need.
       const SphereBoxSolution<T> r = solve(job, block);
       return answer_sign(job, block, r.distance, r.scale * roundings, r.scale);
     } else {
       const SphereBoxSolution<T> r = solve_all(job, block);
       const Lanes<T> bound = r.scale * roundings;
-      // Of directions that are as good as each other, as far as rounding can tell, any will do.
+      // If several directions are equally good, up to rounding, any of them is right.
       const LaneMask<T> tied = r.view.lead <= bound;
       const LaneMask<T> known = tied | (r.view.lead > r.scale * Lanes<T>(T(kShortest)));
       const Vec3<T> towards = select(tied, r.view.face, r.view.towards);

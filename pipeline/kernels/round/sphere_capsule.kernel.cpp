@@ -13,7 +13,7 @@ struct SphereCapsule {
     const Lanes<T> ra = load_sphere<SideA>(job, block);
     const CapsuleLanes<T> capsule = load_capsule<SideB>(job, block);
 
-    // The distance to a point of the segment grows by at most the error of its place on it.
+    // An error of t changes the distance by at most that error.
     const Vec3<T> axis = axis_z(turn);
     const Lanes<T> t = clamp(-dot(c, axis), -capsule.half_length, capsule.half_length);
     const Lanes<T> radius = ra + capsule.radius;

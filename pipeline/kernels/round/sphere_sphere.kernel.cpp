@@ -15,7 +15,8 @@ struct SphereSphere {
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
-      // The offset is right to a rounding of itself, and so is the normal, however short it is.
+      // However short the offset is, it has a relative error of one rounding, and so has the
+      // normal.
       const CertifiedLanes<T> answer = answer_distance(witness, Lanes<T>(T(1e-130)));
       return write_ball<L>(job, block, answer, ra, Lanes<T>(T(0)));
     }

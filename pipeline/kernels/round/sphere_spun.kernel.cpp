@@ -1,5 +1,5 @@
-// Spheres against cylinders and cones: a point against a rectangle or triangle, in the plane of the
-// point and the axis.
+// The kernels of spheres with cylinders and cones: the distance of a point from a rectangle or
+// triangle, in the plane of the point and the axis.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
@@ -8,15 +8,17 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// A solid seen from a point at `away` >= 0 from its axis and z along it.
+/// The signed distance of a point from a solid of revolution; the point is `away` >= 0 from its
+/// axis and z along it.
 template <typename T>
 struct MeridianView {
   /// Negative inside.
   Lanes<T> distance;
-  /// Unit, towards the solid (inside: away from what is nearest): away from the axis and along it.
+  /// Unit, towards the solid (if inside: away from the nearest surface point): the components away
+  /// from the axis and along it.
   Lanes<T> radial;
   Lanes<T> axial;
-  /// How far the nearest of another direction is behind; the direction is unique if above zero.
+  /// By how much the best other direction is worse; the direction is unique if this is above zero.
   Lanes<T> lead;
 };
 
@@ -54,11 +56,11 @@ struct ConeMeridian {
     const Lanes<T> one(T(1));
     const Lanes<T> rise = s.half_length + s.half_length;
     const Lanes<T> length = sqrt(s.radius * s.radius + rise * rise);
-    // A cone that is a point has a side like that of a segment.
+    // A cone of size zero is treated like a segment.
     const LaneMask<T> is_point = length <= zero;
     const Lanes<T> out_x = select(is_point, one, rise / length);
     const Lanes<T> out_z = select(is_point, zero, s.radius / length);
-    // From the rim.
+    // Relative to the rim.
     const Lanes<T> x = away - s.radius;
     const Lanes<T> y = z + s.half_length;
     const Lanes<T> side = x * out_x + y * out_z;
@@ -74,7 +76,7 @@ struct ConeMeridian {
     const Lanes<T> w_x = select(nearer, base_x, side_x);
     const Lanes<T> w_z = select(nearer, base, side_z);
     const Lanes<T> gap = sqrt(min(side_square, base_square));
-    // Beyond the tip or the rim is outside, too, where the cone is a segment or a disc.
+    // Points beyond the tip or the rim are outside, also if the cone is a segment or a disc.
     const LaneMask<T> outside = (side > zero) | (base > zero) | (y > rise) | (x > zero);
     const LaneMask<T> is_base = base >= side;
     return {select(outside, gap, max(side, base)),
@@ -100,7 +102,7 @@ struct SphereSpun {
     const MeridianView<T> view = Meridian::view(shape, away, p.z);
     const Lanes<T> radius = ra + shape.rounding;
     const Lanes<T> scale = taxicab(c) + shape.radius + shape.half_length + radius + doubt(turn);
-    // A point on the axis sees nothing aside of it, but for what `unique` leaves out.
+    // A point on the axis has no radial direction; `unique` excludes the cases that need one.
     const Lanes<T> over = select(away > zero, view.radial / away, zero);
     return {view.distance - radius,
             scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),

@@ -22,8 +22,8 @@ template <typename T>
   return nearest;
 }
 
-/// The direction along which origin and triangle are farthest apart: the normal, or that of the
-/// closest point where this `is_away`.
+/// The direction along which origin and triangle are farthest apart: the normal, or, where
+/// `is_away`, the direction of the closest point if that is better.
 template <typename T>
 [[gnu::always_inline]] inline Gap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
                                                 const Lanes<T>& length,
@@ -41,7 +41,7 @@ template <typename T>
 template <typename T>
 struct SphereTriangleSolution {
   ProofLanes<T> proof;
-  /// In the axes of the world.
+  /// In world axes.
   Vec3<T> normal;
   Lanes<T> radius;
   Lanes<T> feature;
@@ -61,7 +61,7 @@ template <typename T>
   const Lanes<T> length = sqrt(nearest.square);
   const Lanes<T> radius = ra + triangle.rounding;
   const Lanes<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
-  // On the triangle, as far as rounding can tell, its normal is the direction.
+  // If the sphere's centre is on the triangle, up to rounding, the normal is the triangle's.
   const LaneMask<T> is_away = length > scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const Gap<T> gap = widest_gap(view, nearest.w, length, is_away);
   const LaneMask<T> unique =

@@ -1,5 +1,5 @@
-// Half-spaces against cylinders and cones: the rim's lowest point, four points of a cap that faces
-// the plane, the ends of a side that does.
+// Half-spaces against cylinders and cones: the lowest point of the rim, four points of a cap that
+// faces the plane, or the two ends of a side that faces it.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/over_plane.wide.h"
@@ -9,7 +9,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// Of a rim's corners those a quarter turn apart.
+/// Number of rim corners in a quarter turn.
 constexpr int kQuarter = kRimCorners / 4;
 
 /// A cylinder or cone over a plane.
@@ -19,11 +19,12 @@ struct SpunOverPlane {
   Rotation<T> axes;
   SpunLanes<T> shape;
   Lanes<T> scale;
-  /// The plane's normal in the axes of the shape, and how much of it is across the shape's axis.
+  /// Normal of the plane in the frame of the shape; its components along and across the shape's
+  /// axis.
   Vec3<T> normal;
   Lanes<T> along;
   Lanes<T> across;
-  /// The radius that goes down most, in the axes of the world.
+  /// The radius vector that points down most, in world axes.
   Vec3<T> down;
   Vec3<T> half;
 };
@@ -52,8 +53,9 @@ template <typename T, typename Shape>
   return r;
 }
 
-/// Four corners of a cap's rim, the lowest first, the one across last. The lowest point takes the
-/// place of the first if that is higher: the others stay where they are in the shape.
+/// Sets four corners of the rim of a cap, the lowest first and its opposite last. The lowest point
+/// of the rim replaces the first corner if that is higher; the other corners are fixed in the
+/// shape.
 template <typename T>
 [[gnu::always_inline]] inline void set_cap(Feet<T, 4>& feet, const SpunOverPlane<T>& s,
                                            const Vec3<T>& middle, const Lanes<T>& rise,
@@ -70,7 +72,7 @@ template <typename T>
   const Vec3<T> next = select(x_first, on_y, on_x);
   const Lanes<T> low_name = select(x_first, name_x, name_y);
   const Lanes<T> next_name = select(x_first, name_y, name_x);
-  // Across the rim from an even quarter is the other even one, from an odd the other odd.
+  // The opposite of an even quarter is the other even one; of an odd quarter, the other odd one.
   const Lanes<T> across[2] = {Lanes<T>(T(2 * kQuarter)), Lanes<T>(T(4 * kQuarter))};
   const Lanes<T> low_across = select(x_first, across[0], across[1]) - low_name;
   const Lanes<T> next_across = select(x_first, across[1], across[0]) - next_name;
@@ -95,8 +97,8 @@ template <typename T>
   feet.scale = s.scale;
 }
 
-/// Where `side` holds, the feet become the two given, the second higher than the first, and no
-/// others.
+/// In lanes where `side` is set, replaces the feet by the two given ones, the second higher than
+/// the first, and removes the others.
 template <typename T>
 [[gnu::always_inline]] inline void set_side(Feet<T, 4>& feet, const LaneMask<T>& side,
                                             const Vec3<T> (&foot)[2], const Lanes<T> (&height)[2],
@@ -162,7 +164,7 @@ struct ConeFeet {
     const Vec3<T> foot = s.down - s.half;
     const Lanes<T> top(T{kSideLine});
     const Lanes<T> end(T{kSideLine + 1});
-    // A cone that stands on its tip has no side that is lower than others.
+    // A cone that stands on its tip has no lowest side.
     const LaneMask<T> stands = tip_first & (s.across <= Lanes<T>(T(kAlongAxis)));
     const Lanes<T> second = select(stands, Lanes<T>(kLargest<T>), max(tip, rim));
     set_side(feet, side, {select(tip_first, s.half, foot), select(tip_first, foot, s.half)},
@@ -190,7 +192,7 @@ struct ConeFeet {
   }
 
  private:
-  // How high they are.
+  // Heights of the tip and of the rim.
   template <typename T>
   [[gnu::always_inline]] static Lanes<T> tip_of(const SpunOverPlane<T>& s) {
     return s.plane.height + s.shape.half_length * s.along;

@@ -1,4 +1,4 @@
-"""Boids: each flies with its neighbours. Neighbours are pairs of balls of half the radius of sight."""
+"""Boids: each flies with its neighbours, found as overlapping spheres of half the sight radius."""
 
 import numpy as np
 import winnow

@@ -1,11 +1,11 @@
-"""Culling: which of many boxes a camera sees, and which lie wholly inside and need no test."""
+"""Culling: which of many boxes a camera sees, and which are entirely inside its frustum."""
 
 import numpy as np
 import winnow
 
 
 def walk(count=20000, frames=8, seed=2):
-    """(seen, wholly inside) of each frame of a camera that turns."""
+    """Returns the numbers (seen, entirely inside) for each frame of a rotating camera."""
     random = np.random.default_rng(seed)
     lower = random.uniform(-100, 100, (count, 3)).astype(np.float32)
     world = winnow.Partition("StaticBvh")

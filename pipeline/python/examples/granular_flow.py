@@ -7,7 +7,7 @@ RADIUS, STIFF, DAMP, STEP = 0.1, 2000.0, 10.0, 0.002
 
 
 def funnel(sides=24):
-    """Vertices and triangles of a cone that is open at both ends."""
+    """Returns vertices and triangles of a cone that is open at both ends."""
     angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     low = np.column_stack([0.35 * ring, np.zeros(sides)])
@@ -21,7 +21,7 @@ def funnel(sides=24):
 
 
 def flow(grains=500, steps=300, seed=5):
-    """How many grains have left the funnel, and the deepest contact of the last step."""
+    """Returns the number of grains that left the funnel and the last step's deepest contact."""
     random = np.random.default_rng(seed)
     shapes = winnow.Shapes()
     world = winnow.Scene(shapes)
@@ -38,7 +38,7 @@ def flow(grains=500, steps=300, seed=5):
         pairs = np.repeat(np.arange(len(contacts)), np.diff(contacts.manifold_first))
         a, b = (number[winnow.ids_of(keys)][pairs] for keys in (contacts.a, contacts.b))
         normal = np.stack(contacts.normal, axis=1)
-        # The wall is one more grain, which rests.
+        # The wall is one more grain, at rest.
         moving = np.vstack([speed, np.zeros(3)])
         closing = np.einsum("ij,ij->i", moving[a] - moving[b], normal)
         push = np.maximum(0, DAMP * closing - STIFF * contacts.distance)[:, None] * normal

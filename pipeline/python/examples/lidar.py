@@ -1,11 +1,11 @@
-"""Lidar: a sensor that turns above hills with boxes on them, and the points that it measures."""
+"""Lidar: the points that a rotating sensor measures above hills with boxes on them."""
 
 import numpy as np
 import winnow
 
 
 def scan(columns=180, rows=16, seed=3):
-    """Points that were hit, (n, 3), and the client data of what was hit: 0 the ground, 1 a box."""
+    """Returns hit points (n, 3) and the client data of the bodies: 0 the ground, 1 a box."""
     random = np.random.default_rng(seed)
     x, y = np.meshgrid(np.arange(128), np.arange(128))
     heights = (np.sin(x / 9) + np.cos(y / 7)).astype(np.float32)

@@ -1,5 +1,5 @@
-"""Robot self-collision: many poses of an arm of capsules checked at once, each in an environment of
-its own, links that share a joint left out."""
+"""Robot self-collision: tests many poses of an arm of capsules at once, each in its own
+environment. Links that share a joint are not tested against each other."""
 
 import numpy as np
 import winnow
@@ -8,7 +8,7 @@ LENGTH, RADIUS = 1.0, 0.15
 
 
 def arm_poses(angles):
-    """Poses of the links, (poses, links, 7): each turns by its angle about y against the last."""
+    """Returns poses of the links, (poses, links, 7), from angles about y between links."""
     count, links = angles.shape
     turned = np.cumsum(angles, axis=1)
     along = np.stack([np.sin(turned), np.zeros_like(turned), np.cos(turned)], axis=2)
@@ -21,7 +21,7 @@ def arm_poses(angles):
 
 
 def collides(angles):
-    """Which poses (n, links), in radians, bring an arm's link against another: (n,) bool."""
+    """Returns (n,) bool: whether links collide in each pose (n, links), in radians."""
     count, links = angles.shape
     # [scene]
     shapes = winnow.Shapes()

@@ -1,6 +1,6 @@
-"""Collision detection: who may touch, who does, where and how deep.
+"""Collision detection: pairs that may touch, pairs that do, and their contacts.
 
-Everything takes numpy arrays of many at once and gives arrays back; the GIL is free meanwhile.
+All calls take numpy arrays of many objects and return arrays; they release the GIL during work.
 
     import winnow
     partition = winnow.Partition("LinearBvh")
@@ -8,8 +8,8 @@ Everything takes numpy arrays of many at once and gives arrays back; the GIL is 
     pairs = partition.self_pairs()             # (m, 2) uint32 of ids
     ids = winnow.ids_of(keys)
 
-What a call refuses is a `StatusError` that names the status, and has changed nothing. Arrays that
-are handed out never dangle: they keep what they show alive, and it does not change.
+A failed call raises a `StatusError` with the status, and changes nothing. Arrays that are returned
+keep their data alive, and the data do not change.
 """
 
 from typing import Any
@@ -144,7 +144,7 @@ __all__ = [
 
 
 def ids_of(keys: "numpy.typing.NDArray[numpy.uint64]") -> "numpy.typing.NDArray[Any]":
-    """Ids of objects, uint32 in the shape of `keys`: a view of their lower halves."""
+    """Returns ids of objects, uint32 in the shape of `keys`: a view of the lower halves."""
     if keys.dtype != numpy.uint64:
         raise TypeError("keys: uint64 is wanted, not " + str(keys.dtype))
     return keys.view(numpy.dtype({"names": ["id"], "formats": ["<u4"], "itemsize": 8}))["id"]

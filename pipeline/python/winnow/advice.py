@@ -1,4 +1,4 @@
-"""Which structure is fastest on frames of your own."""
+"""Finds the fastest structure for frames of boxes."""
 
 import time
 from dataclasses import dataclass
@@ -17,34 +17,34 @@ Boxes = Tuple[NDArray[numpy.float32], NDArray[numpy.float32]]
 
 @dataclass(frozen=True)
 class Advised:
-    """One structure in the race."""
+    """Measurements of one structure."""
 
     structure: str
     first_ms: float
-    """Of the frame in which everything is inserted."""
+    """Time of the frame in which all objects are inserted."""
     median_ms: float
-    """Of the frames after the first."""
+    """Median time of the frames after the first."""
     worst_ms: float
-    """Of those."""
+    """Longest time of the frames after the first."""
     tests: int
-    """Of 16 volumes at once, in the last frame."""
+    """Number of tests in the last frame, each of 16 volumes."""
     bytes: int
-    """Held in the end, results left out."""
+    """Memory after the last frame, without results."""
 
 
 @dataclass(frozen=True)
 class Advice:
-    """The race, fastest first, and what AutoPartition took, if it was in it."""
+    """All structures, fastest first, and the choice of AutoPartition, if it is among them."""
 
     ranking: List[Advised]
     chosen: str
-    """The structure that AutoPartition has in the end; empty if it was not in the race."""
+    """The structure that AutoPartition uses at the end; empty if it was not measured."""
     reason: str
-    """Its own."""
+    """AutoPartition's reason."""
     objects: int
     frames: int
     pairs: float
-    """A frame, on the average."""
+    """Mean number of pairs per frame."""
 
     @property
     def best(self) -> str:
@@ -53,7 +53,7 @@ class Advice:
 
 
 class _Runner:
-    """A partition that takes frame after frame."""
+    """A partition that is measured frame by frame."""
 
     def __init__(self, structure: str, first: Boxes, parallel: bool) -> None:
         self.partition = Partition(structure, parallel=parallel)
@@ -90,7 +90,7 @@ def _boxes(frame: Tuple[ArrayLike, ArrayLike]) -> Boxes:
 def _structures(names: Optional[Sequence[str]], objects: int) -> List[str]:
     if names is not None:
         return list(names)
-    # What tests each with each takes the square of the objects' number.
+    # Structures that test all pairs take time quadratic in the number of objects.
     brute = {"NSquared": 2_000, "BoundsNSquared": 20_000}
     return [name for name in all_structures() if objects <= brute.get(name, objects)]
 
@@ -101,13 +101,13 @@ def advise(
     *,
     parallel: bool = True,
 ) -> Advice:
-    """Races structures on `frames`, boxes (lower, upper) of (n, 3) each, of the same n objects.
+    """Measures structures on `frames`, boxes (lower, upper) of (n, 3) each, of the same n objects.
 
-    In each frame each structure is given the boxes that changed and asked for all pairs, one after
-    the other, so that what else the machine does meets all of them. `structures` are names, by
-    default all that suit so many objects. About twenty frames do. invalid_argument where there are
-    no frames or no structures, size_mismatch where a frame has another number of objects. To
-    measure what a program did, record it (`Recorder`) and ask the tool: `winnow advise FILE`.
+    In each frame, each structure in turn gets the boxes that changed and finds all pairs; the
+    interleaving spreads disturbances by other programs over all structures. `structures` are
+    names, by default all that are suitable for n objects. About twenty frames are enough.
+    invalid_argument without frames or structures, size_mismatch if a frame has another number of
+    objects. To measure a whole program, record it (`Recorder`) and run `winnow advise FILE`.
     """
     of: Dict[str, _Runner] = {}
     last: Optional[Boxes] = None

@@ -8,7 +8,7 @@ namespace {
 
 void squared_gaps(const float* const* bounds, std::size_t count, const float* low,
                   const float* high, float* out) {
-  // Three squares of this are still a float.
+  // The sum of three squares of this is within the range of float.
   const Floats most(1e19F);
   for (std::size_t row = 0; row < count; row += kLanes) {
     const Box16 box = load_slabs<3>(bounds, row);

@@ -1,6 +1,8 @@
-// SceneQueries: rays and moving shapes. Partitions tell which bodies' boxes the swept box
-// meets (SweptBox says why none is missed), and show them to a predicate, which asks the exact
-// shapes.
+// SceneQueries: rays and moving shapes. Partitions find the bodies whose boxes the swept box
+// overlaps (see SweptBox for why none is missed) and call a predicate (LookingFilter), which tests
+// the exact shapes through BodyMeeting or, for rays on meshes, PartTraversal. Sets of a few
+// composite bodies are tested directly, without their partitions; "crowds" below are all other
+// sets.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
@@ -24,32 +26,33 @@ namespace {
 using Eigen::Vector3d;
 using mid::kInfinity;
 
-/// A swept box in double as the partitions can be asked about it, in float, so that nothing is
-/// missed. It comes in pieces, each an interval of t, in order:
+/// Converts a swept box in double to queries in float for partitions, so that nothing is missed.
+/// The path is divided into pieces, which are consecutive intervals of t:
 ///
-/// A piece begins where the box is at its beginning, in double, and moves by the direction rounded
-/// to float; up to its end, that leaves the true path by at most 2^-24 of the length of the piece,
-/// and what double and float make of the beginning is a few roundings of the coordinates: the box
-/// of the BoxCast is larger by more than both, and so contains the true box at every t. A body's
-/// own box in the partition contains the body. The first piece is no longer than the coordinates at
-/// its beginning times 2^10, and each further one 2^10 times as long: at every t the box is so at
-/// most 2^-14 of the distance from the beginning too large. After some of these, and where floats
-/// end, the rest of the path is asked about as a box that contains all of it.
+/// Each piece starts at the position of the box in double, and moves by the direction rounded to
+/// float. At its end the deviation from the true path is at most 2^-24 of the length of the piece;
+/// the start position has an error of a few roundings of the coordinates. The box of the BoxCast is
+/// enlarged by more than both, so it contains the true box at every t. A body's box in the
+/// partition contains the body. The first piece is at most 2^10 times as long as the coordinates at
+/// its start, and each further piece at most 2^10 times the distance to its start: so the box is
+/// too large by at most 2^-14 of the distance from the start. After kMostPieces pieces, or at the
+/// end of the range of float, the rest of the path is tested as one box that contains it.
 class SweptBox {
  public:
-  /// The direction is finite and not zero, max_t >= 0 may be infinite, the box is finite. What the
-  /// partitions are asked is measured from `origin`.
+  /// The direction must be finite and not zero, max_t >= 0 may be infinite, the box must be finite.
+  /// Partition coordinates are relative to `origin`.
   SweptBox(const PreciseBox& box, const Eigen::Vector3d& origin, const double direction[3],
            double max_t) noexcept;
 
-  /// Goes to the next piece, the first one to begin with. False if there is none.
+  /// Advances to the next piece; call it for the first piece too. Returns false at the end.
   [[nodiscard]] bool next() noexcept;
-  /// True for a last piece that is to be asked about by `rest`.
+  /// True for a last piece that must be tested with `rest`.
   [[nodiscard]] bool is_rest() const noexcept { return is_rest_; }
 
-  /// Where the piece begins, in the caller's t.
+  /// Start of the piece, in the caller's t.
   [[nodiscard]] double begin() const noexcept;
-  /// The piece up to t = limit, and a little more; min_t = 0 is its beginning.
+  /// Returns the cast of the piece up to slightly more than t = limit; min_t = 0 is the start of
+  /// the piece.
   [[nodiscard]] BoxCast cast(double limit) const noexcept;
   [[nodiscard]] Aabb rest(double limit) const noexcept;
 
@@ -57,12 +60,12 @@ class SweptBox {
   [[nodiscard]] PreciseBox at(double path) const noexcept;
   [[nodiscard]] double slack(double end) const noexcept;
 
-  // Lengths along the path are t times a power of two that makes them about lengths.
+  // Path parameters are t times 2^exponent_, which makes them approximately lengths.
   PreciseBox box_;
   Eigen::Vector3d step_;
   int exponent_ = 0;
   double reach_ = 0.0;
-  /// The size of the coordinates that were rounded, in the world too.
+  /// Largest coordinate that was rounded, including world coordinates.
   double rounded_reach_ = 0.0;
   double from_ = 0.0;
   double to_ = 0.0;
@@ -71,10 +74,10 @@ class SweptBox {
   bool is_rest_ = false;
 };
 
-/// A piece is at most so many times as long as the distance from the start to where it begins.
+/// A piece is at most this many times as long as the distance from the start to its beginning.
 constexpr double kPieceGrowth = 0x1p10;
 constexpr int kMostPieces = 5;
-/// Floats end a little after this.
+/// Slightly below the range of float.
 constexpr double kFarthest = 0x1p120;
 
 double most_of(const PreciseBox& box) noexcept {
@@ -106,8 +109,8 @@ double SweptBox::begin() const noexcept {
   return std::ldexp(from_, -exponent_);
 }
 
-/// Rounding of the direction to float, and of coordinates; cast_ray takes rays that pass by no
-/// farther than rounding.
+/// Covers the rounding of the direction to float and of coordinates. cast_ray includes rays that
+/// miss by no more than rounding.
 double SweptBox::slack(double end) const noexcept {
   return 0x1p-23 * (end - from_) + 0x1p-47 * (rounded_reach_ + end);
 }
@@ -135,7 +138,7 @@ Aabb SweptBox::rest(double limit) const noexcept {
     sum.min[i] = std::min(sum.min[i], box_.min[i] + path);
     sum.max[i] = std::max(sum.max[i], box_.max[i] + path);
   }
-  // What is lost of a finite path is as small beside its ends.
+  // The rounding error of a finite path is relative to its end points.
   for (int i = 0; i < 3; ++i) {
     const double slack = 0x1p-47 * (rounded_reach_ + from_);
     sum.min[i] -= slack + 0x1p-47 * std::abs(sum.min[i]);
@@ -152,11 +155,12 @@ bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
   return a.t != b.t ? a.t < b.t : a.key.id < b.key.id;
 }
 
-/// Bodies that were looked at and may be shown again, since a partition asks about a body once per
-/// stretch of the path. Of two bodies that want the same place the later one is remembered.
+/// Results for bodies that were tested and may be found again, because a partition calls the
+/// predicate once per piece of the path. Direct-mapped: of two bodies with the same entry the later
+/// one stays.
 class Memo {
  public:
-  /// What was noted about the body; null if nothing is known.
+  /// Returns the result for the body, or null.
   [[nodiscard]] const bool* find(std::uint32_t body) const noexcept {
     const std::size_t at = body % kEntries;
     return (used_ >> at & 1U) != 0 && entries_[at].body == body ? &entries_[at].met : nullptr;
@@ -178,7 +182,8 @@ class Memo {
   Entry entries_[kEntries];
 };
 
-/// Sets of a few composite bodies are not worth a traversal: they have trees of their own.
+/// True for a set with only a few bodies, all composite: a traversal of its partition is not worth
+/// its cost, because the bodies have their own trees.
 bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
   constexpr std::size_t kFew = 4;
   return set.partition.has_value() && set.body_of.size() <= kFew &&
@@ -186,8 +191,8 @@ bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
                      [&](std::uint32_t body) { return scene.shape[body].is_composite(); });
 }
 
-/// Calls look(body) for all bodies of such sets that the filter lets pass. Gives back whether there
-/// are other sets, whose partitions are to be asked.
+/// Calls look(body) for all bodies of such sets that pass the filter. Returns true if there are
+/// other sets, whose partitions must be queried.
 template <typename Look>
 [[nodiscard]] bool look_at_few(const SceneState& scene, const Filter& filter, Look& look) {
   const LookingFilter looking(scene, filter, look);
@@ -198,7 +203,7 @@ template <typename Look>
       continue;
     }
     for (std::size_t id = 0; id < set.body_of.size(); ++id) {
-      // Places of bodies that have gone keep their names.
+      // Ids of removed objects keep their entry; skip them.
       const std::uint32_t body = set.body_of[id];
       if (scene.place[body].id == id) looking.show(*set.partition, body);
     }
@@ -206,8 +211,8 @@ template <typename Look>
   return has_crowd;
 }
 
-/// Brings hits from `before` on into their order, each body once: one whose box reaches from one
-/// piece of the path into the next was met in both.
+/// Sorts the hits from `before` on and removes duplicates: a body whose box extends over two pieces
+/// of the path is found in both.
 void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
   if (hits.size() - before < 2) return;
   SceneHit* const own = hits.begin() + before;
@@ -217,19 +222,19 @@ void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
   hits.set_size(static_cast<std::size_t>(end - hits.begin()));
 }
 
-/// One question: something moves through the scene.
+/// One query: a swept shape in the scene.
 class CastQuestion {
  public:
   CastQuestion(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
       : state_(state), swept_(swept), filter_(filter), limit_(swept.max_t()) {}
 
   Status closest(SceneHit& hit);
-  /// Adds the hits to those of rays before.
+  /// Appends the hits to the hits of earlier rays.
   Status all();
-  /// The same without what `look_at_few` shows, of which the hits from `before` on tell already.
+  /// As `all`, for crowds only: `look_at_few` found the hits from `before` on.
   Status all_in_crowds(std::size_t before);
-  /// The same without what `look_at_few` shows, which found that it meets `body` at t first, or
-  /// kNoObject. The hit is left alone if nothing is better.
+  /// As `closest`, for crowds only: `look_at_few` found `body`, or kNoObject, at time t. Leaves
+  /// `hit` unchanged unless there is a better one.
   Status closest_in_crowds(std::uint32_t body, double t, SceneHit& hit);
   Status any_in_crowds(SceneHit& hit);
 
@@ -241,13 +246,14 @@ class CastQuestion {
     return meeting.find(state_.parts, swept_, state_.placed(body), limit, any);
   }
   [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept;
-  /// Among bodies whose partitions are asked.
+  /// Tests bodies in crowds only.
   Status closest_in_crowds();
-  /// True if the body is now the first one met.
+  /// Returns true if this body becomes the closest hit.
   bool improves(std::uint32_t body) noexcept;
-  /// Adds the hit of a body that is met and was not looked at; false if there is no room.
+  /// Appends the body's hit if there is one and the body was not tested before; returns false if
+  /// memory is refused.
   [[nodiscard]] bool adds(std::uint32_t body);
-  /// Calls ask(partition) for the others, until it does not answer ok.
+  /// Calls ask(partition) for each crowd until a call does not return ok.
   template <typename Ask>
   [[nodiscard]] Status each_crowd(Ask&& ask) const;
   template <typename Look>
@@ -256,7 +262,7 @@ class CastQuestion {
   QueryState& state_;
   const SweptShape& swept_;
   const Filter& filter_;
-  /// The body that is the first one met, as far as is known, and when; or else the last t.
+  /// The body of the earliest hit so far, and its time, or else the last t.
   std::uint32_t body_ = kNoObject;
   double limit_;
   BodyMeeting best_;
@@ -264,7 +270,7 @@ class CastQuestion {
 };
 
 SweptBox CastQuestion::swept_box() const noexcept {
-  // Rounding is covered by the slack of the path.
+  // The slack of the path covers the rounding.
   const Vector3d start = Vector3d::Map(swept_.start());
   return {{start + swept_.extent().min, start + swept_.extent().max},
           state_.scene.origin,
@@ -302,7 +308,7 @@ Status CastQuestion::each_crowd(Ask&& ask) const {
   return Status::ok;
 }
 
-/// What lies on a path that is too long to be swept.
+/// Tests bodies on the rest of a path that is too long for casts.
 template <typename Look>
 Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& path, Look& look) {
   auto look_only = [&](std::uint32_t body) {
@@ -313,11 +319,11 @@ Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& pa
   return partition.overlap(path.rest(limit_), state_.objects, looking.filter());
 }
 
-/// In two traversals per partition and piece of the path. In the first one bodies that improve the
-/// answer count as hits, so that the partition looks at no box behind theirs; it gives the box that
-/// was met first of all that count, and every box before it has been looked at. What is left are
-/// boxes from there to where the exact shape was met: the second traversal. Both are short where
-/// boxes fit.
+/// Makes two traversals per partition and piece of the path. In the first one only bodies that
+/// improve the result count as hits, so the partition skips boxes beyond them. It returns the
+/// nearest box that counted, and every box before that has been tested. The remaining boxes, from
+/// there to the hit on the exact shape, are tested in the second traversal. Both are short if boxes
+/// are tight.
 Status CastQuestion::closest_in_crowds() {
   SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) { return improves(body); };
@@ -425,12 +431,12 @@ Status CastQuestion::all_in_crowds(std::size_t before) {
   return Status::ok;
 }
 
-/// One ray in a scene, where a surface is met depends on it alone.
+/// Tests of one ray. Results depend only on the ray as given, not on the batch.
 struct RayInScene {
   const QueryState& state;
   const ShapeRay& ray;
 
-  /// Whether it meets a convex part of a body by then.
+  /// True if the ray hits a convex part of a body by t = most.
   [[nodiscard]] bool meets(std::uint32_t body, const ConvexPart& part, double most,
                            RayMeetsBody& meeting) const {
     const RaySweep swept(state.scene.shapes, ray);
@@ -440,14 +446,14 @@ struct RayInScene {
     meeting = RayMeetsBody::at(body, part.part, found.t, found.normal);
     return true;
   }
-  /// Writes a hit, which is a null one.
+  /// Fills in a hit, which must be a null hit.
   void show(const RayMeetsBody& best, SceneHit& hit) const noexcept {
     if (best.body == kNoObject) return;
     hit.key = state.scene.keys.key_of(best.body);
     hit.data = state.scene.keys.client_data(best.body);
     hit.part = best.part;
     hit.t = best.t;
-    // Summed so that a body that is far away loses nothing by it.
+    // Summed in an order that keeps precision for distant bodies.
     const double* const base = state.scene.pose[best.body].position;
     const Difference from = difference(ray.origin, base);
     for (int k = 0; k < 3; ++k) {
@@ -457,7 +463,7 @@ struct RayInScene {
   }
 };
 
-/// What a ray meets in crowds; the hit, of what it met before, is left alone if nothing is better.
+/// Tests a ray on crowds. `hit` is the result so far and changes only if there is a better one.
 [[nodiscard]] Status ask_crowds(QueryState& state, const ShapeRay& ray, const Filter& filter,
                                 const RayMeetsBody& best, bool any, SceneHit& hit) {
   if (any && best.body != kNoObject) return Status::ok;
@@ -466,7 +472,7 @@ struct RayInScene {
   return any ? question.any_in_crowds(hit) : question.closest_in_crowds(best.body, best.t, hit);
 }
 
-/// Looks where a ray by itself meets a body, of those that `look_at_few` shows, up to the limit.
+/// Tests a single ray on a body that `look_at_few` found, up to the limit.
 void meet_alone(QueryState& state, const RayInScene& asked, std::uint32_t body, bool any,
                 RayMeetsBody& best, double& limit) {
   const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
@@ -487,7 +493,7 @@ void meet_alone(QueryState& state, const RayInScene& asked, std::uint32_t body, 
   }
 }
 
-/// One ray by itself: its first hit, or `any`. It must be valid.
+/// Finds the first hit of a single ray, or with `any` any hit. The ray must be valid.
 Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
                  SceneHit& hit) {
   const RayInScene asked{state, ray};
@@ -511,7 +517,7 @@ Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, b
   return status;
 }
 
-/// All that it meets, into the state's `hits`.
+/// Writes the hits of a single ray on all bodies into the state's `hits`.
 Status ask_all_alone(QueryState& state, const ShapeRay& ray, const Filter& filter) {
   const RayInScene asked{state, ray};
   state.hits.clear();
@@ -537,19 +543,20 @@ Status ask_all_alone(QueryState& state, const ShapeRay& ray, const Filter& filte
   return Status::ok;
 }
 
-/// Up to kRaysAtOnce rays that are asked together, which costs less than to ask one after the other
-/// wherever they come to the same surfaces, and what each of them meets first.
+/// Up to kRaysAtOnce rays that are tested together, which is cheaper than one by one if they reach
+/// the same surfaces; and the first hit of each.
 class RaysTogether {
  public:
   RaysTogether(QueryState& state, const Filter& filter) noexcept : state_(state), filter_(filter) {}
 
-  /// Of rays [first, first + count) of a batch, the first hits, or `any`. They must be valid.
+  /// Finds the first hits, or with `any` any hits, of rays [first, first + count) of a batch. They
+  /// must be valid.
   Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
-  /// Lists each ray's first hits of all that `look_at_few` shows, by ray, in the state's `few`, and
-  /// says whether there are crowds besides.
+  /// Lists each ray's first hits on all bodies that `look_at_few` finds, sorted by ray, in the
+  /// state's `few`, and sets whether there are crowds.
   Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool& has_crowd);
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
-  /// What ray i of them meets so.
+  /// Returns hit `at` of ray i of the group.
   [[nodiscard]] SceneHit shown(std::size_t i, const RayMeetsBody& at) const noexcept {
     SceneHit hit;
     RayInScene{state_, ray_[i]}.show(at, hit);
@@ -564,9 +571,9 @@ class RaysTogether {
   const Filter& filter_;
   std::size_t count_ = 0;
   bool any_ = false;
-  /// As they were given: where a surface is met depends on that alone.
+  /// The rays as given: where they hit a surface depends on nothing else.
   ShapeRay ray_[kRaysAtOnce];
-  /// What each has met so far, or its end; with `any`, below zero once it has met something.
+  /// Time of the first hit so far, or the end of the ray; with `any`, negative after a hit.
   double limit_[kRaysAtOnce];
   RayMeetsBody best_[kRaysAtOnce];
   SceneHit hit_[kRaysAtOnce];
@@ -630,7 +637,7 @@ Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std:
   };
   has_crowd = look_at_few(state_.scene, filter_, look);
   const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
-  // Those of one body are.
+  // The hits of one body are in order already.
   const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
   if (!is_ordered) std::sort(few.begin(), few.end(), is_earlier);
   return has_room ? Status::ok : Status::out_of_memory;
@@ -674,7 +681,7 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
   }
 }
 
-/// Asks for one hit of each ray.
+/// Finds one hit for each ray.
 Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filter,
                 const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
@@ -695,7 +702,7 @@ Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, Sce
   return status == Status::ok ? ask_alone(*state, ray, filter, any, hit) : status;
 }
 
-/// Puts all hits of rays that are valid into the state's `hits`, and where those of each begin.
+/// Writes all hits of valid rays into the state's `hits`, and where the hits of each ray begin.
 Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filter) {
   Column<std::size_t>& first = state.hits_first;
   state.hits.clear();
@@ -740,7 +747,7 @@ Status check(const QueryState* state, const ShapeCast& cast, double tolerance) n
   return valid ? Status::ok : Status::invalid_argument;
 }
 
-/// Calls ask(swept shape).
+/// Calls ask(swept shape) for the cast.
 template <typename Ask>
 Status ask_cast(QueryState* state, const ShapeCast& cast, double tolerance, Ask&& ask) {
   if (const Status status = check(state, cast, tolerance); status != Status::ok) return status;

@@ -7,9 +7,9 @@
 
 namespace winnow {
 
-/// A convex part that stands, as seen from where the composite shape starts, so that parts of both
-/// lose nothing far from the origin. What the difference of the positions loses is put into the
-/// pose of the shape, where it is small.
+/// A fixed convex part relative to the start of the composite shape, so that the parts of both keep
+/// full precision far from the origin. The rounding error of the difference is added to the shape's
+/// pose, where it is small.
 class CompositeSweep::Approach {
  public:
   Approach(const CompositeSweep& sweep, const double from[3], const ConvexPart& part) noexcept
@@ -22,14 +22,14 @@ class CompositeSweep::Approach {
     standing_.thickness = corner_doubt(standing_);
   }
 
-  /// Calls look(own part, limit), as PartTraversal::met does, for those that may be met by then, or
-  /// come as near as `more`.
+  /// Calls look(own part, limit), as PartTraversal::met does, for own parts that may touch the
+  /// fixed part by then, or come within `more` of it.
   template <typename Look>
   void each(double limit, Look&& look, double more = 0.0) const {
     sweep_.parts_.met(moving_, way(limit, more), look);
   }
 
-  /// One of the two stands behind the other, which is a one-sided triangle.
+  /// True if one part is a one-sided triangle and the other is behind it.
   [[nodiscard]] bool any_is_behind(const ConvexPart& own) const noexcept {
     return any_stands_behind(sweep_.parts_, own, standing_);
   }
@@ -47,7 +47,8 @@ class CompositeSweep::Approach {
   }
 
  private:
-  /// Of the box of what stands, or of one of the whole shape where that has no end.
+  /// The swept box of the fixed part in the frame of the composite shape; if that is unbounded, the
+  /// box of the whole shape.
   [[nodiscard]] BoxSweep way(double limit, double more) const noexcept {
     const PreciseBox box = sweep_.parts_.box(standing_).grown(standing_.thickness + more);
     const PreciseBox& own = sweep_.extent();

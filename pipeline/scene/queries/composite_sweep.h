@@ -4,9 +4,9 @@
 
 namespace winnow {
 
-/// A mesh, height field or compound that moves along a line without turning. As it sees it, what
-/// stands comes the other way: cast are those of its parts that the box of what stands meets on
-/// that way. The cast must outlive it.
+/// A mesh, height field or compound that moves along a line without turning. In its frame the other
+/// body moves the opposite way: only its parts that the swept box of the other part overlaps are
+/// cast. The cast must outlive this object.
 class CompositeSweep final : public SweptShape {
  public:
   CompositeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;

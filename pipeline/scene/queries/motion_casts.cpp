@@ -1,6 +1,6 @@
-// SceneQueries: shapes that move and turn. Partitions tell which bodies' boxes the box of the way
-// meets, or of pieces of it one after the other, and show them to a predicate, which asks the exact
-// shapes.
+// SceneQueries: shapes that move and turn. The path is boxed in one or more pieces; partitions find
+// the bodies whose boxes overlap each piece and call a predicate (LookingFilter), which tests the
+// exact shapes (motion/body_impact.h).
 
 #include <winnow/core/aabb.h>
 #include "core/threads/float_environment.h"
@@ -22,7 +22,7 @@ namespace {
   return std::tuple(hit.key.id, hit.t);
 }
 
-/// One question: something moves and turns through the scene.
+/// One query: a shape that moves and turns through the scene.
 class MotionQuestion {
  public:
   MotionQuestion(QueryState& state, const MotionCast& cast, const Filter& filter,
@@ -40,12 +40,12 @@ class MotionQuestion {
   Status all();
 
  private:
-  /// Calls look(body, within) for bodies that may be met in each piece of the way, in order, until
-  /// a piece begins after `limit`.
+  /// Calls look(body, within) for the candidate bodies of each piece of the path, in order, until a
+  /// piece begins after `limit`.
   template <typename Look>
   [[nodiscard]] Status each_piece(const double& limit, Look&& look);
-  /// The first impact with a body within an interval; a null hit if there is none, or perhaps if it
-  /// is after `until`.
+  /// Returns the first impact with a body within an interval, or a null hit if there is none; the
+  /// hit may also be null if the impact is after `until`.
   [[nodiscard]] SceneHit hit_of(std::uint32_t body, const impact::Interval& within,
                                 double until = 1.0) const;
 
@@ -114,7 +114,7 @@ Status MotionQuestion::closest(SceneHit& hit) {
   return status;
 }
 
-/// A body that is met in one piece is met in the next one, too: the first time counts.
+/// A body may be hit in two consecutive pieces; the first hit counts.
 Status MotionQuestion::all() {
   Column<SceneHit>& hits = state_.hits;
   hits.clear();

@@ -1,6 +1,7 @@
 #pragma once
 
-// What questions to a scene are made of; see casts.cpp and scene_queries.cpp for the questions.
+// Shared by the queries of a scene: the state of SceneQueries, filters and ray hits.
+// scene_queries.cpp, casts.cpp, motion_casts.cpp and two_sets.cpp implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
@@ -11,7 +12,7 @@
 
 namespace winnow {
 
-/// Where a ray meets a body: kNoObject if it meets none.
+/// A ray's hit on a body; `body` is kNoObject if there is none.
 struct RayMeetsBody {
   std::uint32_t body;
   std::uint32_t part;
@@ -22,8 +23,8 @@ struct RayMeetsBody {
                                        const double (&normal)[3]) noexcept {
     return {body, part, t, {normal[0], normal[1], normal[2]}};
   }
-  /// Takes another meeting if it is the first one by the limit, up to which the ray goes on then;
-  /// with `any`, no farther.
+  /// Replaces this hit with `other` if that is earlier and within the limit, and lowers the limit
+  /// to its t; with `any`, to below zero, which ends the query.
   void improve(const RayMeetsBody& other, bool any, double& limit) noexcept {
     if (other.t > limit) return;
     // Equal t are ordered by the bodies' ids, then by part.
@@ -36,17 +37,17 @@ struct RayMeetsBody {
   }
 };
 
-/// The same of one of several rays.
+/// A hit of one ray of several.
 struct RayHit {
   std::size_t ray;
   RayMeetsBody at;
 };
 
-/// Meshes that rays came to one by one, each as MidPhase::place made it ready where it stood. Of
-/// two bodies that want the same place the later one is kept.
+/// A small direct-mapped cache of meshes that MidPhase::place prepared for single rays. If two
+/// bodies map to the same entry, the later one stays.
 class RaySurfaces {
  public:
-  /// That of a body where it stands now; null if it is no mesh.
+  /// Returns the prepared mesh of a body at its present pose, or null if the body is not a mesh.
   [[nodiscard]] const RaySurface* find(const PartTraversal& parts, const SceneState& scene,
                                        std::uint32_t body) {
     RaySurface& kept = kept_[body % kEntries];
@@ -61,7 +62,7 @@ class RaySurfaces {
  private:
   static constexpr std::size_t kEntries = 8;
 
-  /// Bit by bit.
+  /// Compares the bits, so that -0 and 0 differ.
   [[nodiscard]] static bool is_same(const Pose& a, const Pose& b) noexcept {
     using Bits = std::array<std::uint64_t, sizeof(Pose) / sizeof(std::uint64_t)>;
     const auto of_a = std::bit_cast<Bits>(a);
@@ -92,18 +93,19 @@ struct QueryState {
   const SceneState& scene;
   PartTraversal parts;
   RaySurfaces surfaces;
-  /// What partitions find; bodies that they show are looked at at once, by their predicates.
+  /// Results of the partitions. Bodies are tested inside the partition's query, by LookingFilter.
   HitBuffer boxes;
   OverlapBuffer objects;
-  /// Answers of the last question.
+  /// Results of the last query.
   Column<SceneHit> hits;
-  /// Of a batch: where the hits of each ray begin, and the end.
+  /// For a batch of rays: where the hits of each ray begin, and the end.
   Column<std::size_t> hits_first;
-  /// Those of rays that were asked together, before they are listed.
+  /// Hits of a group of rays, before they are sorted by ray.
   Column<RayHit> few;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
-  /// Boxes of the second of two sets, a column for each bound, and how far one body is from them.
+  /// Boxes of the second set of bodies, one column for each bound, and their squared distances from
+  /// one body's box.
   Column<float> bounds;
   Column<float> gaps;
   Column<KeyPair> overlapping;
@@ -111,7 +113,7 @@ struct QueryState {
   [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {
     return {scene.shape[body], scene.pose[body]};
   }
-  /// What every question begins with.
+  /// The check that every query begins with: refuses a scene that changed after its last refresh.
   [[nodiscard]] static Status may_ask(const QueryState* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
     const SceneState& scene = state->scene;
@@ -120,7 +122,7 @@ struct QueryState {
         composites != nullptr && composites->revision() != scene.composites_seen;
     return scene.is_fresh() && !has_changed ? Status::ok : Status::invalid_argument;
   }
-  /// Calls ask(partition) for every set that has one, until it does not answer ok.
+  /// Calls ask(partition) for each partition until a call does not return ok.
   template <typename Ask>
   [[nodiscard]] Status each_partition(Ask&& ask) const {
     for (const SceneSet& set : scene.sets) {
@@ -131,9 +133,9 @@ struct QueryState {
   }
 };
 
-/// A caller's filter as the partitions take it: their client data are ids of bodies. Bodies that it
-/// lets pass are shown to `Look`, bool(std::uint32_t body), whose answer the partition gets; so no
-/// list of candidates is ever made.
+/// Converts the caller's filter to one for partitions, whose client data are ids of bodies. Calls
+/// `Look`, bool(std::uint32_t body), for each body that passes; its result is returned to the
+/// partition. So no list of candidates is needed.
 template <typename Look>
 class LookingFilter {
  public:
@@ -151,7 +153,7 @@ class LookingFilter {
     return result;
   }
 
-  /// What the partition would do with a body of one whose box is met.
+  /// Applies the filters to a body without a query of its partition, as if its box were hit.
   void show(const Partition& partition, std::uint32_t body) const {
     ObjectFilter own;
     const Status status = partition.filter(scene_.place[body], own);

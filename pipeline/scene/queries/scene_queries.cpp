@@ -1,4 +1,5 @@
-// SceneQueries: what a shape overlaps, and what is nearest to a point.
+// SceneQueries: bodies that overlap a shape, and bodies nearest to a point. two_shapes.h tests the
+// candidates that the partitions find.
 
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
@@ -27,15 +28,15 @@ bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
   return a.key.id < b.key.id;
 }
 
-/// The bodies nearest to a point. First those are looked at whose boxes are nearest; the last of
-/// the nearest of these bodies is as far as any that is wanted can be, and every other body whose
-/// box is no farther is looked at.
+/// Finds the bodies nearest to a point. First tests the bodies with the nearest boxes; the last one
+/// of the `count` nearest among them limits the distance, and then all other bodies whose boxes are
+/// within this distance are tested.
 class NearestQuestion {
  public:
   NearestQuestion(QueryState& state, const double* point, const Filter& filter) noexcept
       : state_(state), filter_(filter) {
     std::copy_n(point, 3, from_.pose.position);
-    // To the nearest place in the range of float, which brings no box farther away.
+    // Clamping to the range of float makes no box farther away.
     constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
     const Vector3d& origin = state.scene.origin;
     Vector3d low;
@@ -51,10 +52,11 @@ class NearestQuestion {
 
  private:
   void look(std::uint32_t body);
-  /// Looks at bodies whose boxes are nearest and within the radius, which shrinks to what is still
-  /// of interest.
+  /// Tests the bodies with the nearest boxes within the radius, and lowers the radius to the last
+  /// distance that is still of interest.
   [[nodiscard]] Status look_at_nearest(const Partition& partition);
-  /// Looks at all others within the radius, given how many bodies were found before, sorted by id.
+  /// Tests all other bodies within the radius. The first `known` results, sorted by id, are of
+  /// bodies that were tested.
   [[nodiscard]] Status look_within(const Partition& partition, std::size_t known);
   [[nodiscard]] float reach() const noexcept;
 
@@ -66,7 +68,7 @@ class NearestQuestion {
   std::size_t count_ = 0;
   double radius_ = 0.0;
   bool has_room_ = true;
-  /// Some partition had more boxes than were asked for.
+  /// A partition has more boxes than it returned.
   bool is_cut_ = false;
 };
 
@@ -78,7 +80,7 @@ void NearestQuestion::look(std::uint32_t body) {
   has_room_ = state_.distances.push_back(answer) && has_room_;
 }
 
-/// What the solver's distance to what lies on the border of a box may be too short by is added.
+/// Adds the error bound of the solver's distance to a box boundary.
 float NearestQuestion::reach() const noexcept {
   return round_up(std::max(radius_, 0.0) * (1.0 + 1e-9));
 }

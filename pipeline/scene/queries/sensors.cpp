@@ -1,3 +1,6 @@
+// Sensors: finds the bodies that overlap each sensor, by SceneQueries on several threads, and
+// compares them with the last call to report events.
+
 #include <winnow/pipeline/sensors.h>
 
 #include <winnow/pipeline/scene_queries.h>
@@ -14,7 +17,7 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kMaxSensors = std::size_t{1} << 28U;
-/// So many are looked at by a thread at least.
+/// Minimum number of sensors for each thread.
 constexpr std::size_t kSensorsPerWatch = 64;
 
 template <typename Entry>
@@ -26,7 +29,7 @@ template <typename Entry>
   return a.sensor == b.sensor && a.body == b.body;
 }
 
-/// All bodies that a sensor senses but its carrier.
+/// Returns a filter for all bodies that the sensor detects, except its carrier.
 [[nodiscard]] Filter filter_of(const SensorDefinition& sensor) noexcept {
   Filter filter{sensor.filter.layers, sensor.filter.mask, sensor.filter.environment};
   if (sensor.carrier == Key{}) return filter;
@@ -54,7 +57,7 @@ struct SensorsState {
   SensorsState(const SensorsState&) = delete;
   SensorsState& operator=(const SensorsState&) = delete;
 
-  /// What a thread asks with, and what it has sensed.
+  /// A thread's query object and the bodies that it found.
   struct Watch {
     Watch(const Scene& scene, std::pmr::memory_resource* memory) noexcept
         : questions(scene, memory), sensed(memory) {}
@@ -65,15 +68,15 @@ struct SensorsState {
   };
 
   Scene& scene;
-  /// Null where the scene was refused memory.
+  /// Null if the scene has no memory.
   SceneState* bodies;
   KeyTable keys;
-  /// By id; holes where sensors were removed.
+  /// By id; with holes for removed sensors.
   Column<SensorDefinition> sensors;
   Column<SensedBody> sensed;
   Column<SensedBody> before;
   Column<LeftSensor> left;
-  /// One for each thread that was of use so far.
+  /// One for each thread in use so far.
   Column<Watch*> watches;
 
   [[nodiscard]] Status check(const SensorDefinition& sensor) const noexcept {
@@ -85,7 +88,7 @@ struct SensorsState {
   [[nodiscard]] Status look(ObjectId first, ObjectId end, Watch& watch) const;
   [[nodiscard]] Status take_all(std::size_t count) noexcept;
   [[nodiscard]] bool compare() noexcept;
-  /// After memory was refused: perhaps to what threads ask with, which then is of no use.
+  /// After a failed allocation, which may have left a thread's query object without its state.
   void forget() noexcept {
     sensed.clear();
     before.clear();
@@ -111,8 +114,7 @@ bool SensorsState::have_watches(std::size_t count) noexcept {
   return true;
 }
 
-/// Fills `sensed`: threads look at sensors that follow each other, so that what they have sensed
-/// does, too.
+/// Fills `sensed`. Each thread tests consecutive sensors, so that the results are in order.
 Status SensorsState::look() {
   if (const Status status = scene.refresh(); status != Status::ok) return status;
   const Execution& execution = bodies->options.execution;
@@ -159,7 +161,8 @@ Status SensorsState::take_all(std::size_t count) noexcept {
   return Status::ok;
 }
 
-/// Tells events by what was sensed before. An id may be another body's by now, whose key differs.
+/// Sets events by comparison with the last call. Keys are compared, because an id may belong to
+/// another body now.
 bool SensorsState::compare() noexcept {
   left.clear();
   SensedBody* now = sensed.begin();

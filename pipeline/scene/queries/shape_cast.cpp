@@ -1,10 +1,11 @@
-// The distance g(t) of two convex shapes of which one moves along a line is a convex function of t.
-// A plane that parts them at some t with gap s, along whose normal they close at the speed v, parts
-// them until t + s / v, and has parted them ever before: a certificate, however the plane was
-// found. Where v <= 0 it parts them for ever after, and since t - s / |v|. So every sample that is
-// parted, before the impact or beyond it, bounds the impact from one side or rules it out. Samples
-// are taken where Newton's method would (the planes of closest points are the tangents of g), a
-// little ahead, so that the last of them meets the shapes touching and closes the bracket.
+// Conservative advancement. The distance g(t) of two convex shapes, one of which moves along a
+// line, is a convex function of t. If a plane separates them at time t with gap s, and they
+// approach along its normal at speed v > 0, it separates them until t + s / v and at all times
+// before: a certificate, however the plane was found. If v <= 0 it separates them from then on, and
+// since t - s / |v|. So every sample at which they are apart, before or after the impact, bounds
+// the impact from one side or excludes it. Samples are taken where Newton's method would take them
+// (planes through closest points are tangents of g), plus a little, so that the last sample is in
+// contact and closes the bracket. The sweeps in swept_shapes.cpp and composite_sweep.cpp call this.
 
 #include "pipeline/scene/queries/shape_cast.h"
 
@@ -32,10 +33,11 @@ using solver::kEpsilon;
 using solver::Problem;
 using solver::Vec;
 
-/// Halving a bracket every other time, doubles run out of numbers first.
+/// The bracket is halved every other time, so doubles are exhausted before this.
 constexpr std::uint32_t kMostSamples = 256;
 
-/// Where the standing shape is, seen from the moving one: to the last bit, however long the path.
+/// Position of the fixed shape relative to the moving one, accurate to the last bit on a path of
+/// any length.
 class Path {
  public:
   explicit Path(const CastPair& pair) noexcept {
@@ -52,7 +54,8 @@ class Path {
     begin_ = std::ldexp(pair.free_until, exponent_);
   }
 
-  // t counts in steps here: the direction times a power of two, of a length near 1.
+  // The times below are in steps: `step` is the direction times a power of two, with a length near
+  // 1.
 
   [[nodiscard]] const Vec& step() const noexcept { return step_; }
   [[nodiscard]] double speed() const noexcept { return speed_; }
@@ -74,7 +77,7 @@ class Path {
   }
 
   [[nodiscard]] double steps(double shown) const noexcept { return std::ldexp(shown, exponent_); }
-  /// In the caller's units, not above what it was.
+  /// Converts to the caller's units, rounding down.
   [[nodiscard]] double shown(double t) const noexcept {
     const double result = std::ldexp(t, -exponent_);
     return std::ldexp(result, exponent_) > t ? std::nextafter(result, 0.0) : result;
@@ -90,13 +93,13 @@ class Path {
   int exponent_ = 0;
 };
 
-/// The pair at one t.
+/// The pair at one time.
 struct PartedAt {
-  /// Surely apart by `gap` > 0 along `normal`, which points from the moving to the standing shape.
+  /// Certainly apart by `gap` > 0 along `normal`, which points from the moving to the fixed shape.
   bool parted = false;
   double gap = 0.0;
   Vec normal = Vec::Zero();
-  /// Closing speed along it, not too low.
+  /// Upper bound on the closing speed along `normal`.
   double closing = 0.0;
 };
 
@@ -138,21 +141,21 @@ class Advancement {
   const double tolerance_;
   const bool mirrored_;
   const double largest_;
-  /// Of the last sample.
+  /// The problem of the last sample.
   Problem problem_;
   bool is_prepared_ = false;
   SolverCounts counts_;
   std::uint32_t steps_ = 0;
 
-  /// They do not touch before the one, nor from the other on.
+  /// The shapes do not touch before free_until_, nor from free_from_ on.
   double free_until_ = 0.0;
   double free_from_ = kInfinity;
-  /// As far as is known, they touch here.
+  /// Earliest sample at which they touch.
   double touching_ = kInfinity;
   /// The last two advances of `free_until_`.
   double advance_ = 0.0;
   double advance_before_ = 0.0;
-  /// Of the last plane that they were nearing.
+  /// Normal of the last plane along which they approached.
   Vec normal_ = Vec::Zero();
   bool overlap_at_start_ = false;
 };
@@ -173,9 +176,10 @@ void Advancement::prepare_at(double t) noexcept {
   }
 }
 
-/// The gap along a plane that parts the pair, less all rounding; none of shapes that touch as far
-/// as double can tell. What counts is what the plane itself parts, not what a solver says about
-/// distances. Of all planes about the one with the widest gap, unless `any_plane` will do.
+/// Returns the gap along a plane that separates the pair, less all rounding; none if the shapes
+/// touch as far as double precision can decide. The gap is verified for the plane itself and does
+/// not rely on the solver's distance. The plane has about the widest gap, unless `any_plane` is
+/// enough.
 PartedAt Advancement::sample(double t, bool any_plane) noexcept {
   ++steps_;
   prepare_at(t);
@@ -210,7 +214,7 @@ void Advancement::face(const Vec& axis, PartedAt& sample) const noexcept {
   sample.closing = sample.normal.dot(path_.step()) + 4.0 * kEpsilon * path_.speed();
 }
 
-/// For cores whose closest points iteration does not find. Without a good plane they close at full
+/// For pairs whose separation GJK cannot prove. Without a good plane the closing speed is the full
 /// speed.
 double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexcept {
   const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
@@ -223,7 +227,7 @@ double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexc
   return found.distance - found.doubt;
 }
 
-/// Where double cannot tell, exact arithmetic does.
+/// Uses exact arithmetic if double precision cannot decide.
 bool Advancement::touches_at_start() noexcept {
   const auto solve = [this](ContactLevel level) {
     return solve_pair(tables_, pair_.moving, pair_.from, pair_.standing, pair_.pose, level, 0.0,
@@ -235,9 +239,10 @@ bool Advancement::touches_at_start() noexcept {
   return Vec::Map(apart.normal).dot(path_.step()) > 4.0 * kEpsilon * path_.speed();
 }
 
-/// Where to look next. A little beyond what is known to be free; twice as far as Newton's method
-/// came where it is as slow as at double roots, of shapes that graze each other. In a bracket every
-/// other time in its middle, so that it ends whatever the shapes are.
+/// Returns the next sample time: slightly beyond the time that is known to be free; beyond it by
+/// the last advance if Newton's method converges as slowly as at double roots (shapes that graze
+/// each other). In a bracket, every other sample is the midpoint, so that the search ends for all
+/// shapes.
 double Advancement::next(std::uint32_t step) const noexcept {
   const bool slow = advance_ > 0.25 * advance_before_ && advance_before_ > 0.0;
   double t = free_until_ + std::max(0.5 * tolerance_, slow ? advance_ : 0.0);
@@ -248,7 +253,8 @@ double Advancement::next(std::uint32_t step) const noexcept {
   return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), path_.end());
 }
 
-/// True if a plane that they are nearing parts them where something else is touched.
+/// True if a plane with the normal `parting` separates the pair at the end, while they approach
+/// along it.
 bool Advancement::is_free_to_end() noexcept {
   const Vec parting = Vec::Map(pair_.parting);
   if (parting.isZero(0.0) || !(path_.end() < kInfinity)) return false;
@@ -268,7 +274,7 @@ bool Advancement::search() noexcept {
       if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);
     } else if (found.closing <= 8.0 * kEpsilon * path_.speed()) {
-      // Nor do they meet later: before, the gap would be lost in the rounding of the path.
+      // They do not touch later. The gap before t is limited by the rounding of the path.
       const double leaving = std::max(-found.closing, 0.0);
       free_from_ = std::min(free_from_, add_up(t, -found.gap / leaving));
     } else {
@@ -284,7 +290,7 @@ bool Advancement::search() noexcept {
     if (touching_ - free_until_ <= tolerance_) return true;
     const double before = t;
     t = next(step);
-    // No number left between.
+    // There is no number between.
     if (t == before || t >= touching_ || t >= free_from_) return true;
   }
   return true;
@@ -299,7 +305,8 @@ void Advancement::describe(CastTouch& touch) noexcept {
   const Vec point = mirrored_ ? on_a : Vec(on_a + found.axis * apart - problem.b.center);
   for (int i = 0; i < 3; ++i) touch.point[i] = unscaled(problem, point[i]);
   const Vec normal = mirrored_ ? found.axis : Vec(-found.axis);
-  // Of shapes that all but touch, another axis may seem as good.
+  // For shapes that almost touch, another axis may be as good; keep the known one if this one is
+  // not opposed to the motion.
   const bool is_known = !Vec::Map(touch.normal).isZero(0.0);
   if (!touch.overlaps_at_start && normal.dot(path_.step()) >= 0.0 && is_known) return;
   Vec::Map(touch.normal) = normal;

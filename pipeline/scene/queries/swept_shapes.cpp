@@ -1,3 +1,6 @@
+// SweptShape, RaySweep and ShapeSweep, and BodyMeeting, which finds a sweep's first contact with a
+// body. Most triangles are excluded by a separating plane before the exact cast (shape_cast.cpp).
+
 #include "pipeline/scene/queries/swept_shapes.h"
 
 #include <winnow/core/eigen.h>
@@ -12,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of its box, which is `more` larger to all sides.
+/// Returns the swept box of the shape, grown by `more` in all directions.
 BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit,
                     double more = 0.0) noexcept {
   const Vector3d start = Vector3d::Map(from);
@@ -37,8 +40,8 @@ SweepMeeting meeting_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
   return meeting;
 }
 
-/// The point of a triangle that is closest to p, about (Ericson, "Real-Time Collision Detection",
-/// 2005, 5.1.5).
+/// Returns approximately the point of a triangle that is closest to p (Ericson, "Real-Time
+/// Collision Detection", 2005, 5.1.5).
 Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept {
   const Vector3d ab = corner[1] - corner[0];
   const Vector3d ac = corner[2] - corner[0];
@@ -62,7 +65,7 @@ Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept 
   return corner[0] + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
-/// True if the ray surely passes by the triangle, grown by `doubt`, of a body at no angle: the
+/// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
 /// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
 /// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
 bool passes_by(const double from[3], const double direction[3], const ConvexPart& part,
@@ -141,7 +144,7 @@ bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
   if (stands_behind({start, start}, part)) return false;
-  // Asked about its whole way: whether what is met counts as thick does not depend on the limit.
+  // Tests the whole ray: whether the thick triangle is used must not depend on the limit.
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
   if (!enters(ray, part, meeting)) {
@@ -173,8 +176,8 @@ ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double
       to_shape_(as_eigen(rotation_of(tame(cast.pose.orientation))).transpose()),
       middle_(0.5 * (extent().min + extent().max)) {}
 
-// The plane of the triangle, and planes along the motion through its sides: those in which most
-// triangles beside the way, or beyond what is met first, are parted from the shape.
+// Tests the plane of the triangle, and planes along the motion through its sides. These separate
+// most triangles that are beside the path or beyond the first hit.
 bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double limit,
                            double& free_until) const noexcept {
   if (!stands_unturned(part)) return false;
@@ -188,7 +191,7 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
                       extent().max.cwiseAbs().sum() + corner[0].cwiseAbs().sum() +
                       corner[1].cwiseAbs().sum() + corner[2].cwiseAbs().sum();
   const double doubt_of_all = mid::kSlack * size + 4.0 * corner_doubt(part);
-  // How far the shape lies above or below all of the triangle along an axis, at the start.
+  // Returns how far the shape is above or below the whole triangle along an axis, at the start.
   const auto gap = [&](const Vector3d& axis, double& side_of) {
     const mid::Extent own = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis);
     const double at = axis.dot(start);
@@ -204,7 +207,7 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
   if (rest > 0.0) {
     const double closing = -side_of * normal.dot(way);
     const double noise = mid::kSlack * normal.cwiseAbs().sum() * way.cwiseAbs().sum();
-    // A way without end that does not close, as far as can be told, is left to others.
+    // An infinite path along which they do not certainly approach is not decided here.
     const double most = limit + tolerance() / way.norm();
     const double closing_at_most = std::max(closing, 0.0) + noise;
     if (rest > closing_at_most * most) return true;
@@ -235,7 +238,7 @@ PreciseBox ShapeSweep::box_at(const double from[3]) const noexcept {
   return {start + extent().min, start + extent().max};
 }
 
-// What lies behind a plane that the shape nears lies behind it at all times before.
+// If the shape approaches a plane, anything behind the plane is behind it at all earlier times.
 bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept {
   const Vector3d normal = Vector3d::Map(before.normal);
   if (!stands_unturned(part)) return false;
@@ -254,7 +257,7 @@ bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
                            double limit) const noexcept {
   if (!stands_unturned(part)) return false;
   const Vector3d way = Vector3d::Map(direction());
-  // All as seen from where the shape is then.
+  // Relative to the shape's position at t = limit.
   const Vector3d to_part = Vector3d::Map(part.pose.position) - Vector3d::Map(from) - limit * way;
   Vector3d corner[3];
   double size = extent().min.cwiseAbs().sum() + extent().max.cwiseAbs().sum() +
@@ -353,8 +356,8 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     take(whole, meeting);
     return true;
   }
-  // About the body, so that parts lose nothing far from the origin; what the difference of the
-  // positions loses is put into the pose, where it is small.
+  // Relative to the body, so that parts keep full precision far from the origin. The rounding error
+  // of the difference is added to the pose, where it is small.
   std::copy_n(body.pose.position, 3, base_);
   const Difference start = difference(swept.start(), base_);
   std::copy_n(start.difference, 3, from_);

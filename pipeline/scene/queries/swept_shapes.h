@@ -1,5 +1,8 @@
 #pragma once
 
+// Rays and shapes that move along a line without turning, tested against the parts of one body.
+// casts.cpp calls BodyMeeting::find for each candidate body.
+
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
 #include "pipeline/motion/resting_contacts.h"
@@ -7,35 +10,35 @@
 
 namespace winnow {
 
-/// Where something that moves first meets a convex part: about the part's origin of coordinates,
-/// in the axes of the world.
+/// The first contact of a swept shape with a convex part, in the part's coordinates: world axes,
+/// relative to the body's position.
 struct SweepMeeting {
   double t = 0.0;
-  /// Of shapes: that of a parting plane until `SweptShape::describe` gives the surface's.
+  /// For shapes: the normal of a separating plane, until `SweptShape::describe` replaces it with
+  /// the surface normal.
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
   bool overlaps_at_start = false;
-  /// Of shapes: how high above the part's origin, along the normal, the shape is all of then, and a
-  /// little less.
+  /// For shapes: a lower bound on the shape's height above the origin at time t, along the normal.
   double height = 0.0;
-  /// Of composite shapes that move: which part of them it is.
+  /// For composite shapes that move: the part of them that touches.
   std::uint32_t own_part = kWholeShape;
 };
 
-/// Of a meeting with what a cast touched: all but normal and point of the surface.
+/// Converts the result of a cast; normal and point of the surface are left for `describe`.
 [[nodiscard]] SweepMeeting meeting_of(const CastTouch& touch) noexcept;
-/// Fills in normal and point of a meeting of this pair, whose standing shape is the part.
+/// Computes normal and point of a contact of this pair, whose fixed shape is the part.
 void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
                       SweepMeeting& meeting) noexcept;
 
-/// The two of a pair over the whole of a cast, which ends at `max_t`.
+/// The motions of a pair over the whole cast, which ends at `max_t`.
 class CastMotions {
  public:
   CastMotions(const CastPair& pair, double max_t) noexcept;
 
-  /// Notes the contact of the two at the start.
+  /// Records the contact of the two at the start.
   void note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
-  /// True if there are contacts at the start along which the two slide, or part.
+  /// True if the pair has contacts at the start along which it slides or separates.
   [[nodiscard]] bool part(const ShapeTables& tables,
                           const impact::RestingContacts& resting) const noexcept;
 
@@ -45,48 +48,48 @@ class CastMotions {
   bool is_finite_;
 };
 
-/// By this much of its coordinates a box is grown before the tests of boxes, which round them.
+/// Boxes are grown by this share of their coordinates before box tests, which round.
 inline constexpr double kSweptBoxGrowth = 0x1p-47;
 
-/// Neighbours in a mesh have their common corners a few roundings apart, once each is at its place:
-/// by less than this. As thick as this they leave nothing through between them.
+/// Upper bound on the distance between copies of a common corner of adjacent triangles, each
+/// rounded at its own place. Triangles that are this thick leave no gaps between them.
 [[nodiscard]] double corner_doubt(const ConvexPart& part) noexcept;
 
-/// A ray or a shape that moves along a line without turning.
+/// A ray, or a shape that moves along a line without turning.
 class SweptShape {
  public:
   SweptShape(const SweptShape&) = delete;
   SweptShape& operator=(const SweptShape&) = delete;
   virtual ~SweptShape() = default;
 
-  /// Where it starts, and a box of it about there.
+  /// Start position, and a box around the shape relative to it.
   [[nodiscard]] const double* start() const noexcept { return start_; }
   [[nodiscard]] const PreciseBox& extent() const noexcept { return extent_; }
   [[nodiscard]] const double* direction() const noexcept { return direction_; }
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
   /// Null for a shape.
   [[nodiscard]] virtual const ShapeRay* ray() const noexcept { return nullptr; }
-  /// A length by which it may be early.
+  /// The contact may be early by this length.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
-  /// False if it does not meet what it touches at the start and slides along, or leaves.
+  /// False if contacts at the start, along which it slides or separates, are not hits.
   [[nodiscard]] bool meets_at_start() const noexcept { return meets_at_start_; }
-  /// Notes its contact with a part at the start.
+  /// Records its contact with a part at the start.
   virtual void note_contact(const double from[3], const ConvexPart& part,
                             impact::RestingContacts& resting) const noexcept;
 
-  /// What is known of a body when it is held against one of its parts.
+  /// Earlier results for the body whose parts are tested.
   struct KnownMeetings {
-    /// A meeting with another part at the limit, if there is one.
+    /// A contact with another part at the limit, or null.
     const SweepMeeting* before = nullptr;
-    /// Contacts with the body at the start, if they are no meetings.
+    /// Contacts with the body at the start if they are not hits, else null.
     const impact::RestingContacts* resting = nullptr;
   };
-  /// True if it meets the part by t = limit, starting at `from`.
+  /// True if it touches the part by t = limit, starting at `from`.
   [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
                                    const KnownMeetings& known,
                                    SweepMeeting& meeting) const noexcept = 0;
-  /// Fills in normal and point of a meeting, which costs more than finding its time: done once, for
-  /// the meeting that is shown.
+  /// Computes normal and point of a contact. This costs more than its time, so it is done only for
+  /// the contact that is returned.
   virtual void describe(const double from[3], const ConvexPart& part,
                         SweepMeeting& meeting) const noexcept = 0;
 
@@ -113,7 +116,7 @@ class SweptShape {
   bool meets_at_start_ = true;
 };
 
-/// The ray must outlive it.
+/// A ray, which must outlive this object.
 class RaySweep final : public SweptShape {
  public:
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
@@ -132,7 +135,7 @@ class RaySweep final : public SweptShape {
   const ShapeRay& ray_;
 };
 
-/// A convex shape. The cast must outlive it.
+/// A convex shape. The cast must outlive this object.
 class ShapeSweep final : public SweptShape {
  public:
   ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
@@ -145,52 +148,53 @@ class ShapeSweep final : public SweptShape {
                 SweepMeeting& meeting) const noexcept override;
 
  private:
-  /// True if a plane shows that the shape does not come to the triangle by t = limit; or else
-  /// perhaps that it does not before `free_until`.
+  /// True if a plane proves that the shape does not reach the triangle by t = limit. If false, may
+  /// raise `free_until`, a time until which they do not touch.
   [[nodiscard]] bool passes_by(const double from[3], const ConvexPart& part, double limit,
                                double& free_until) const noexcept;
-  /// The same, of a meeting with another part at t = limit, by its plane.
+  /// As passes_by, with the plane of a contact with another part at t = limit.
   [[nodiscard]] bool is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept;
-  /// And by the plane between the shape's middle and the triangle.
+  /// As passes_by, with the plane between the shape's centre and the triangle.
   [[nodiscard]] bool is_beside(const double from[3], const ConvexPart& part,
                                double limit) const noexcept;
   void set_height(const double from[3], SweepMeeting& meeting) const noexcept;
-  /// About it where it starts.
+  /// The box of the shape at its start.
   [[nodiscard]] PreciseBox box_at(const double from[3]) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
                               const ConvexPart& part) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeCast& cast_;
-  /// From the axes of the world to those of the shape.
+  /// Rotates world axes to the axes of the shape.
   Eigen::Matrix3d to_shape_;
-  /// Of its box, about where it starts.
+  /// Centre of its box, relative to the start.
   Eigen::Vector3d middle_;
 };
 
-/// A meeting with a body, and all that it takes to describe it.
+/// A contact with a body, with the data to describe it.
 class BodyMeeting {
  public:
-  /// Looks for the swept shape's first meeting with the body by t = limit, of equal ones that with
-  /// the least part; with `any`, for whichever is found first. False if there is none.
+  /// Finds the swept shape's first contact with the body by t = limit; if times are equal, the one
+  /// with the smallest part number. With `any`, the contact that is found first. Returns false if
+  /// there is none.
   [[nodiscard]] bool find(const PartTraversal& parts, const SweptShape& swept,
                           const PlacedShape& body, double limit, bool any) noexcept;
 
   [[nodiscard]] double t() const noexcept { return meeting_.t; }
   [[nodiscard]] std::uint32_t part() const noexcept { return part_.part; }
-  /// All but the body's key and data.
+  /// Returns the hit without the body's key and data.
   [[nodiscard]] SceneHit hit(const SweptShape& swept) const noexcept;
 
  private:
   void take(const ConvexPart& part, const SweepMeeting& meeting) noexcept;
-  /// Notes the contacts with a composite body at the start.
+  /// Records the contacts with a composite body at the start.
   void note_contacts(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& placed,
                      impact::RestingContacts& resting) const noexcept;
 
   SweepMeeting meeting_;
   ConvexPart part_;
   TriangleShape triangle_;
-  /// Where the sweep starts, and the world's origin lies, in the part's coordinates.
+  /// Start of the sweep, relative to the body's position; and the body's position in the world.
   double from_[3] = {0.0, 0.0, 0.0};
   double base_[3] = {0.0, 0.0, 0.0};
 };

@@ -1,5 +1,5 @@
-// SceneQueries: two bodies, or two sets of bodies: how far they are apart, which overlap, and
-// whether any do.
+// SceneQueries on two bodies or two sets of bodies: distance, overlaps and any_contact. The boxes
+// in the partitions select pairs; two_shapes.h tests them.
 
 #include <winnow/core/rounding.h>
 #include "core/threads/float_environment.h"
@@ -16,8 +16,8 @@ WINNOW_DEFINE_KERNELS(BoxGapsKernels, box_gaps_kernels)
 
 namespace {
 
-/// Squared gaps between boxes are sums of three squares of differences of floats, all rounded; and
-/// the solver's distance to what lies on the border of a box is.
+/// Covers the rounding of squared box distances (three squares of float differences) and the error
+/// of the solver's distance to a box boundary.
 constexpr double kSquareSlack = 1e-5;
 
 [[nodiscard]] Aabb box_of(const SceneState& scene, std::uint32_t body) noexcept {
@@ -26,13 +26,13 @@ constexpr double kSquareSlack = 1e-5;
   return box;
 }
 
-/// The boxes of a set of bodies, and how far others are from them. Those that the partitions hold
-/// serve: they contain the bodies.
+/// The boxes of a set of bodies, and their distances from other boxes. Uses the boxes in the
+/// partitions, which contain the bodies.
 class SetBoxes {
  public:
   explicit SetBoxes(QueryState& state) noexcept : state_(state) {}
 
-  /// False if there is no room.
+  /// Returns false if memory is refused.
   [[nodiscard]] bool take(std::span<const Key> keys) noexcept {
     constexpr std::size_t kLanes = 16;
     count_ = keys.size();
@@ -53,7 +53,7 @@ class SetBoxes {
     }
     return true;
   }
-  /// The square of how far each of the set is from a body, or less.
+  /// Returns lower bounds on the squared distances of the set's bodies from a body.
   [[nodiscard]] std::span<const float> squared_gaps(Key from) noexcept {
     const Aabb box = box_of(state_.scene, from.id);
     const float low[3] = {box.min[0], box.min[1], box.min[2]};
@@ -73,7 +73,7 @@ class SetBoxes {
   return rules == PairRules::none || scene.would_pair(a, b);
 }
 
-/// Pairs of bodies of two sets that the rules take, without those of a body and itself.
+/// Pairs of bodies of two sets that the rules accept, except pairs of a body with itself.
 class SetPairs {
  public:
   SetPairs(QueryState& state, std::span<const Key> a, std::span<const Key> b,
@@ -85,7 +85,7 @@ class SetPairs {
     return a_.data() == b_.data() && a_.size() == b_.size();
   }
 
-  /// The pair whose boxes are the nearest, if they are no farther apart than `most`.
+  /// Returns the pair with the nearest boxes, if their distance is at most `most`.
   [[nodiscard]] KeyPair nearest(double most) noexcept {
     KeyPair found;
     double least = square_of(most);
@@ -102,8 +102,9 @@ class SetPairs {
     return found;
   }
 
-  /// Calls look(body of a, body of b) for pairs whose boxes are no farther apart than most(), which
-  /// may shrink meanwhile, until it says false. With `once`, and one set, each pair once.
+  /// Calls look(body of a, body of b) for pairs whose boxes are at most most() apart, until it
+  /// returns false; most() may decrease meanwhile. With `once`, and if both sets are the same, each
+  /// pair occurs once.
   template <typename Most, typename Look>
   void each_within(Most&& most, Look&& look, bool once = false) {
     double least = square_of(most());
@@ -134,8 +135,8 @@ class SetPairs {
   SetBoxes boxes_;
 };
 
-/// True if two bodies share a point or are no farther apart than a margin. It asks for a shared
-/// point first: that verdict is exact, so a wider margin never loses a contact.
+/// True if two bodies overlap, or are at most `margin` apart. Tests for overlap first: that result
+/// is exact, so that a wider margin never loses a contact.
 [[nodiscard]] bool are_near(const QueryState& state, std::uint32_t a, std::uint32_t b,
                             double margin) noexcept {
   const PlacedShape first = state.placed(a);
@@ -146,19 +147,19 @@ class SetPairs {
   return margin > 0.0 && ClosestParts(state.parts).find(first, second, margin, found);
 }
 
-/// Finds contacts of one body of the whole scene after another, by their ids, up to the first body
-/// that has one: those before it have none.
+/// Finds contacts of one body of the scene after the other, by id, up to the first body that has
+/// one. The bodies before it have none, so pairs with them need no test.
 class ContactOfBody {
  public:
   ContactOfBody(QueryState& state, double margin, PairRules rules) noexcept
       : state_(state), margin_(margin), rules_(rules) {}
 
-  /// True if bodies of that motion are looked at one after another: every pair has one of them.
+  /// True if bodies of this motion are tested one after the other: every pair contains one of them.
   [[nodiscard]] bool looks_at(Motion motion) const noexcept {
     return rules_ == PairRules::none || motion == Motion::dynamic;
   }
 
-  /// kNoObject if there is none.
+  /// `other` is kNoObject if there is none.
   [[nodiscard]] Status find(std::uint32_t body, std::uint32_t& other) {
     const SceneState& scene = state_.scene;
     std::uint32_t least = kNoObject;
@@ -170,7 +171,7 @@ class ContactOfBody {
     };
     Filter filter;
     if (rules_ == PairRules::scene) {
-      // Subtrees of bodies that this one does not meet are not entered.
+      // Lets the partitions skip subtrees of bodies that the filters exclude.
       const ObjectFilter own = scene.filter_of(body);
       filter = {.layers = own.layers, .mask = own.mask, .environment = own.environment};
     }
@@ -184,7 +185,8 @@ class ContactOfBody {
   }
 
  private:
-  /// Adds as much as the solver's distance to a point on the border of a box may be too short by.
+  /// Grows the body's box by the margin and the error bound of the solver's distance to a box
+  /// boundary.
   [[nodiscard]] Aabb reach_of(std::uint32_t body) const noexcept {
     const Aabb box = box_of(state_.scene, body);
     const double reach = margin_ * (1.0 + 1e-9);
@@ -201,8 +203,8 @@ class ContactOfBody {
   PairRules rules_;
 };
 
-/// The closest pair of two sets. First looked at is the pair whose boxes are the nearest: hardly
-/// any other has boxes that are nearer than these two bodies are.
+/// Finds the closest pair of two sets. Starts with the pair whose boxes are nearest: few other
+/// pairs have boxes that are nearer than these two bodies are.
 class ClosestBodies {
  public:
   ClosestBodies(QueryState& state, double limit) noexcept : state_(state), limit_(limit) {}
@@ -220,10 +222,10 @@ class ClosestBodies {
   }
 
  private:
-  /// Overlapping bodies may be deeper than others.
+  /// Never negative, because overlapping boxes may have bodies of any depth.
   [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
 
-  /// Of pairs that are equally far apart the first in the order of ids is kept.
+  /// If distances are equal, the pair that is first in the order of ids is kept.
   void look(Key a, Key b) noexcept {
     SceneDistance found;
     ClosestParts parts(state_.parts);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Two shapes, composite ones too, where they stand: whether they share a point, and their closest
-// parts.
+// Overlap and closest points of two placed shapes, including composite ones. scene_queries.cpp and
+// two_sets.cpp call this; parts are solved by the narrow phase.
 
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -24,15 +24,16 @@ namespace winnow {
   return answer;
 }
 
-/// True if one stands behind the other, which is a one-sided triangle: they do not meet then.
+/// True if one part is a one-sided triangle and the other is behind it, so that they do not
+/// collide.
 [[nodiscard]] inline bool any_stands_behind(const PartTraversal& parts, const ConvexPart& a,
                                             const ConvexPart& b) noexcept {
   return (a.front != 0 && stands_behind(parts.box(b), a)) ||
          (b.front != 0 && stands_behind(parts.box(a), b));
 }
 
-/// Both about the position of the first where that helps: parts of composite shapes lose nothing
-/// then where the scene is far from the origin. Convex pairs are solved as they stand.
+/// Two shapes, moved so that the first one's position is the origin if one of them is composite:
+/// their parts then keep full precision far from the world's origin. Convex pairs are not moved.
 struct Pairing {
   PlacedShape a;
   PlacedShape b;
@@ -46,8 +47,8 @@ struct Pairing {
   }
 };
 
-/// True if one axis shows that a ball is farther from a triangle of a surface than a limit. False
-/// proves nothing.
+/// True if a separating axis proves that a ball is farther than a limit from a triangle of a
+/// surface. False proves nothing.
 [[nodiscard]] inline bool is_farther(const ConvexPart& ball, const ConvexPart& triangle,
                                      double limit) noexcept {
   using mid::Vec;
@@ -67,13 +68,13 @@ struct Pairing {
   return gap > (std::max(limit, 0.0) + radii + 4.0 * mid::kSlack * scale) * axis.norm();
 }
 
-/// True if one is a solid that holds the other, as far as a point of it tells.
+/// True if one shape is a solid that contains the other; tests a single point of the other.
 [[nodiscard]] inline bool any_holds(const PartTraversal& parts, const PlacedShape& a,
                                     const PlacedShape& b) noexcept {
   return parts.holds(a, b) || parts.holds(b, a);
 }
 
-/// True if they share a point of what they are made of; `part` is then one of b that does.
+/// True if the surfaces overlap; `part` is then a part of b that does.
 [[nodiscard]] inline bool do_parts_overlap(const PartTraversal& parts, const Pairing& pair,
                                            std::uint32_t& part) noexcept {
   bool found = false;
@@ -89,7 +90,7 @@ struct Pairing {
               [&](const ConvexPart& b, double) { return look(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
   };
-  // The box of a compound takes a look at all children.
+  // The box of a compound b would visit all its children; a single part a needs no such box.
   if (!pair.a.shape.is_composite()) {
     look_about({pair.a.shape, pair.a.pose}, 0.0);
   } else {
@@ -98,8 +99,8 @@ struct Pairing {
   return found;
 }
 
-/// True if they share a point; `part` is then one of b that does, or all of a solid that holds a,
-/// or that a holds.
+/// True if the shapes overlap; `part` is then a part of b that does, or kWholeShape if one is
+/// inside the other, a solid.
 [[nodiscard]] inline bool do_overlap(const PartTraversal& parts, const PlacedShape& first,
                                      const PlacedShape& second, std::uint32_t& part) noexcept {
   const Pairing pair(first, second);
@@ -108,12 +109,12 @@ struct Pairing {
   return any_holds(parts, pair.a, pair.b);
 }
 
-/// The closest parts of two shapes, no farther apart than a limit.
+/// Finds the closest parts of two shapes, within a limit.
 class ClosestParts {
  public:
   explicit ClosestParts(const PartTraversal& parts) noexcept : parts_(parts) {}
 
-  /// False if they are farther apart.
+  /// Returns false if the distance exceeds the limit.
   bool find(const PlacedShape& first, const PlacedShape& second, double limit,
             SceneDistance& answer) noexcept {
     const Pairing pair(first, second);
@@ -121,7 +122,7 @@ class ClosestParts {
     return find_parts(pair, held ? mid::kInfinity : limit, answer) &&
            (!held || is_within(limit, answer));
   }
-  /// The same for a part of nothing, such as a point.
+  /// As above, for a part that belongs to no shape, such as a point.
   bool find(ConvexPart first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
     double base[3] = {0.0, 0.0, 0.0};
     if (second.shape.is_composite()) {
@@ -144,7 +145,7 @@ class ClosestParts {
       return reach();
     };
     if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
-    // The box of a compound takes a look at all children.
+    // The box of a compound b would visit all its children; a single part a needs no such box.
     if (!pair.a.shape.is_composite()) {
       look_about({pair.a.shape, pair.a.pose}, pair.b);
     } else {
@@ -153,8 +154,8 @@ class ClosestParts {
     }
     return found_;
   }
-  /// Of one that a solid holds: apart from the surface is that deep below it. False if that is
-  /// beyond the limit.
+  /// For a shape inside a solid: turns the distance from the surface into a depth. Returns false if
+  /// it exceeds the limit.
   [[nodiscard]] static bool is_within(double limit, SceneDistance& answer) noexcept {
     if (answer.distance > 0.0) {
       answer.distance = -answer.distance;
@@ -168,7 +169,8 @@ class ClosestParts {
     answer_ = &answer;
     base_ = base;
   }
-  /// What no box can be nearer than; overlapping parts may be deeper than others.
+  /// Boxes beyond this are skipped. Never negative, because overlapping boxes may have parts of any
+  /// depth.
   [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
   double look_about(const ConvexPart& a, const PlacedShape& second) noexcept {
     parts_.near(second, parts_.box(a), reach(), [&](const ConvexPart& b, double) {

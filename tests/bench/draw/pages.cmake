@@ -1,9 +1,9 @@
-# What `winnow draw` says is in a picture is what a browser draws of it.
+# Compares the counts that `winnow draw` prints with the picture that a browser draws.
 # cmake -DWINNOW=<the tool> -DRECORD_PILE=<record_pile> -DWORK=<folder> -P pages.cmake
 #
-# Opens each page in headless Chromium with a software renderer and asks the page how much went to
-# the graphics card, how many pixels came back coloured, and what comes of switching layers and of
-# pointing at an object.
+# Opens each page in headless Chromium with a software renderer. The page reports how much it sent
+# to the graphics card, how many pixels are coloured, and how the picture changes when layers are
+# switched and an object is pointed at.
 cmake_minimum_required(VERSION 3.25)
 
 include(${CMAKE_CURRENT_LIST_DIR}/../browser.cmake)
@@ -25,17 +25,16 @@ function(draw name)
   endif()
 endfunction()
 
-# open(<name of the page> <variable>): the page's report of itself.
+# open(<name of the page> <variable>): returns the report that the page writes.
 function(open name report)
   look(${WORK}/${name}.html page)
   if(NOT page MATCHES "id=\"report\">([^<]+)<")
-    message(FATAL_ERROR "${name}: the page says nothing of itself")
+    message(FATAL_ERROR "${name}: the page contains no report")
   endif()
   set(${report} "${CMAKE_MATCH_1}" PARENT_SCOPE)
 endfunction()
 
-# expect_same(<name> <what was drawn> <what the tool counted>): every number of the counts that
-# tells of something drawn.
+# expect_same(<name> <drawn> <counts>): compares all numbers that both the page and the tool report.
 function(expect_same name drawn counts)
   foreach(key objects_drawn pairs_drawn contacts structure_lines rays rays_that_hit ray_hits boxes inside
               crossing)
@@ -56,7 +55,7 @@ function(expect_same name drawn counts)
   endif()
 endfunction()
 
-# expect_picture(<name> <report>): not blank, and no error on the way.
+# expect_picture(<name> <report>): fails if the picture is blank or the page reports an error.
 function(expect_picture name report)
   string(JSON errors GET "${report}" errors)
   string(JSON complaints LENGTH "${report}" errors)
@@ -93,7 +92,7 @@ check(strips pile --objects 600 --frame 2 --partition SweepAndPrune ${questions}
 check(tree mixed --objects 1000 --partition LinearBvh --max-depth 1 --max-objects 300 ${questions})
 check(plain wall --objects 200 --partition NSquared)
 
-# Frames that are played.
+# Checks frames that are played in sequence.
 check(played respawn --objects 300 --frame 2 --frames 12 --partition HierarchicalGrid ${questions})
 open(played report)
 string(JSON frames GET "${report}" frames)
@@ -102,7 +101,7 @@ if(NOT frames EQUAL 12 OR NOT wrong EQUAL 0)
   message(FATAL_ERROR "played: ${frames} frames of 12, ${wrong} of them are not what was drawn")
 endif()
 
-# What a program recorded of a scene: contacts in each frame.
+# Checks the contacts in each frame of a recording that a program made of a scene.
 execute_process(COMMAND ${RECORD_PILE} ${WORK}/pile.winnow RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "the program was not recorded")
@@ -118,18 +117,18 @@ endif()
 
 check(one uniform --objects 1 --partition BoundsNSquared)
 if(NOT pointed_at MATCHES "^row0client data0from.*overlaps rowsnone$")
-  message(FATAL_ERROR "one: pointing at the object says '${pointed_at}'")
+  message(FATAL_ERROR "one: pointing at the object shows '${pointed_at}'")
 endif()
 
-# The same question gives the same bytes.
+# Equal arguments give equal bytes.
 draw(again uniform --objects 400 --frame 3 --partition FlatGrid --labels ${questions})
 file(SHA256 ${WORK}/grid.html first)
 file(SHA256 ${WORK}/again.html second)
 if(NOT first STREQUAL second)
-  message(FATAL_ERROR "two pages of the same picture differ")
+  message(FATAL_ERROR "two pages of one picture differ")
 endif()
 
-# Plots: those of a simulation, drawn within their axes.
+# Checks that the plots of a simulation are drawn within their axes.
 execute_process(
   COMMAND ${WINNOW} simulate --objects 40 --steps 100 --threads 1 --out ${WORK}/flow.html
   RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE error)

@@ -1,4 +1,4 @@
-// Records some frames of a scene of boxes and balls that lie on each other.
+// Records some frames of a scene of boxes and balls that rest on each other. Run by pages.cmake.
 
 #include <winnow/pipeline/recording.h>
 

@@ -1,4 +1,4 @@
-// `winnow compare`: what it calls worse, better, noise and other pairs, and how it ends.
+// Tests of `winnow compare`: its verdicts (worse, better, noise, other pairs) and its exit status.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@ struct Times {
   int samples = 11;
 };
 
-/// A report of one row, which a test changes.
+/// Returns a report of one row, which the tests modify.
 Json report() {
   return Json::parse(R"({"format": "winnow report 1", "complete": true,
     "machine": {"processor": "some", "cores": 2, "isa": "wide", "reference_sweep_ms": 20.0},
@@ -55,7 +55,7 @@ struct Outcome {
   int status = -1;
   Json found;
 
-  /// Of the only value that both have.
+  /// Returns the verdict on the only value that both reports have.
   [[nodiscard]] std::string verdict() const {
     return found["changes"].size() == 1 ? found["changes"][0]["verdict"].get<std::string>()
                                         : "not one change";
@@ -63,7 +63,7 @@ struct Outcome {
   [[nodiscard]] double ratio() const { return found["changes"][0]["ratio"]; }
 };
 
-/// Runs the tool on two files of these texts.
+/// Runs the tool on two files with these texts.
 Outcome compared(const std::string& before, const std::string& after,
                  const std::string& options = "") {
   const auto folder =
@@ -90,7 +90,7 @@ Outcome compared_ms(const Times& before, const Times& after, const std::string& 
   return compared(with("frame_ms", value(before)), with("frame_ms", value(after)), options);
 }
 
-TEST(Compare, finds_nothing_in_a_report_and_itself) {
+TEST(Compare, equal_reports_have_no_difference) {
   Json both = with("frame_ms", value({1.0, 1.1, 1.2}));
   row(both)["fingerprint"] = "0123";
   const Outcome outcome = compared(both, both);
@@ -99,7 +99,7 @@ TEST(Compare, finds_nothing_in_a_report_and_itself) {
   EXPECT_EQ(outcome.found["summaries"][0]["geometric_mean"], 1.0);
 }
 
-TEST(Compare, calls_a_time_worse_if_all_of_its_samples_are) {
+TEST(Compare, time_is_worse_if_all_samples_are) {
   const Outcome outcome = compared_ms({1.0, 1.1, 1.2}, {1.4, 1.5, 1.6});
   EXPECT_EQ(outcome.verdict(), "worse");
   EXPECT_NEAR(outcome.ratio(), 1.5 / 1.1, 1e-12);
@@ -109,18 +109,18 @@ TEST(Compare, calls_a_time_worse_if_all_of_its_samples_are) {
   EXPECT_EQ(reverse.status, 0);
 }
 
-TEST(Compare, calls_it_noise_if_the_best_sample_has_not_changed) {
+TEST(Compare, time_is_noise_if_the_best_sample_stays) {
   const Outcome outcome = compared_ms({1.0, 1.1, 1.2}, {1.0, 1.5, 3.0});
   EXPECT_EQ(outcome.verdict(), "noise");
   EXPECT_EQ(outcome.status, 0);
 }
 
-TEST(Compare, calls_it_noise_if_few_samples_were_taken) {
+TEST(Compare, few_samples_are_noise) {
   EXPECT_EQ(compared_ms({1.0, 1.1, 1.2}, {1.4, 1.5, 1.6, 4}).verdict(), "noise");
   EXPECT_EQ(compared(with("frame_ms", 1.0), with("frame_ms", 2.0)).verdict(), "noise");
 }
 
-TEST(Compare, lets_no_time_of_a_quick_report_count) {
+TEST(Compare, times_of_a_quick_report_are_noise) {
   Json quick = with("frame_ms", value({1.4, 1.5, 1.6}));
   quick["settings"]["quick"] = true;
   const Outcome outcome = compared(with("frame_ms", value({1.0, 1.1, 1.2})), quick);
@@ -128,27 +128,27 @@ TEST(Compare, lets_no_time_of_a_quick_report_count) {
   EXPECT_FALSE(outcome.found["remarks"].empty());
 }
 
-TEST(Compare, takes_the_threshold_that_it_is_given) {
+TEST(Compare, threshold_given_by_option_decides) {
   EXPECT_EQ(compared_ms({1.0, 1.01, 1.02}, {1.08, 1.09, 1.1}).verdict(), "same");
   EXPECT_EQ(compared_ms({1.0, 1.01, 1.02}, {1.08, 1.09, 1.1}, "--threshold 1.05").verdict(),
             "worse");
   EXPECT_EQ(compared_ms({1.0, 1.1, 1.2}, {1.4, 1.5, 1.6}, "--threshold 1.5").verdict(), "same");
 }
 
-TEST(Compare, knows_that_more_of_a_rate_is_better) {
+TEST(Compare, lower_rate_is_worse) {
   const Outcome outcome =
       compared(with("rate", value({10.0, 11.0, 12.0})), with("rate", value({5.0, 5.5, 6.0})));
   EXPECT_EQ(outcome.verdict(), "worse");
   EXPECT_NEAR(outcome.ratio(), 2.0, 1e-12);
 }
 
-TEST(Compare, takes_bytes_and_errors_as_they_are) {
+TEST(Compare, bytes_are_compared_with_a_fixed_threshold) {
   EXPECT_EQ(compared(with("bytes", 100), with("bytes", 120)).verdict(), "worse");
   EXPECT_EQ(compared(with("bytes", 100), with("bytes", 105)).verdict(), "same");
   EXPECT_EQ(compared(with("bytes", 120), with("bytes", 100)).verdict(), "better");
 }
 
-TEST(Compare, calls_an_error_worse_as_soon_as_it_is_not_zero) {
+TEST(Compare, any_error_above_zero_is_worse) {
   const Outcome outcome = compared(with("worst_error", 0.0), with("worst_error", 1e-17));
   EXPECT_EQ(outcome.verdict(), "worse");
   EXPECT_EQ(outcome.status, 1);
@@ -156,19 +156,19 @@ TEST(Compare, calls_an_error_worse_as_soon_as_it_is_not_zero) {
   EXPECT_EQ(compared(with("worst_error", 1e-3), with("worst_error", 0.0)).verdict(), "better");
 }
 
-TEST(Compare, does_not_compare_what_has_no_better_way) {
+TEST(Compare, value_without_a_direction_is_not_compared) {
   const Outcome outcome = compared(with("pairs", 5), with("pairs", 50));
   EXPECT_TRUE(outcome.found["changes"].empty());
   EXPECT_EQ(outcome.status, 0);
 }
 
-TEST(Compare, fails_if_the_same_command_found_other_pairs) {
+TEST(Compare, other_pairs_from_one_command_fail) {
   const Outcome outcome = compared(with("fingerprint", "01"), with("fingerprint", "02"));
   EXPECT_EQ(outcome.found["other_pairs"].size(), 1U);
   EXPECT_EQ(outcome.status, 1);
 }
 
-TEST(Compare, does_not_hold_other_questions_against_other_pairs) {
+TEST(Compare, other_settings_may_have_other_pairs) {
   Json other_seed = with("fingerprint", "02");
   other_seed["settings"]["seed"] = 2;
   EXPECT_EQ(compared(with("fingerprint", "01"), other_seed).status, 0);
@@ -177,7 +177,7 @@ TEST(Compare, does_not_hold_other_questions_against_other_pairs) {
   EXPECT_EQ(compared(with("fingerprint", "01"), other_command).status, 0);
 }
 
-TEST(Compare, says_which_settings_differ) {
+TEST(Compare, settings_that_differ_are_named) {
   Json other = report();
   other["settings"]["objects"] = {100, 200};
   const Outcome outcome = compared(report(), other);
@@ -185,7 +185,7 @@ TEST(Compare, says_which_settings_differ) {
   EXPECT_NE(outcome.found["remarks"][0].get<std::string>().find("objects"), std::string::npos);
 }
 
-TEST(Compare, counts_neither_other_libraries_nor_values_made_from_other_rows) {
+TEST(Compare, other_libraries_and_derived_values_are_not_counted) {
   for (const bool derived : {false, true}) {
     Json before = with("bytes", 100);
     Json after = with("bytes", 200);
@@ -202,14 +202,14 @@ TEST(Compare, counts_neither_other_libraries_nor_values_made_from_other_rows) {
   }
 }
 
-TEST(Compare, counts_what_was_measured_in_a_row_that_has_a_value_made_from_others) {
+TEST(Compare, measured_value_beside_a_derived_one_is_counted) {
   Json before = with("bytes", 100);
   Json after = with("bytes", 200);
   for (Json* report : {&before, &after}) row(*report)["from"] = {{{"value", "share"}}};
   EXPECT_EQ(compared(before, after).status, 1);
 }
 
-TEST(Compare, counts_rows_that_only_one_has) {
+TEST(Compare, rows_in_only_one_report_are_counted) {
   Json more = with("bytes", 100);
   more["tables"][0]["rows"].push_back({{"id", "speed/Tree"}, {"who", "Tree"}, {"bytes", 1}});
   const Outcome outcome = compared(with("bytes", 100), more);
@@ -219,7 +219,7 @@ TEST(Compare, counts_rows_that_only_one_has) {
   EXPECT_EQ(compared(with("bytes", 100), report()).found["values_gone"], 1);
 }
 
-TEST(Compare, scales_times_if_the_machines_differ) {
+TEST(Compare, times_of_different_machines_are_scaled) {
   Json slow = with("frame_ms", value({2.0, 2.2, 2.4}));
   row(slow)["bytes"] = 100;
   slow["machine"] = {
@@ -237,7 +237,7 @@ TEST(Compare, scales_times_if_the_machines_differ) {
   EXPECT_EQ(compared(fast, slow, "--scale on").found["scale"], 2.0);
 }
 
-TEST(Compare, ends_with_two_if_a_file_is_no_report) {
+TEST(Compare, file_that_is_no_report_ends_with_two) {
   const std::string good = report().dump();
   EXPECT_EQ(compared(good, good).status, 0);
   std::vector<Json> wrong(6, with("frame_ms", value({1.0, 1.1, 1.2})));

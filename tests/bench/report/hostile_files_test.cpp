@@ -1,4 +1,4 @@
-// Files that anybody may have written: the tool says what is wrong with which, and ends with 2.
+// Invalid input files from any source: the tool names the file and its fault, and exits with 2.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -24,7 +24,7 @@ class HostileFiles : public testing::Test {
   HostileFiles(const HostileFiles&) = delete;
   HostileFiles& operator=(const HostileFiles&) = delete;
 
-  /// Runs the tool on a file of this text; FILE stands for it.
+  /// Runs the tool on a file with this text; FILE in the arguments is replaced by its path.
   Ending run(std::string arguments, const std::string& text) {
     const std::string file = (folder_ / "given.json").string();
     std::ofstream(file) << text;
@@ -53,7 +53,7 @@ class HostileFiles : public testing::Test {
 const char* const kCommands[] = {"query FILE", "query --judge FILE", "compare FILE FILE",
                                  "report --from FILE --out /nowhere"};
 
-TEST_F(HostileFiles, are_refused_if_they_are_no_json) {
+TEST_F(HostileFiles, invalid_json_is_refused) {
   for (const char* command : kCommands) {
     for (const char* text : {"", "[", "[1,]", "{\"a\":}", "\xFF", "[\"\xC0\x80\"]", "nul"}) {
       expect_refused(command, text);
@@ -61,7 +61,7 @@ TEST_F(HostileFiles, are_refused_if_they_are_no_json) {
   }
 }
 
-TEST_F(HostileFiles, are_refused_if_they_are_nested_without_end) {
+TEST_F(HostileFiles, deeply_nested_json_is_refused) {
   for (const std::size_t depth : {201U, 100'000U}) {
     const std::string open(depth, '[');
     const std::string close(depth, ']');
@@ -73,13 +73,13 @@ TEST_F(HostileFiles, are_refused_if_they_are_nested_without_end) {
   }
 }
 
-TEST_F(HostileFiles, with_brackets_in_texts_are_read) {
+TEST_F(HostileFiles, brackets_in_strings_are_read) {
   const Ending ending = run("query FILE", "[{\"id\":\"\\\"" + std::string(1000, '[') + "\"}]");
   EXPECT_EQ(ending.status, 0) << ending.said;
 }
 
-// Each is wrong in another place; none may be followed to where nothing is.
-TEST_F(HostileFiles, of_hard_cases_are_judged_or_refused) {
+// Each question is wrong in another place, and none may lead to a read out of bounds.
+TEST_F(HostileFiles, wrong_hard_cases_are_judged_or_refused) {
   const std::string a = R"("id": 1, "a": {"type": "sphere", "radius": 1, "half": [1], "v": [[]]})";
   const std::string b = R"("b": {"type": "triangle", "v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]})";
   const std::string ray = R"("id": 1, "ray": {"origin": [0, 0, 9], "direction": [0, 0, -1]})";

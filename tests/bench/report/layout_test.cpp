@@ -1,4 +1,5 @@
-// What a layout makes of rows, and that the report's own names only what there is.
+// Tables and plots that a layout makes of rows. The report's own layout names only existing
+// columns.
 
 #include "bench/report/layout.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 using namespace winnow::bench;
 
-/// Two engines on two scenes; Tree has no row on "wall".
+/// Rows of two engines on two scenes; Tree has no row on "wall".
 Results some_results() {
   Results results;
   results.declare({"speed",
@@ -42,7 +43,7 @@ std::vector<Part> shown_of(const std::string& block) {
   return parts_of(some_results(), Json::parse(block), "p");
 }
 
-/// Rows of a table, cells joined by "|", the best with a star.
+/// Returns the rows of a table: cells are joined by "|", the best cell has a star.
 std::string text_of(const CellTable& table) {
   std::string text = table.caption + ":";
   for (const std::string& head : table.header) text += " " + head;
@@ -54,14 +55,14 @@ std::string text_of(const CellTable& table) {
   return text;
 }
 
-TEST(ALayout, shows_one_value_by_two_keys_and_marks_the_best_of_each_column) {
+TEST(ALayout, pivot_marks_the_best_of_each_column) {
   const auto parts = shown_of(R"({"pivot": "speed engine scene ms"})");
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(text_of(parts[0].table), "frame, ms: engine pile wall\nGrid|2.00|3.00\nTree|1.00*|-");
   EXPECT_EQ(parts[0].table.rows[0][1].row, "speed/pile/2000/Grid/1");
 }
 
-TEST(ALayout, repeats_a_block_for_each_key_and_fills_it_in) {
+TEST(ALayout, each_repeats_a_block_for_every_key) {
   const auto parts = shown_of(R"({"each": {"scene": "speed", "objects": "speed max"},
       "rows": "speed", "columns": ["engine", "threads", "ms"], "caption": "{scene}, {objects}"})");
   ASSERT_EQ(parts.size(), 2U);
@@ -70,7 +71,7 @@ TEST(ALayout, repeats_a_block_for_each_key_and_fills_it_in) {
   EXPECT_EQ(text_of(parts[1].table), "wall, 2,000: engine threads frame, ms\nGrid|1|3.00");
 }
 
-TEST(ALayout, joins_rows_of_other_tables_and_makes_one_row_of_several) {
+TEST(ALayout, columns_join_other_tables_and_several_rows) {
   const auto parts = shown_of(R"({"rows": "speed", "once": ["scene"], "columns": ["scene",
       {"all": "engine", "label": "by"}, {"of": "size", "value": "bytes"}]})");
   ASSERT_EQ(parts.size(), 1U);
@@ -78,7 +79,7 @@ TEST(ALayout, joins_rows_of_other_tables_and_makes_one_row_of_several) {
             ": scene by memory, bytes\npile|Grid, Tree|12.5\nwall|Grid|12.5");
 }
 
-TEST(ALayout, draws_a_series_for_each_engine_with_its_spread) {
+TEST(ALayout, plot_has_one_series_for_each_engine) {
   const auto parts = shown_of(R"({"where": {"scene": "pile"}, "plot": "speed engine objects ms",
       "front": true})");
   ASSERT_EQ(parts.size(), 1U);
@@ -91,7 +92,7 @@ TEST(ALayout, draws_a_series_for_each_engine_with_its_spread) {
   EXPECT_EQ(plot.series[2].points[0].row, "speed/pile/2000/Tree/1");
 }
 
-TEST(ALayout, leaves_out_headings_of_what_shows_nothing) {
+TEST(ALayout, heading_of_an_empty_block_is_left_out) {
   EXPECT_TRUE(shown_of(R"({"heading": "h", "text": "t", "pivot": "none a b c"})").empty());
   EXPECT_TRUE(shown_of(R"({"heading": "h", "show": [{"text": "t"}, {"rows": "none"}]})").empty());
   const auto parts = shown_of(R"({"heading": "h", "rows": "size", "command": "speed",
@@ -101,7 +102,7 @@ TEST(ALayout, leaves_out_headings_of_what_shows_nothing) {
   EXPECT_EQ(parts[2].text, "bench/run speed");
 }
 
-/// Names that a block of the report's layout asks rows for, and that they do not have.
+/// Collects the names that a block of the report's layout uses and the rows do not have.
 class Unknown {
  public:
   explicit Unknown(const Json& document) : document_(document) {}
@@ -160,7 +161,7 @@ class Unknown {
   }
 };
 
-TEST(ALayout, of_the_report_names_only_what_its_tables_have) {
+TEST(ALayout, report_layout_names_only_existing_columns) {
   const Results whole =
       read_results((std::filesystem::path(WINNOW_REPORTS) / "whole/results.json").string());
   Unknown unknown(whole.document());

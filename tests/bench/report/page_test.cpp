@@ -1,5 +1,5 @@
-// What `winnow report` wrote, as make_reports left it: the page, the document and the CSVs say the
-// same, and what was ended half-way is a report of what had been measured.
+// Tests of the reports that make_reports has written: the page, the document and the CSVs have
+// equal values, and a report that was ended half-way contains all rows measured until then.
 
 #include "bench/report/trace.h"
 
@@ -35,14 +35,14 @@ std::size_t rows_in(const Json& document) {
   return rows;
 }
 
-/// Without Chart.js there is no page.
+/// Without Chart.js `winnow report` writes no page.
 bool has_page(const std::string& report) {
   return std::filesystem::exists(kReports / report / "index.html");
 }
 
 class Reports : public testing::TestWithParam<const char*> {};
 
-TEST_P(Reports, show_no_number_that_is_not_that_of_its_row) {
+TEST_P(Reports, numbers_on_the_page_match_their_rows) {
   if (!has_page(GetParam())) GTEST_SKIP() << "no page without Chart.js";
   const std::string page = text_of(kReports / GetParam() / "index.html");
   const Trace trace = winnow::bench::trace_page(page, document_of(GetParam()));
@@ -53,7 +53,7 @@ TEST_P(Reports, show_no_number_that_is_not_that_of_its_row) {
   }
 }
 
-TEST_P(Reports, need_no_network) {
+TEST_P(Reports, page_loads_nothing_from_the_network) {
   if (!has_page(GetParam())) GTEST_SKIP() << "no page without Chart.js";
   const std::string page = text_of(kReports / GetParam() / "index.html");
   for (const char* from : {"src=\"", "<link", "@import", "url(http", "fetch(\""}) {
@@ -61,7 +61,7 @@ TEST_P(Reports, need_no_network) {
   }
 }
 
-TEST_P(Reports, have_all_rows_in_their_csvs) {
+TEST_P(Reports, csvs_have_all_rows) {
   std::size_t rows = 0;
   const Json document = document_of(GetParam());
   for (const Json& table : document["tables"]) {
@@ -76,14 +76,14 @@ TEST_P(Reports, have_all_rows_in_their_csvs) {
 INSTANTIATE_TEST_SUITE_P(, Reports, testing::Values("whole", "killed", "interrupted"),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST(AReport, says_of_each_section_that_it_was_measured) {
+TEST(AReport, whole_report_has_all_steps_done) {
   const Json document = document_of("whole");
   EXPECT_TRUE(document["complete"].get<bool>());
   EXPECT_EQ(document["problems"], Json::array());
   for (const Json& section : document["sections"]) EXPECT_EQ(section["done"], section["steps"]);
 }
 
-/// The html of each section on a page by its id.
+/// Returns the HTML of each section of a page by its id.
 std::map<std::string, std::string> sections_of(const std::string& page) {
   std::map<std::string, std::string> sections;
   for (std::size_t at = 0; at != std::string::npos;) {
@@ -95,7 +95,7 @@ std::map<std::string, std::string> sections_of(const std::string& page) {
   return sections;
 }
 
-TEST(AReport, has_a_plot_a_table_and_a_command_in_each_section) {
+TEST(AReport, each_section_has_plot_table_and_command) {
   if (!has_page("whole")) GTEST_SKIP() << "no page without Chart.js";
   const auto sections = sections_of(text_of(kReports / "whole" / "index.html"));
   for (const Json& section : document_of("whole")["sections"]) {
@@ -108,7 +108,7 @@ TEST(AReport, has_a_plot_a_table_and_a_command_in_each_section) {
   }
 }
 
-TEST(AReport, says_which_libraries_it_lacks) {
+TEST(AReport, missing_libraries_are_named) {
   const Json document = document_of("whole");
   ASSERT_FALSE(document["missing"].empty());
   const auto what = document["missing"][0].get<std::string>();
@@ -117,7 +117,7 @@ TEST(AReport, says_which_libraries_it_lacks) {
   EXPECT_NE(text_of(kReports / "whole" / "index.html").find(what), std::string::npos);
 }
 
-TEST(AReport, has_a_command_in_each_row_that_was_measured) {
+TEST(AReport, each_measured_row_has_a_command) {
   for (const Json& table : document_of("whole")["tables"]) {
     for (const Json& row : table["rows"]) {
       if (row.contains("from")) continue;
@@ -126,7 +126,7 @@ TEST(AReport, has_a_command_in_each_row_that_was_measured) {
   }
 }
 
-/// Fields of RFC 4180.
+/// Splits a CSV into its fields (RFC 4180).
 std::vector<std::vector<std::string>> fields_of(const std::string& csv) {
   std::vector<std::vector<std::string>> lines{{""}};
   bool quoted = false;
@@ -149,7 +149,7 @@ std::vector<std::vector<std::string>> fields_of(const std::string& csv) {
   return lines;
 }
 
-/// The value of a CSV's column in a row of the document, null if it has none.
+/// Returns the value of a CSV column in a row of the document, or null.
 Json value_at(const Json& row, const std::string& head) {
   if (row.contains(head)) return row[head].is_object() ? Json() : row[head];
   for (const std::string part : {"min", "median", "max"}) {
@@ -160,7 +160,7 @@ Json value_at(const Json& row, const std::string& head) {
   return nullptr;
 }
 
-TEST(AReport, has_the_same_values_in_csvs) {
+TEST(AReport, csvs_have_the_values_of_the_document) {
   std::size_t values = 0;
   const Json document = document_of("whole");
   for (const Json& table : document["tables"]) {
@@ -188,7 +188,7 @@ TEST(AReport, has_the_same_values_in_csvs) {
 
 class HalfReports : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(HalfReports, keep_what_was_measured) {
+TEST_P(HalfReports, report_ended_half_way_keeps_its_rows) {
   const auto& [report, status] = GetParam();
   EXPECT_EQ(text_of(kReports / (std::string(report) + ".status")), status);
   const Json document = document_of(report);
@@ -197,14 +197,14 @@ TEST_P(HalfReports, keep_what_was_measured) {
   EXPECT_LT(rows_in(document), rows_in(document_of("whole")));
 }
 
-TEST_P(HalfReports, say_on_the_page_how_far_they_got) {
+TEST_P(HalfReports, page_of_half_a_report_shows_its_progress) {
   const std::string report = GetParam().first;
   if (!has_page(report)) GTEST_SKIP() << "no page without Chart.js";
   EXPECT_NE(text_of(kReports / report / "index.html").find("This report is not complete: "),
             std::string::npos);
 }
 
-TEST_P(HalfReports, give_the_same_page_again) {
+TEST_P(HalfReports, page_made_again_is_identical) {
   const std::string report = GetParam().first;
   if (!has_page(report)) GTEST_SKIP() << "no page without Chart.js";
   EXPECT_TRUE(text_of(kReports / report / "index.html") ==
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(, HalfReports,
                                          std::pair("interrupted", "130\n")),
                          [](const auto& test) { return std::string(test.param.first); });
 
-/// The trace itself: a page of one table and one plot, and what is wrong with it.
+/// Traces a page with one table and one plot and returns its faults.
 std::vector<std::string> wrong_with(const std::string& cells, const std::string& point) {
   const Json document = Json::parse(R"({"tables": [{"name": "t", "keys": ["n"],
     "values": [{"name": "ms", "format": "number"}, {"name": "share", "format": "percent"}],
@@ -232,7 +232,7 @@ std::vector<std::string> wrong_with(const std::string& cells, const std::string&
   return winnow::bench::trace_page(page, document).wrong;
 }
 
-TEST(ATrace, finds_nothing_where_all_is_right) {
+TEST(ATrace, trace_of_a_correct_page_has_no_faults) {
   EXPECT_EQ(wrong_with("<td>1</td><td data-row=\"t/1\" data-value=\"ms\">2.35 (1.00 to 4.00)</td>",
                        R"({"x": 1, "y": 2.345, "row": "t/1", "low": 1.0, "high": 4.0})"),
             std::vector<std::string>());
@@ -241,7 +241,7 @@ TEST(ATrace, finds_nothing_where_all_is_right) {
             std::vector<std::string>());
 }
 
-TEST(ATrace, finds_each_wrong_figure) {
+TEST(ATrace, trace_finds_each_wrong_figure) {
   const std::string good = R"({"x": 1, "y": 2.345, "row": "t/1"})";
   for (const char* cells :
        {"<td data-row=\"t/1\" data-value=\"ms\">2.37</td>",

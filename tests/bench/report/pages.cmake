@@ -1,4 +1,5 @@
-# Pages of `winnow report`, whole and half, in a browser: no complaint, and every point is drawn.
+# Opens the pages of `winnow report`, whole and half, in a browser: none logs an error, and every
+# point is drawn.
 # cmake -DREPORTS=<folder of make_reports> -DWORK=<folder> -P pages.cmake
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../browser.cmake)
@@ -11,12 +12,12 @@ if(NOT EXISTS ${REPORTS}/whole/index.html)
 endif()
 file(MAKE_DIRECTORY ${WORK})
 
-# read_facts(<fact>...): what the page says of itself.
+# read_facts(<fact>...): reads the data attributes that the page sets.
 macro(read_facts)
   string(REGEX MATCH "<body[^>]*>" body "${page}")
   foreach(fact ${ARGN})
     if(NOT body MATCHES "data-${fact}=\"([^\"]*)\"")
-      message(FATAL_ERROR "${name}: the page does not say data-${fact}: ${body}")
+      message(FATAL_ERROR "${name}: the page has no data-${fact}: ${body}")
     endif()
     set(${fact} "${CMAKE_MATCH_1}")
   endforeach()
@@ -25,7 +26,7 @@ endmacro()
 foreach(name whole killed interrupted)
   look(${REPORTS}/${name}/index.html page all)
   read_facts(drawn wanted plots blank)
-  # A canvas for each plot; the library that draws spells the word otherwise.
+  # There is one canvas for each plot; Chart.js writes other spellings of the tag.
   string(REGEX MATCHALL "<canvas id=" canvases "${page}")
   list(LENGTH canvases expected)
   if(NOT drawn EQUAL wanted OR drawn EQUAL 0 OR NOT blank STREQUAL "" OR
@@ -35,7 +36,7 @@ foreach(name whole killed interrupted)
   message("${name}: ${body}")
 endforeach()
 
-# The answer stands on the first screen, wide or narrow, and nothing is wider than the page.
+# The answer is on the first screen, wide or narrow, and no element is wider than the page.
 foreach(size "1400;900" "360;800")
   list(GET size 0 width)
   list(GET size 1 height)

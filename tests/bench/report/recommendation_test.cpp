@@ -1,4 +1,4 @@
-// What a report recommends, from rows whose answer is plain to see.
+// Recommendations that a report makes from rows with an obvious answer.
 
 #include "bench/report/recommendation.h"
 
@@ -47,12 +47,12 @@ bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(ARecommendation, is_none_without_a_race) {
+TEST(ARecommendation, results_without_a_race_have_no_recommendation) {
   EXPECT_FALSE(recommend(empty_results()).has_value());
   EXPECT_FALSE(recommend(Results()).has_value());
 }
 
-TEST(ARecommendation, is_the_fastest_of_one_race) {
+TEST(ARecommendation, fastest_partition_of_one_race_is_recommended) {
   Results results = empty_results();
   add_race(results, "pile", {{"FlatGrid", 2.0}, {"LinearBvh", 1.0}, {"AutoPartition", 0.5}});
   const auto answer = recommend(results);
@@ -65,7 +65,7 @@ TEST(ARecommendation, is_the_fastest_of_one_race) {
   EXPECT_EQ(answer->others, "");
 }
 
-TEST(ARecommendation, loses_little_everywhere_rather_than_winning_often) {
+TEST(ARecommendation, small_loss_everywhere_beats_frequent_wins) {
   Results results = empty_results();
   add_race(results, "pile", {{"FlatGrid", 1.0}, {"LinearBvh", 1.1}});
   add_race(results, "wall", {{"FlatGrid", 1.0}, {"LinearBvh", 1.1}});
@@ -76,20 +76,20 @@ TEST(ARecommendation, loses_little_everywhere_rather_than_winning_often) {
   EXPECT_TRUE(says(answer->because, "in 1 of 3 races and at most 1.10 times")) << answer->because;
 }
 
-TEST(ARecommendation, leaves_out_what_did_not_run_everywhere) {
+TEST(ARecommendation, partition_with_missing_races_is_left_out) {
   Results results = empty_results();
   add_race(results, "pile", {{"FlatGrid", 2.0}, {"NSquared", 1.0}});
   add_race(results, "wall", {{"FlatGrid", 2.0}});
   EXPECT_EQ(recommend(results)->take, "FlatGrid");
 }
 
-TEST(ARecommendation, says_what_is_too_close_to_tell) {
+TEST(ARecommendation, partitions_too_close_to_rank_are_named) {
   Results results = empty_results();
   add_race(results, "pile", {{"FlatGrid", 1.0}, {"LinearBvh", 1.01}});
   EXPECT_TRUE(says(recommend(results)->next, "too close")) << recommend(results)->next;
 }
 
-TEST(ARecommendation, stands_beside_the_fastest_library_of_each_scene) {
+TEST(ARecommendation, fastest_library_of_each_scene_is_named) {
   Results results = empty_results();
   const std::string isa = results.document()["machine"]["isa"];
   for (const char* scene : {"pile", "wall"}) {

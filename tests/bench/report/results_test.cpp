@@ -1,5 +1,5 @@
-// `winnow results`: the documents' figures are those of a report, and nothing else of a readme is
-// touched.
+// Tests of `winnow results`: it writes the figures of a report into a readme and leaves all other
+// text of the readme unchanged.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -15,7 +15,7 @@ namespace {
 
 using TableJson = nlohmann::json;
 
-/// A readme and a report beside it, for as long as a test runs.
+/// A readme and a report in one folder, which is deleted after the test.
 class Documents : public testing::Test {
  protected:
   void SetUp() override {
@@ -24,7 +24,7 @@ class Documents : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Of one engine on two scenes and another on one.
+  /// Writes rows of one engine on two scenes and of another on one.
   void write_results(double ms) const {
     TableJson rows = TableJson::array();
     const auto add = [&](const char* scene, const char* engine, double median) {
@@ -83,15 +83,16 @@ class Documents : public testing::Test {
 
 constexpr const char* kEmpty = "before\n<!-- figures -->\nold\n<!-- end -->\nafter 1 2 3\n";
 
-TEST_F(Documents, show_the_medians_of_the_report) {
+TEST_F(Documents, readme_shows_the_medians_of_the_report) {
   write_readme(kEmpty);
   EXPECT_EQ(run(), 0);
   EXPECT_EQ(text("readme.md"),
             "before\n<!-- figures -->\n"
-            "One run of `bench/run --with-peers report` (unknown, unknown cores, wide, unknown).\n"
-            "Of other libraries, at their best settings, Embree uses all threads, and CGAL where "
-            "that is faster; the\nyardstick is a blocked sweep that keeps nothing from frame to "
-            "frame:\n\n"
+            "One run of `bench/run --with-peers report` (unknown, unknown cores, wide, commit "
+            "unknown).\n"
+            "Other libraries run at their best settings: Embree on all threads, CGAL too if that "
+            "is faster, the others on\none. The yardstick is a blocked sweep without state between "
+            "frames.\n\n"
             "| 10,000 objects, 1 thread | uniform | pile | most bytes |\n"
             "|---|---|---|---|\n"
             "| FlatGrid | 1.50 | 0.0571 | 102 |\n"
@@ -107,7 +108,7 @@ TEST_F(Documents, show_the_medians_of_the_report) {
             std::string::npos);
 }
 
-TEST_F(Documents, are_found_to_differ_from_another_report) {
+TEST_F(Documents, readme_that_differs_from_the_report_fails) {
   write_readme(kEmpty);
   EXPECT_EQ(run("--check"), 1);
   EXPECT_EQ(text("readme.md"), kEmpty);
@@ -117,14 +118,14 @@ TEST_F(Documents, are_found_to_differ_from_another_report) {
   EXPECT_EQ(run("--check"), 1);
 }
 
-TEST_F(Documents, are_left_alone_without_a_place_for_figures) {
+TEST_F(Documents, readme_without_markers_is_unchanged) {
   write_readme("no figures\n");
   EXPECT_EQ(run(), 0);
   EXPECT_EQ(text("readme.md"), "no figures\n");
   EXPECT_EQ(run("--check"), 0);
 }
 
-TEST_F(Documents, are_refused_if_a_place_has_no_end) {
+TEST_F(Documents, readme_with_an_unclosed_marker_is_refused) {
   write_readme("<!-- figures -->\nwithout an end\n");
   EXPECT_EQ(run(), 2);
   EXPECT_EQ(text("readme.md"), "<!-- figures -->\nwithout an end\n");

@@ -1,5 +1,5 @@
-# The site, built by its one command: every link leads somewhere, and in a browser no page logs
-# anything or is wider than the window, wide or narrow.
+# Builds the site with its one command and checks that every link has a target. In a browser no page
+# logs an error or is wider than the window, wide or narrow.
 # cmake -DROOT=<the tree> -DWORK=<folder> -P pages.cmake
 cmake_minimum_required(VERSION 3.25)
 find_program(mkdocs mkdocs)
@@ -17,11 +17,11 @@ if(NOT browser)
   return()
 endif()
 
-# look_at(<page> <width> <height>): as it stands there; what logs or sticks out ends the test.
+# look_at(<page> <width> <height>): opens a page; fails if it logs an error or is too wide.
 function(look_at name width height)
   look(${site}/${name}.html page check ${width} ${height})
   if(NOT page MATCHES "data-beyond=\"([^\"]*)\"")
-    message(FATAL_ERROR "${name}: the page does not say data-beyond")
+    message(FATAL_ERROR "${name}: the page has no data-beyond")
   endif()
   if(CMAKE_MATCH_1 GREATER 0)
     message(FATAL_ERROR "${name}: ${CMAKE_MATCH_1} beyond the right edge at ${width}")
@@ -41,10 +41,10 @@ endforeach()
 foreach(name index classwinnow_1_1Partition annotated)
   look(${site}/api/${name}.html page)
 endforeach()
-# The scene of page one, where there is one, has drawn frames.
+# If page one has a scene, the scene has drawn frames.
 look_at(index 1400 900)
 if(page MATCHES "<canvas" AND NOT page MATCHES "data-frames=\"[1-9]")
   message(FATAL_ERROR "index: the scene has drawn nothing")
 endif()
 list(LENGTH pages count)
-message("${count} pages looked at")
+message("${count} pages checked")

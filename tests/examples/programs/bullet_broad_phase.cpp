@@ -1,5 +1,5 @@
-// winnow as the broad phase of Bullet: a btBroadphaseInterface that any btCollisionWorld or
-// btDynamicsWorld takes, beside Bullet's own btDbvtBroadphase in the same world.
+// winnow as the broad phase of Bullet: a btBroadphaseInterface for any btCollisionWorld or
+// btDynamicsWorld, compared with Bullet's own btDbvtBroadphase in the same world.
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -25,8 +25,8 @@ winnow::Aabb box_of(const btVector3& low, const btVector3& high) {
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
-/// Bullet keeps what it asks about in proxies, and pairs in a cache that its dispatcher reads. A
-/// partition finds which pairs begin and end; only those touch the cache.
+/// Bullet stores its objects in proxies, and pairs in a cache that its dispatcher reads. A
+/// partition reports which pairs begin and end, and only these change the cache.
 class WinnowBroadPhase final : public btBroadphaseInterface {
  public:
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int /*shape_type*/,
@@ -39,7 +39,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
     check(partition_.insert(box_of(low, high), reinterpret_cast<std::uintptr_t>(proxy.get()),
                             key) == winnow::Status::ok,
           "a proxy is inserted");
-    // The same rule as Bullet's: each one's mask has a bit of the other's group.
+    // Bullet's rule: the mask of each object has a bit of the other object's group.
     check(partition_.set_filter(key, {.layers = static_cast<std::uint32_t>(group),
                                       .mask = static_cast<std::uint32_t>(mask)}) ==
               winnow::Status::ok,
@@ -83,7 +83,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
     send_moves();
     check(partition_.self_pairs(events_) == winnow::Status::ok, "pairs are found");
     for (const winnow::KeyPair& pair : events_.ended()) {
-      // Those of a proxy that is gone have left the cache with it.
+      // Pairs of a proxy that was destroyed have left the cache with it.
       if (!partition_.contains(pair.first) || !partition_.contains(pair.second)) continue;
       pairs_.removeOverlappingPair(proxy_of(pair.first.id), proxy_of(pair.second.id), dispatcher);
     }
@@ -95,8 +95,8 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
   btOverlappingPairCache* getOverlappingPairCache() override { return &pairs_; }
   const btOverlappingPairCache* getOverlappingPairCache() const override { return &pairs_; }
 
-  /// A ray, or where `low` and `high` are not zero a box that moves along it. Nearest first, so
-  /// that one whose callback has found a hit is done where boxes begin behind it.
+  /// Casts a ray or, if `low` and `high` are not zero, a box. Visits objects in the order of
+  /// distance, so that a callback that has found a hit stops at boxes that begin behind it.
   void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
                const btVector3& low, const btVector3& high) override {
     send_moves();
@@ -106,7 +106,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
     const btVector3 ahead = way / length;
     const winnow::BoxCast cast{
         box_of(from + low, from + high), {ahead.x(), ahead.y(), ahead.z()}, 0.0F, length};
-    check(partition_.all(cast, hits_) == winnow::Status::ok, "a ray is asked");
+    check(partition_.all(cast, hits_) == winnow::Status::ok, "a ray is cast");
     for (const winnow::Hit& hit : hits_) {
       if (hit.t > callback.m_lambda_max) break;
       callback.process(reinterpret_cast<const Proxy*>(hit.data));
@@ -116,7 +116,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
   void aabbTest(const btVector3& low, const btVector3& high,
                 btBroadphaseAabbCallback& callback) override {
     send_moves();
-    check(partition_.overlap(box_of(low, high), inside_) == winnow::Status::ok, "a box is asked");
+    check(partition_.overlap(box_of(low, high), inside_) == winnow::Status::ok, "a box is queried");
     for (const winnow::ObjectId id : inside_.ids()) callback.process(proxy_of(id));
   }
 
@@ -160,7 +160,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
   int last_id_ = 0;
 };
 
-/// A world of boxes that drift, with the broad phase that it is given.
+/// A world of boxes that drift, with the given broad phase.
 class World {
  public:
   World(btBroadphaseInterface& broad_phase, std::size_t count)
@@ -190,7 +190,7 @@ class World {
       body->getWorldTransform().getOrigin() += btVector3(by(random_), by(random_), by(random_));
     }
   }
-  /// What a step of Bullet does before it looks at shapes.
+  /// The first part of a Bullet step, before it tests shapes.
   void find_pairs() {
     world_.updateAabbs();
     world_.computeOverlappingPairs();
@@ -200,8 +200,8 @@ class World {
     bodies_.pop_back();
   }
 
-  /// Numbers of bodies whose boxes overlap; a cache may hold pairs that no longer do, and Bullet's
-  /// own does.
+  /// Returns the pairs of bodies whose boxes overlap; the cache may also contain pairs that no
+  /// longer overlap, as Bullet's own does.
   [[nodiscard]] std::set<std::pair<int, int>> pairs() const {
     std::set<std::pair<int, int>> found;
     const btOverlappingPairCache& cache = *broad_phase_.getOverlappingPairCache();
@@ -238,7 +238,8 @@ class World {
   std::vector<std::unique_ptr<btCollisionObject>> bodies_;
 };
 
-/// Bullet's own at its best: trees that are asked once a frame, not for each box that moves.
+/// Bullet's broad phase in its fastest setting: it searches its trees once a frame, not for each
+/// box that moves.
 struct BulletBroadPhase : btDbvtBroadphase {
   BulletBroadPhase() { m_deferedcollide = true; }
 };

@@ -1,5 +1,5 @@
-// The loop of a renderer: some objects move, then each camera says what it sees. Beside it the loop
-// over all boxes that programs begin with, six planes each.
+// The frame loop of a renderer: some objects move, then each camera collects its visible objects.
+// Compared with the usual loop over all boxes, which tests six planes each.
 
 #include <winnow/partitions/partition.h>
 
@@ -17,8 +17,8 @@
 
 namespace {
 
-/// The loop at its best: boxes in columns, nothing that depends on what is seen but the last line,
-/// so that compilers make it one of vectors.
+/// The fastest form of the loop: boxes in columns and no branch before the last line, so that
+/// compilers vectorise it.
 class CullingLoop {
  public:
   explicit CullingLoop(std::span<const winnow::Aabb> boxes) : is_seen_(boxes.size()) {
@@ -47,7 +47,7 @@ class CullingLoop {
   }
 
  private:
-  // Outside of a plane that faces inward is a box whose farthest corner along its normal is.
+  // A box is outside of an inward-facing plane if its farthest corner along the normal is.
   void cut(const winnow::Plane& plane) {
     const auto corner = [&](std::size_t axis) {
       const bool up = plane.normal[axis] > 0.0F;
@@ -86,7 +86,7 @@ class Town {
       boxes[i].max.x() += 0.1F;
     }
   }
-  /// The camera of frame i: it goes round above the town and looks ahead.
+  /// Returns the camera of frame i, which circles above the town and looks ahead.
   [[nodiscard]] winnow::Frustum camera(std::size_t i) const {
     const float angle = 0.02F * static_cast<float>(i);
     const winnow::Vec3f ahead(std::cos(angle), std::sin(angle), -0.2F);
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
       for (const std::uint32_t i : town.moving) loop.set(i, town.boxes[i]);
       loop.look(camera, expected);
     });
-    // The planes alone let pass what lies outside of all of them together but of none alone.
+    // The loop accepts boxes that are outside of the frustum but not outside of any single plane.
     check(seen.size() <= expected.size(), "winnow sees no more than the loop");
     check(10 * (expected.size() - seen.size()) <= expected.size(), "and hardly less");
   }

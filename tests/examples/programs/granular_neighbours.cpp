@@ -1,5 +1,5 @@
-// Grains of a dense packing that touch, in every step of a granular simulation, beside the list of
-// cells that such programs write themselves. Grains have all diameters between 0.5 and 1.
+// Touching grains of a dense packing, in every step of a granular simulation, compared with the
+// cell list that such programs usually contain. The diameters are between 0.5 and 1.
 
 #include <winnow/partitions/partition.h>
 
@@ -23,8 +23,8 @@ bool touch(const winnow::Sphere& a, const winnow::Sphere& b) {
   return (a.center - b.center).squared_norm() <= reach * reach;
 }
 
-/// Cells as wide as the largest grain, sorted by counting, each looked at with half of those
-/// around.
+/// Cells as wide as the largest grain, sorted by counting; each is tested with half of its
+/// neighbours.
 class CellList {
  public:
   CellList(float cell, float world) : cell_(cell), side_(static_cast<int>(world / cell) + 3) {
@@ -72,7 +72,7 @@ class CellList {
     const auto row = static_cast<std::size_t>(side_);
     const std::size_t layer = row * row;
     for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-      // The rest of this cell and the next one; then rows of three cells that follow each other.
+      // The rest of this cell and the next cell; then rows of three adjacent cells.
       test(i, i + 1, first_[cell + 2], pairs);
       for (const std::size_t middle :
            {cell + row, cell + layer - row, cell + layer, cell + layer + row}) {
@@ -97,7 +97,7 @@ class CellList {
   std::vector<std::uint32_t> number_;
 };
 
-/// Grains that tremble about their places.
+/// Grains that jitter about fixed positions.
 struct Packing {
   explicit Packing(std::size_t count) : side(std::cbrt(0.35F * static_cast<float>(count))) {
     std::uniform_real_distribution<float> place(0.0F, side);
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
       check(partition.self_pairs(pairs) == winnow::Status::ok, "pairs are found");
     });
     race.time("a plain cell list", [&] { cells.find(packing.grains, expected); });
-    // Spheres that miss each other by the rounding of a float may be among winnow's.
+    // winnow may report spheres whose gap is below the rounding of a float.
     const auto touching = std::ranges::count_if(pairs.pairs(), [&](const winnow::Pair& pair) {
       return touch(packing.grains[pair.first], packing.grains[pair.second]);
     });

@@ -1,6 +1,6 @@
-// winnow on a program's own allocator and job system. All memory comes from the one, all parallel
-// work runs on the other; frames that have no more of anything than earlier ones ask for no memory.
-// Beside it the same on the threads of oneTBB, and on one thread.
+// winnow on the allocator and the job system of a program. All memory comes from the allocator, all
+// parallel work runs on the job system, and frames that need no more than earlier frames do not
+// allocate. Compared with the threads of oneTBB and with one thread.
 
 #include <winnow/partitions/partition.h>
 
@@ -21,7 +21,7 @@
 
 namespace {
 
-/// A program's own allocator: here it counts, and hands out what the heap gives.
+/// The allocator of the program: counts requests and takes memory from the heap.
 class CountingMemory final : public std::pmr::memory_resource {
  public:
   std::size_t requests = 0;
@@ -42,7 +42,7 @@ class CountingMemory final : public std::pmr::memory_resource {
   }
 };
 
-/// A program's own job system: threads that wait for work, and the one that calls, which takes
+/// The job system of the program: threads that wait for work, and the calling thread, which takes
 /// part.
 class Jobs {
  public:
@@ -83,7 +83,7 @@ class Jobs {
     }
     wake_.notify_all();
     take_tasks(batch);
-    // Who has not come yet has nothing left to do; who is at work is waited for.
+    // Waits for the threads that are at work; other threads find no task left.
     std::unique_lock lock(mutex_);
     batch_ = {};
     done_.wait(lock, [&] { return working_ == 0; });
@@ -94,7 +94,7 @@ class Jobs {
   void work() {
     std::size_t seen = 0;
     for (;;) {
-      // Work often follows work: it is looked for a moment before sleep.
+      // Work often follows work, so a thread looks for it for a while before it sleeps.
       for (int look = 0; look < kLooks && number_ == seen; ++look) std::this_thread::yield();
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [&] { return stopping_ || number_ != seen; });
@@ -123,7 +123,7 @@ class Jobs {
   std::vector<std::jthread> workers_;
 };
 
-/// Boxes that fly through a world and come back at its other side.
+/// Boxes that fly through a periodic world.
 struct Boxes {
   explicit Boxes(std::size_t count) : side(std::cbrt(4.0F * static_cast<float>(count))) {
     std::uniform_real_distribution<float> place(0.0F, side);
@@ -145,7 +145,7 @@ struct Boxes {
   std::vector<winnow::Aabb> all;
 };
 
-/// A partition and what it answers, on some memory and some threads.
+/// A partition and its results, with given memory and threads.
 class Finder {
  public:
   Finder(const Boxes& boxes, const winnow::Execution& execution, std::pmr::memory_resource* memory)
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
               std::ranges::equal(own.pairs.pairs(), alone.pairs.pairs()),
           "all find the same pairs in the same order");
   }
-  check(own.bytes() == memory.bytes, "the footprint is what the allocator gave, to the byte");
+  check(own.bytes() == memory.bytes, "the footprint equals the allocated memory, to the byte");
   const std::size_t later = memory.requests - before;
   return race.finish("own allocator and job system: " + std::to_string(boxes.all.size()) +
                      " boxes, " + std::to_string(memory.bytes / boxes.all.size()) +

@@ -1,7 +1,6 @@
-// Projectiles, ships and shields: what a shot may hit in this step, exactly where it hits, and
-// which shots came into which shields and left them, as events. A shot's box is that of its whole
-// step, so that nothing is too fast. Beside it, where Bullet is installed, btDbvtBroadphase doing
-// the same without the events.
+// Projectiles, ships and shields: candidate hits of each shot in a step, the exact hits, and events
+// for shots that enter and leave shields. The box of a shot covers its whole step, so that no shot
+// is too fast. Compared, if Bullet is installed, with btDbvtBroadphase, which has no events.
 
 #include <winnow/partitions/partition.h>
 
@@ -25,7 +24,7 @@ namespace {
 
 enum Layer : std::uint32_t { kShip = 1, kShot = 2, kShield = 4 };
 
-/// Who meets whom: shots meet ships and shields, nobody meets their like.
+/// Shots collide with ships and shields; objects of one kind do not collide.
 winnow::ObjectFilter filter_of(Layer layer) {
   return {.layers = layer, .mask = layer == kShot ? kShip | kShield : kShot};
 }
@@ -36,7 +35,7 @@ struct Hit {
   friend auto operator<=>(const Hit&, const Hit&) = default;
 };
 
-/// Everything that flies: ships, then shields, then shots. All of it is balls but shots, which are
+/// All flying objects: ships, then shields, then shots. Ships and shields are balls, shots are
 /// segments.
 class Battle {
  public:
@@ -53,19 +52,19 @@ class Battle {
       boxes[i] = box_of(i);
     }
   }
-  /// Where the segment of a shot comes within a ship.
+  /// Returns whether the segment of a shot touches a ship.
   [[nodiscard]] bool hits(std::uint32_t shot, std::uint32_t ship) const {
     const winnow::Vec3f way = velocity_[shot];
     const winnow::Vec3f to_ship = position_[ship] - position_[shot];
     const float t = std::clamp(to_ship.dot(way) / way.squared_norm(), 0.0F, 1.0F);
     return (to_ship - t * way).squared_norm() <= radius_[ship] * radius_[ship];
   }
-  /// A shot that has hit, or has left, is fired again.
+  /// Fires a shot again that has hit or has left the world.
   void fire(std::uint32_t shot) {
     position_[shot] = any_place();
     boxes[shot] = box_of(shot);
   }
-  /// Shots that are gone after this step, each once.
+  /// Returns the shots that end with this step, each once.
   [[nodiscard]] std::vector<std::uint32_t> gone(std::span<const Hit> found) const {
     std::vector<std::uint32_t> shots;
     for (const Hit& hit : found) shots.push_back(hit.shot);
@@ -131,7 +130,7 @@ class WinnowFinder {
     }
     for (const winnow::KeyPair& pair : events_.begun()) count(battle, pair, entered);
     for (const winnow::KeyPair& pair : events_.ended()) {
-      // Whoever is gone has left, too: its key tells no number any more.
+      // A pair also ends if an object is removed; its key is then no longer valid.
       if (!partition_.contains(pair.first) || !partition_.contains(pair.second)) {
         ++gone;
       } else {
@@ -145,7 +144,7 @@ class WinnowFinder {
     add(battle, shot);
   }
 
-  /// Shots into and out of shields so far, and pairs that ended with a shot.
+  /// Number of shots that entered and left shields, and of pairs that ended with their shot.
   std::size_t entered = 0;
   std::size_t left = 0;
   std::size_t gone = 0;
@@ -233,7 +232,7 @@ class BulletFinder {
 };
 #endif
 
-/// Every shot against every ship.
+/// Tests every shot against every ship.
 std::vector<Hit> all_hits(const Battle& battle) {
   std::vector<Hit> hits;
   for (std::uint32_t shot = 0; shot < battle.boxes.size(); ++shot) {
@@ -264,7 +263,7 @@ int main(int argc, char** argv) {
     race.time("winnow, with events", [&] { winnow_finder.find_hits(battle, hits); });
     std::ranges::sort(hits);
     total += hits.size();
-    check(frame % 10 != 0 || hits == all_hits(battle), "hits are those of all pairs");
+    check(frame % 10 != 0 || hits == all_hits(battle), "hits equal the hits of all pairs");
 #if WINNOW_BESIDE_BULLET
     race.time("btDbvtBroadphase, without", [&] { bullet_finder.find_hits(battle, of_bullet); });
     std::ranges::sort(of_bullet);

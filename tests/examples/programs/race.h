@@ -11,18 +11,18 @@
 #include <utility>
 #include <vector>
 
-/// What a program and another way to do the same take, side by side in one run. Without arguments
-/// a program does little, for a test; with `--race` as much as its figure is about.
+/// Times a program and alternatives side by side in one run. Without arguments the program runs a
+/// small size, as a test; with `--race` it runs the size of its published figure.
 class Race {
  public:
   Race(int argc, char** argv) : full_(argc > 1 && std::strcmp(argv[1], "--race") == 0) {}
 
-  /// How much of something: in a test, and in a race.
+  /// The size of a problem, in a test and in a race.
   [[nodiscard]] std::size_t size(std::size_t test, std::size_t race) const {
     return full_ ? race : test;
   }
 
-  /// Does the work of one frame and notes what it took. Winnow's comes first in a program.
+  /// Runs the work of one frame and records its time. The first contender of a program is winnow.
   template <typename Work>
   void time(const std::string& who, Work&& work) {
     const auto begin = std::chrono::steady_clock::now();
@@ -32,7 +32,7 @@ class Race {
     of(who).milliseconds.push_back(taken.count());
   }
 
-  /// Prints the median frame of each. For `return` of main.
+  /// Prints the median frame of each contender. Returns the exit status for main.
   [[nodiscard]] int finish(const std::string& what) {
     std::printf("%s\n", what.c_str());
     for (Contender& one : contenders_) {

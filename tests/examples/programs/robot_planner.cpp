@@ -1,7 +1,7 @@
-// A robot planner's collision checker: of many configurations of an arm, which collide with the
-// cell that it works in? A planner that samples asks for thousands at a time: they go into one
-// scene together, each in an environment of its own, so that their pairs are answered side by side.
-// Beside it FCL's DynamicAABBTreeCollisionManager, where it is installed.
+// The collision checker of a robot planner: many configurations of an arm are tested against the
+// cell that it works in. A sampling planner tests thousands at a time: they go into one scene, each
+// in its own environment, and are answered together. Compared with FCL's
+// DynamicAABBTreeCollisionManager, if it is installed.
 
 #include <winnow/winnow.h>
 
@@ -31,7 +31,7 @@ constexpr double kLinkHalf = 0.12;
 using Configuration = std::array<double, kLinks>;
 using Links = std::array<Eigen::Isometry3d, kLinks>;
 
-/// Where the links of an arm are: capsules along z, joints about x and z in turn.
+/// Returns the poses of the links: capsules along z, with joints about x and z in turn.
 Links links_of(const Configuration& joints) {
   Links links;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
@@ -45,7 +45,7 @@ Links links_of(const Configuration& joints) {
   return links;
 }
 
-/// A cell with boxes all around the arm.
+/// A box of the cell around the arm.
 struct Box {
   Eigen::Vector3d half;
   Eigen::Isometry3d pose;
@@ -152,7 +152,7 @@ class FclChecker {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const Links links = links_of(batch[i]);
       bool found = false;
-      // A planner that asks one by one is done with the first link that collides.
+      // A planner that tests one configuration at a time stops at the first link that collides.
       for (std::size_t k = 0; k < kLinks && !found; ++k) {
         links_[k]->setTransform(links[k]);
         links_[k]->computeAABB();
@@ -175,7 +175,7 @@ class FclChecker {
 };
 #endif
 
-/// The same without any library: each link against each box.
+/// Baseline without a library: each link against each box.
 std::size_t count_near(std::span<const Box> cell, const Configuration& joints) {
   std::size_t near = 0;
   for (const Eigen::Isometry3d& link : links_of(joints)) {
@@ -215,7 +215,7 @@ int main(int argc, char** argv) {
     race.time("FCL, DynamicAABBTree", [&] { fcl_checker.check_all(batch, of_fcl); });
     std::size_t others = 0;
     for (std::size_t i = 0; i < batch.size(); ++i) others += collides[i] != of_fcl[i] ? 1 : 0;
-    check(others <= batch.size() / 500, "FCL agrees but for what is in touch");
+    check(others <= batch.size() / 500, "FCL agrees except for touching pairs");
 #endif
   }
   check(colliding != 0, "some configurations collide");

@@ -1,6 +1,6 @@
-// A thousand small worlds, as for learning: one scene holds all of them, each in an environment of
-// its own, and answers them together. Beside it a scene for each, and where it is installed a world
-// of Bullet for each.
+// A thousand small worlds, as in reinforcement learning: one scene holds all of them, each in its
+// own environment, and processes them together. Compared with one scene for each world and, if
+// Bullet is installed, one Bullet world for each.
 
 #include <winnow/winnow.h>
 
@@ -25,8 +25,7 @@ namespace {
 constexpr std::size_t kBodies = 24;
 constexpr double kHalf = 0.25;
 
-/// Where the bodies of all worlds are, a world's next to each other: spheres and cubes in turn, in
-/// a heap.
+/// The positions of the bodies of all worlds, world by world: spheres and cubes in turn, in a heap.
 class Heaps {
  public:
   explicit Heaps(std::size_t worlds) {
@@ -111,7 +110,7 @@ class BulletWorld {
     }
     world_.performDiscreteCollisionDetection();
   }
-  /// Pairs with a point that is not apart.
+  /// Returns the number of pairs with a touching point.
   [[nodiscard]] std::size_t touching() const {
     std::size_t count = 0;
     for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {

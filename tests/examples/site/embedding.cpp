@@ -1,4 +1,4 @@
-// Memory of one's own, memory that ends, boxes of doubles far away.
+// Custom memory, memory that runs out, and boxes far from the origin.
 
 #include <winnow/winnow.h>
 
@@ -19,11 +19,11 @@ int main() {
   // [own memory]
   std::pmr::unsynchronized_pool_resource arena;  // or your engine's: a std::pmr::memory_resource
   winnow::Partition partition(winnow::linear_bvh(), {.memory = &arena});
-  winnow::PairBuffer pairs(&arena);  // everything takes one
+  winnow::PairBuffer pairs(&arena);  // every class takes one
   partition.reserve(10'000, winnow::Pages::touched);
   partition.reserve_pairs(pairs, 20'000, winnow::Pages::touched);
-  partition.insert(boxes, {}, keys);  // asks the arena for nothing any more
-  partition.self_pairs(pairs);        // nor does this
+  partition.insert(boxes, {}, keys);                                 // does not allocate
+  partition.self_pairs(pairs);                                       // does not allocate either
   const std::size_t bytes = partition.footprint().total().reserved;  // exact, to the byte
   // [end]
   check(pairs.size() == 9999 && bytes > 10'000 * 24, "pairs are found, boxes are held");
@@ -42,9 +42,10 @@ int main() {
   // [far away]
   const winnow::Vec3d low(1e7, 2e7, 0), high(1e7 + 0.01, 2e7 + 0.01, 0.01);  // a centimetre
   const winnow::Vec3d here(1e7, 2e7, 0);                              // any point among the objects
-  const winnow::Aabb tight = winnow::Aabb::outward(low, high, here);  // measured from there
-  const winnow::Aabb coarse = winnow::Aabb::outward(low, high);  // right, but a metre and more wide
+  const winnow::Aabb tight = winnow::Aabb::outward(low, high, here);  // relative to this point
+  const winnow::Aabb coarse = winnow::Aabb::outward(low, high);  // correct, but over a metre wide
   // [end]
-  check(tight.max.x() - tight.min.x() < 0.011F, "measured from nearby, a centimetre is one");
+  check(tight.max.x() - tight.min.x() < 0.011F,
+        "relative to a near point, the box stays a centimetre wide");
   check(coarse.max.x() - coarse.min.x() >= 0.5F, "floats are a metre apart there");
 }

@@ -1,4 +1,4 @@
-// A bullet, layers, triggers.
+// A fast bullet, collision layers and triggers.
 
 #include <winnow/winnow.h>
 
@@ -32,7 +32,7 @@ int main() {
   winnow::SceneQueries ask(scene);
   // [projectile]
   const double step = 1.0 / 60.0;
-  winnow::SceneHit hit;  // 900 m/s: 15 m in a frame, and the wall has 2 mm
+  winnow::SceneHit hit;  // 900 m/s is 15 m in a frame; the wall is 2 mm thick
   ask.closest(winnow::ShapeCast{bullet, winnow::Pose::at(0, 0, 0), {900, 0, 0}, step}, hit,
               {.mask = level | players});
   if (hit) check(hit.t < step, "hit.t is the time, hit.point the place, hit.normal the side");

@@ -1,4 +1,4 @@
-// Grains: neighbours within a distance, kept from step to step.
+// Grains: neighbours within a distance, updated from step to step, and contacts.
 
 #include <winnow/winnow.h>
 
@@ -18,7 +18,7 @@ int main() {
 
   // [neighbours]
   winnow::Partition partition(winnow::hierarchical_grid(),
-                              {.volume = winnow::Volume::sphere,  // not the box around it
+                              {.volume = winnow::Volume::sphere,  // instead of bounding boxes
                                .margin = {.distance = 0.05F}});   // the skin of a Verlet list
   partition.insert(grains, {}, keys);
   winnow::PairBuffer neighbours;
@@ -29,8 +29,8 @@ int main() {
   const std::size_t before = neighbours.size();
   for (winnow::Sphere& grain : grains) grain.center.x() += 0.02F;
   // [a step]
-  partition.update(keys, grains);    // within the skin: nothing is stored, nothing is searched
-  partition.self_pairs(neighbours);  // brought up to date where a grain left its skin
+  partition.update(keys, grains);    // a move within the skin costs nothing
+  partition.self_pairs(neighbours);  // recomputes pairs of grains that left their skins
   // [end]
   check(neighbours.size() == before, "nobody has left");
 
@@ -39,14 +39,14 @@ int main() {
   shapes.add(winnow::SphereShape{0.5}, grain);
   winnow::Contacts contacts;
   // [contacts of grains]
-  winnow::Scene scene(shapes, {.margin = 0.06,         // contacts before they touch
-                               .carry_over = 0.002});  // what rests is not computed again
+  winnow::Scene scene(shapes, {.margin = 0.06,         // speculative contacts
+                               .carry_over = 0.002});  // keeps resting contacts
   std::vector<winnow::BodyDefinition> bodies;
   for (const winnow::Sphere& s : grains) {
     bodies.push_back({grain, winnow::Pose::at(s.center.x(), s.center.y(), s.center.z())});
   }
   scene.add(bodies, keys);
-  scene.collide(winnow::ContactLevel::distance, contacts);  // a distance and a normal suffice
+  scene.collide(winnow::ContactLevel::distance, contacts);  // distance and normal
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const double overlap = -contacts.distance()[i];
     check(overlap < 0.0, "they stand a twentieth apart");

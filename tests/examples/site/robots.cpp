@@ -1,4 +1,4 @@
-// A planner's questions about an arm of two links among obstacles.
+// A motion planner tests an arm of two links against obstacles.
 
 #include <winnow/winnow.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using Configuration = std::array<double, 2>;  // angles of the joints about z
 
-/// Where the middles of the two links stand; each is 1 long, along x when all angles are 0.
+/// Returns the poses of the link centres; each link is 1 long, along x if all angles are 0.
 std::array<winnow::Pose, 2> link_poses(const Configuration& q) {
   std::array<winnow::Pose, 2> poses;
   double x = 0.0, y = 0.0, angle = 0.0;
@@ -48,7 +48,7 @@ int main() {
       {pillar, winnow::Pose::at(-1, 1, 0), winnow::Motion::fixed, {.layers = obstacles}},
       {pillar, winnow::Pose::at(0, -1.5, 0), winnow::Motion::fixed, {.layers = tools}}};
   world.add(pillars, keys);
-  world.refresh();  // once; from here on any number of threads may ask
+  world.refresh();  // once; then any number of threads may query
 
   winnow::SceneQueries ask(world);  // one per thread
   const auto is_free = [&](const Configuration& q) {
@@ -61,21 +61,21 @@ int main() {
   };
   // [end]
   check(is_free({0.0, 0.0}), "nothing stands along x");
-  check(!is_free({0.0, 0.9}), "the second link meets the pillar");
-  check(is_free({-1.57, 0.0}), "tools are not looked at");
+  check(!is_free({0.0, 0.9}), "the second link hits the pillar");
+  check(is_free({-1.57, 0.0}), "tools are ignored");
 
   // [clearance]
   const auto clearance = [&](const Configuration& q, double enough) {
-    double least = enough;  // nobody asks how far it is beyond that
+    double least = enough;  // larger distances do not matter
     for (const winnow::Pose& pose : link_poses(q)) {
       std::span<const winnow::SceneDistance> near;
-      const double reach = 0.51 + least;  // of the link about its middle
+      const double reach = 0.51 + least;  // radius around the link's centre
       ask.nearest(pose.position, 8, reach, near, {.mask = obstacles});
       for (const winnow::SceneDistance& body : near) least = std::min(least, body.distance - 0.51);
     }
-    return least;  // never more than there is
+    return least;  // a lower bound
   };
   // [end]
   check(clearance({0.0, 0.0}, 5.0) > 0.0, "there is room");
-  check(clearance({0.0, 0.0}, 0.1) <= 0.1, "no more than what was asked for");
+  check(clearance({0.0, 0.0}, 0.1) <= 0.1, "no more than the limit");
 }

@@ -1,4 +1,4 @@
-// Ten minutes: boxes, what changes, bodies, contacts, questions.
+// The ten-minute tutorial: boxes, pairs, changes, bodies, contacts, queries.
 
 #include <winnow/winnow.h>
 
@@ -14,12 +14,12 @@ std::size_t pushed = 0;
 
 void boxes_and_pairs() {
   // [boxes]
-  std::vector<winnow::Aabb> boxes;  // any number of boxes: least and greatest corner
+  std::vector<winnow::Aabb> boxes;  // smallest and largest corner of each
   for (int i = 0; i < 1000; ++i) {
     const float x = 0.9F * static_cast<float>(i);
     boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
   }
-  std::vector<winnow::Key> keys(boxes.size());  // names them from now on
+  std::vector<winnow::Key> keys(boxes.size());  // a key identifies an object
   winnow::Partition partition(winnow::linear_bvh());
   if (partition.insert(boxes, {}, keys) != winnow::Status::ok) return;
 
@@ -31,10 +31,10 @@ void boxes_and_pairs() {
 
   // [changes]
   winnow::PairEvents events;
-  partition.self_pairs(pairs, events);      // from here on it tells what changed
-  boxes[500] = {{450, 5, 0}, {451, 6, 1}};  // up and away
+  partition.self_pairs(pairs, events);      // later calls report changes
+  boxes[500] = {{450, 5, 0}, {451, 6, 1}};  // moves away
   partition.update(keys[500], boxes[500]);
-  partition.self_pairs(pairs, events);  // costs what moved, not what is there
+  partition.self_pairs(pairs, events);  // cost depends on the moved objects
   for (const winnow::KeyPair& pair : events.ended()) {
     check(pair.first == keys[500] || pair.second == keys[500], "its two pairs ended");
   }
@@ -48,13 +48,13 @@ void push(winnow::Key, winnow::Key, double, double) {
 
 void bodies_and_contacts() {
   // [bodies]
-  winnow::ShapePool shapes;  // shapes once, however many bodies have them
+  winnow::ShapePool shapes;  // bodies share shapes
   winnow::ShapeId crate, ball, floor;
   shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}, crate);  // half extents
   shapes.add(winnow::SphereShape{0.25}, ball);
   shapes.add(winnow::HalfSpaceShape{}, floor);  // all below z = 0
 
-  winnow::Scene scene(shapes, {.margin = 0.01});  // closer than a centimetre is a contact
+  winnow::Scene scene(shapes, {.margin = 0.01});  // contacts within 1 cm
   winnow::Key ground, lower, upper, rolling;
   scene.add({.shape = floor, .motion = winnow::Motion::fixed}, ground);
   scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 0.5), .data = 1}, lower);
@@ -63,7 +63,7 @@ void bodies_and_contacts() {
   // [end]
 
   // [contacts]
-  winnow::Contacts contacts;  // yours, filled again in every frame
+  winnow::Contacts contacts;  // keep it from frame to frame
   scene.collide(winnow::ContactLevel::manifold, contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {  // pairs of bodies that touch
     for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
@@ -78,14 +78,14 @@ void bodies_and_contacts() {
 
   // [questions]
   scene.move(rolling, winnow::Pose::at(6, 0, 0.25));
-  scene.refresh();  // brings the partitions up to date
+  scene.refresh();  // updates the partitions
   winnow::SceneQueries ask(scene);
   winnow::SceneHit hit;
   ask.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0}, hit);  // hits the lower crate
   winnow::SceneDistance gap;
-  ask.distance(upper, rolling, gap);  // closest points, distance, bound of its error
+  ask.distance(upper, rolling, gap);  // closest points, distance, error bound
   // [end]
-  check(hit.key == lower && hit.t == 4.5, "the ray meets the lower crate");
+  check(hit.key == lower && hit.t == 4.5, "the ray hits the lower crate");
   check(gap.distance > 4.9 && gap.error_bound < 1e-6, "they are apart");
 }
 

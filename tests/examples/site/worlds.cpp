@@ -16,8 +16,8 @@ int main() {
   for (std::uint32_t world = 0; world < kWorlds; ++world) {
     for (int i = 0; i < 10; ++i) {
       const float x = 0.9F * static_cast<float>(i);
-      boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});  // all worlds stand at the same place
-      filters.push_back({.environment = world});    // and never meet
+      boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});  // all worlds are at the same position
+      filters.push_back({.environment = world});    // but never collide
     }
   }
   std::vector<winnow::Key> keys(boxes.size());
@@ -33,5 +33,5 @@ int main() {
   // [one world]
   partition.all(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hits, {.environment = 7});
   // [end]
-  check(hits.size() == 10, "a ray in one world meets what is there");
+  check(hits.size() == 10, "a ray in one world hits its ten boxes");
 }

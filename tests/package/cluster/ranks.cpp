@@ -1,4 +1,4 @@
-// Each rank adds a box, and all of them overlap: prints how many pairs there are.
+// Each rank adds a box, and all boxes overlap: prints the number of pairs.
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

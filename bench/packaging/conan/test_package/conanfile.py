@@ -1,4 +1,4 @@
-"""A program outside of winnow's tree, with the package."""
+"""Builds and runs a program outside of winnow's source tree with the package."""
 
 import os
 

@@ -1,4 +1,4 @@
-# winnow for vcpkg, of the tree that this port lies in:
+# winnow for vcpkg, built from the source tree that contains this port:
 #   vcpkg install winnow --overlay-ports=bench/packaging/vcpkg
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOLUTE)
 

@@ -1,5 +1,5 @@
-"""winnow for Spack: `spack repo add bench/packaging/spack`, then in a tree of winnow's sources
-`spack dev-build winnow@0.1.0`."""
+"""winnow for Spack: run `spack repo add bench/packaging/spack`, then
+`spack dev-build winnow@0.1.0` in winnow's source tree."""
 
 from spack.package import CMakePackage, depends_on, license, variant, version
 
